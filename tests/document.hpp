@@ -12,7 +12,6 @@ using Document = nlohmann::ordered_json;  // equality requires the same order of
 
 inline Document read_back(const Json& json) { return Document::parse(json.dump()); }
 
-/// Parses a file.
 inline Document json_of(const std::filesystem::path& path) {
     return Document::parse(std::ifstream(path, std::ios::binary));
 }

@@ -36,19 +36,19 @@ class KernelCache {
         return named == nullptr ? "" : named;
     }
 
-    // Several programs may call this at once: each file appears complete or not at all, and existing files stay
-    // unchanged.
+    // Adds the files that are missing in `to`. Several programs may do so at once: each file appears complete or not at
+    // all, and existing files stay unchanged.
     static void add_missing(const std::filesystem::path& from, const std::filesystem::path& to) {
-        std::error_code none;  // ignored (file removed, disk full): the kernel is then built again
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(from, none)) {
+        std::error_code error;  // after an error (file removed, disk full), the kernel is built again
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(from, error)) {
             const std::filesystem::path target = to / entry.path().lexically_relative(from);
-            if (!entry.is_regular_file(none) || is_unfinished(entry.path()) || std::filesystem::exists(target, none))
+            if (!entry.is_regular_file(error) || is_unfinished(entry.path()) || std::filesystem::exists(target, error))
                 continue;
             const std::filesystem::path part = target.string() + ".part" + std::to_string(getpid());
-            std::filesystem::create_directories(target.parent_path(), none);
-            std::filesystem::create_hard_link(entry.path(), target, none);  // PoCL never rewrites a file
-            if (!none) continue;
-            if (std::filesystem::copy_file(entry.path(), part, none)) std::filesystem::rename(part, target, none);
+            std::filesystem::create_directories(target.parent_path(), error);
+            std::filesystem::create_hard_link(entry.path(), target, error);  // PoCL never rewrites a file
+            if (!error) continue;
+            if (std::filesystem::copy_file(entry.path(), part, error)) std::filesystem::rename(part, target, error);
         }
     }
 
@@ -57,8 +57,8 @@ class KernelCache {
         return name.find(".part") != std::string::npos || name.starts_with("tempfile");
     }
 
-    // On the store's file system, because hard links do not work across file systems.
     std::filesystem::path store_ = store();
+    // The cache is on the store's file system, because hard links do not work across file systems.
     TemporaryFolder folder_{store_.empty() ? "raya-test-kernels" : (store_.parent_path() / "kernels").string()};
 };
 

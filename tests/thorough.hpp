@@ -27,7 +27,7 @@ std::vector<T> quick(std::size_t few, std::initializer_list<T> all) {
     return {all.begin(), thorough() ? all.end() : all.begin() + few};
 }
 
-/// Same for a container, which may have fewer than `few` elements.
+/// Returns the first `few` elements of a container, which may have fewer, or all of them if thorough().
 template <class Container>
 auto quick_of(std::size_t few, const Container& all) {
     using std::begin;

@@ -1,4 +1,4 @@
-# Writes OUTPUT, a C++ file with the commit of the sources in ROOT and the text BUILD, unless the file has this content; see host/version.hpp.
+# Writes OUTPUT, a C++ file with the commit of the sources in ROOT and the text BUILD, unless the file already has this content; see host/version.hpp.
 #   cmake -DROOT=DIR -DBUILD=TEXT -DOUTPUT=FILE -P tools/commit.cmake
 # The commit comes from git, or from tools/commit.txt in sources that `git archive` packed; other sources have no commit.
 set(commit "")

@@ -10,7 +10,7 @@ if(TARGET raya_mpi)
     install(TARGETS raya_mpi LIBRARY DESTINATION lib/raya)
 endif()
 
-# The Python module with the laboratory, for Debian's Python. `pip install .` puts both and the program into one package of a wheel.
+# The Python module with the laboratory, for Debian's Python. `pip install .` puts module, laboratory and program into one package of a wheel.
 if(TARGET raya_python)
     set(package lib/python3/dist-packages/raya)
     if(SKBUILD)

@@ -40,7 +40,7 @@ class Implementation:
 
 
 def processor_seconds():
-    """Returns the processor seconds of all programs run so far, including their children. They do not depend on other load, as wall time does."""
+    """Returns the processor seconds of all programs run so far, including their children. Unlike wall time, they do not depend on other load."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 

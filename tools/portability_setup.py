@@ -31,8 +31,8 @@ def fetch(packages, folder):
 
 
 def unpack(wheel, folder):
-    """Unpacks a wheel's data (X.data/data/...) and packages. Equal files become hard links, because wheels cannot contain links and have
-    libraries twice."""
+    """Unpacks a wheel's data (X.data/data/...) and packages. Equal files become hard links, because wheels cannot contain links and
+    therefore contain some libraries twice."""
     seen = {}
     with zipfile.ZipFile(wheel) as members:
         for member in members.infolist():
@@ -64,7 +64,7 @@ def llvm_14_substitute(cpuinfo):
 
 def patch_cpu_name(library, cpu):
     """Patches the fetched copy of PoCL 3.0 to use this CPU name, because PoCL 3.0 has no setting for it: replaces the call of LLVM in
-    pocl_get_llvm_cpu_name(), and the check of its result, by a constant. Addresses of code and constants are file offsets."""
+    pocl_get_llvm_cpu_name(), and the check of its result, by a constant. The library's addresses of code and constants equal their file offsets."""
     content = bytearray(library.read_bytes())
     calls = [match.start(1) for match in re.finditer(rb"\x55\x53\x48\x83\xec\x08(\xe8....\x48\x85\xd2\x74\x30)\x48\x89\xc5", content, re.DOTALL)]
     name_position = content.find(b"\0" + cpu.encode() + b"\0") + 1
@@ -115,7 +115,7 @@ def set_up_implementation(packages, target, cpuinfo):
 
 
 def set_up(build, folder):
-    """Sets up all files of `folder`. Returns the exit code: 0, or 3 if one failed."""
+    """Sets up the implementation of each file in `folder`. Returns the exit code: 0, or 3 if a setup failed."""
     target = (build / FETCHED).absolute()
     target.mkdir(parents=True, exist_ok=True)
     cpuinfo = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else ""

@@ -5,10 +5,10 @@
 
 Differences between POV-Ray and the shading of kernels/README.md, and how the scene works around them:
 
-- A surface with transmittance T keeps only 1 - T of its own colour, so Kd is divided by 1 - T (at T = 1 all colour is lost).
-- Light passes through transmitting objects. Their shadow comes from an opaque twin that only shadow rays see.
-- Which side of a surface is glass depends on the objects that the ray has entered, not on normals.
-- Objects are visible from both sides. An object of negative radius is clear outside; a ray that passes through its outside loses a level.
+- In POV-Ray a surface with transmittance T keeps only 1 - T of its own colour, so Kd is divided by 1 - T (at T = 1 all colour is lost).
+- In POV-Ray light passes through transmitting objects. Their shadow comes from an opaque second object that only shadow rays hit.
+- In POV-Ray the objects that a ray has entered decide which side of a surface is glass; normals do not.
+- In POV-Ray objects are visible from both sides. An object of negative radius gets a clear outside; a ray that passes through it uses up a bounce.
 - Polygons become triangles, and the triangles of one surface a mesh, which POV-Ray intersects fastest.
 - Checkers are cubes. They are stretched along the axis that the checker ignores.
 
@@ -238,7 +238,7 @@ class Surfaces:
             yield f"#declare Surface{number} = texture {{ pigment {{ {self.pigment(surface)} }} finish {{ {self.finish(surface)} }} }}"
 
     def solid(self, shape, surface, inside_only=False):
-        """Yields the text of an object; for a transmitting object, also the text of a second object, which casts its shadow."""
+        """Returns the texts of an object and, if it transmits light, of a second object that casts its shadow."""
         texture = f"texture {{ Surface{self.number(surface)} }}"
         if inside_only:
             texture = "texture { Clear } interior_" + texture

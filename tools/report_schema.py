@@ -6,7 +6,7 @@ FOLDER = Path(__file__).resolve().parents[1] / "docs" / "schema"
 
 
 class Node:
-    """A schema in a file: {"type": "integer"} of render.json at the JSON pointer /properties/walks."""
+    """A schema within a file, for example {"type": "integer"} at the JSON pointer /properties/walks of render.json."""
 
     def __init__(self, schemas, file, value, pointer=""):
         self.schemas, self.file, self.value, self.pointer = schemas, file, value, pointer

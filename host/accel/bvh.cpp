@@ -42,7 +42,7 @@ struct Bin {
 
 // The range of the items' centres (doubled, see doubled_centre()) along an axis, and its division into kBins equal
 // bins.
-struct Scale {
+struct Binning {
     float low = kInfinity, high = -kInfinity;
     float bins_per_unit = 0;
 
@@ -53,29 +53,29 @@ struct Scale {
 
 using Bins = std::array<Bin, kBins>;  // all bins along one axis
 
-std::array<Scale, 3> scales_of(std::span<const BvhItem> items) {
-    std::array<Scale, 3> scales;
+std::array<Binning, 3> binnings_of(std::span<const BvhItem> items) {
+    std::array<Binning, 3> binnings;
     for (const BvhItem& item : items)
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            scales[axis].low = std::min(scales[axis].low, doubled_centre(item, axis));
-            scales[axis].high = std::max(scales[axis].high, doubled_centre(item, axis));
+            binnings[axis].low = std::min(binnings[axis].low, doubled_centre(item, axis));
+            binnings[axis].high = std::max(binnings[axis].high, doubled_centre(item, axis));
         }
-    for (Scale& scale : scales) {
-        const float range = scale.high - scale.low;
+    for (Binning& binning : binnings) {
+        const float range = binning.high - binning.low;
         const float bins_per_unit = static_cast<float>(kBins) / range;
-        scale.bins_per_unit = range > 0 && bins_per_unit < kInfinity ? bins_per_unit : 0;
+        binning.bins_per_unit = range > 0 && bins_per_unit < kInfinity ? bins_per_unit : 0;
     }
-    return scales;
+    return binnings;
 }
 
 // A split plane perpendicular to `axis`, between the bins `last_bin` and `last_bin` + 1.
-struct Cut {
+struct Split {
     float cost = kInfinity;
     std::size_t axis = 0, last_bin = 0;
 };
 
-// Replaces `best` by the cheapest cut along `axis` if that cut is cheaper than `best`.
-void find_cut(Cut& best, std::size_t axis, const Bins& bins) {
+// Replaces `best` by the cheapest split along `axis` if that split is cheaper than `best`.
+void improve_split(Split& best, std::size_t axis, const Bins& bins) {
     std::array<float, kBins> cost_above{};  // cost_above[b]: cost of all bins above bin b
     Bin sum;
     for (std::size_t b = kBins - 1; b > 0; --b) {
@@ -100,51 +100,51 @@ Parts split_after(const Part& part, std::size_t items) {
     return {part_of(part.items.first(items)), part_of(part.items.subspan(items))};
 }
 
-// Splits the items into two equal halves by object number. Used if no bin boundary separates the items, or if the tree
-// would become too deep.
-Parts even_halves(const Part& part) {
+// Splits the items into two equal halves by object number, for items that no bin boundary separates, and for parts so
+// deep in the tree that its depth must be limited.
+Parts split_by_number(const Part& part) {
     std::sort(part.items.begin(), part.items.end(),
               [](const BvhItem& a, const BvhItem& b) { return a.number < b.number; });
     return split_after(part, part.items.size() / 2);
 }
 
 // Splits the items into those of the lowest kind and the others.
-Parts cut_by_kind(const Part& part) {
+Parts split_by_kind(const Part& part) {
     std::uint32_t kind = RAYA_LINK_OBJECT;  // lowest kind
     for (const BvhItem& item : part.items) kind = std::min(kind, item.kind);
-    const auto others =
+    const auto second_part =
         std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) { return item.kind == kind; });
-    return split_after(part, static_cast<std::size_t>(others - part.items.begin()));
+    return split_after(part, static_cast<std::size_t>(second_part - part.items.begin()));
 }
 
-// Splits the items into those in the bins up to Cut::last_bin and the others. The boxes of the parts are the unions of
-// the bins' boxes.
-Parts cut_at(const Part& part, const Cut& plane, const Bins& bins, const Scale& scale) {
-    const auto others = std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) {
-        return scale.bin(doubled_centre(item, plane.axis)) <= plane.last_bin;
+// Splits the items into those in the bins up to Split::last_bin and the others. The boxes of the parts are the unions
+// of the bins' boxes.
+Parts split_at(const Part& part, const Split& plane, const Bins& bins, const Binning& binning) {
+    const auto second_part = std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) {
+        return binning.bin(doubled_centre(item, plane.axis)) <= plane.last_bin;
     });
-    const auto items = static_cast<std::size_t>(others - part.items.begin());
+    const auto items = static_cast<std::size_t>(second_part - part.items.begin());
     Parts parts{{{part.items.first(items), kEmptyBounds}, {part.items.subspan(items), kEmptyBounds}}};
     for (std::size_t b = 0; b < kBins; ++b) extend(parts[b <= plane.last_bin ? 0 : 1].box, bins[b].box);
     return parts;
 }
 
-// Splits a part: by kind if it has few items of several kinds, otherwise at the cheapest cut.
-Parts cut(const Part& part, std::uint32_t depth) {
-    if (part.items.size() <= RAYA_BVH_WIDTH && !part.is_of_one_kind()) return cut_by_kind(part);
-    if (depth >= kMedianDepth) return even_halves(part);
-    const std::array<Scale, 3> scales = scales_of(part.items);
+// Splits a part: by kind if it has few items of several kinds, otherwise at the cheapest split plane.
+Parts split(const Part& part, std::uint32_t depth) {
+    if (part.items.size() <= RAYA_BVH_WIDTH && !part.is_of_one_kind()) return split_by_kind(part);
+    if (depth >= kMedianDepth) return split_by_number(part);
+    const std::array<Binning, 3> binnings = binnings_of(part.items);
     std::array<Bins, 3> bins;
     for (const BvhItem& item : part.items)
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            Bin& bin = bins[axis][scales[axis].bin(doubled_centre(item, axis))];
+            Bin& bin = bins[axis][binnings[axis].bin(doubled_centre(item, axis))];
             extend(bin.box, item.box);
             ++bin.items;
         }
-    Cut best;
-    for (std::size_t axis = 0; axis < 3; ++axis) find_cut(best, axis, bins[axis]);
-    if (best.cost == kInfinity) return even_halves(part);
-    return cut_at(part, best, bins[best.axis], scales[best.axis]);
+    Split best;
+    for (std::size_t axis = 0; axis < 3; ++axis) improve_split(best, axis, bins[axis]);
+    if (best.cost == kInfinity) return split_by_number(part);
+    return split_at(part, best, bins[best.axis], binnings[best.axis]);
 }
 
 class BvhBuilder {
@@ -169,7 +169,7 @@ class BvhBuilder {
             for (Part& p : parts)
                 if (!p.is_leaf() && (!largest || half_area(p.box) > half_area(largest->box))) largest = &p;
             if (!largest) break;
-            const Parts pieces = cut(*largest, depth);
+            const Parts pieces = split(*largest, depth);
             *largest = pieces[0];
             parts.push_back(pieces[1]);
         }

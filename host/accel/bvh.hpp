@@ -63,7 +63,7 @@ Bvh build_bvh(std::vector<BvhItem> items);
 /// Builds a BVH over the finite objects of a packed scene (job), appends it to the job's words in the layout of
 /// kernels/shared/bvh.h, and sets accel_at in the job's header. The box of an object contains every point at which a
 /// kernel can compute a hit of the object (hit_regions.hpp), with a margin for rounding errors of the traversal. Throws
-/// UserError if the BVH has more 64-byte rows than a child reference of a node can address.
+/// UserError if the BVH has more 64-byte rows than a link can address.
 AccelSummary append_bvh(PackedJob& job, const NumberFormat& format);
 
 /// Returns true if rendering this scene with a BVH is expected to be faster than testing every ray against all objects.

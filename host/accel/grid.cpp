@@ -42,7 +42,7 @@ void put_sphere(GridLists& lists, const std::vector<std::uint32_t>& words, const
     lists.numbers.push_back(number);
 }
 
-// Appends a link row (kernels/shared/grid.h). `next`: voxel word of the remaining list; `number`: object of the row.
+// Appends a link row (kernels/shared/grid.h). `next`: voxel word of the remaining list; `number`: object number.
 void put_link(GridLists& lists, std::uint32_t next, std::uint32_t number) {
     lists.rows.insert(lists.rows.end(), {next, 0, 0, 0});
     lists.numbers.push_back(number);
@@ -89,18 +89,18 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
     for (;;) {
         const HitRegions regions(job, format, kMinReach, large);
         if (!regions.all_bounded()) return {};
-        std::vector<double> lengths;
+        std::vector<double> longest_sides;
         Box whole;
         for (std::size_t i = 0; i < regions.size(); ++i) {
             const Box box = regions.region(i).box;
-            lengths.push_back(longest_side(box));
+            longest_sides.push_back(longest_side(box));
             whole.extendBy(box);
         }
-        std::vector<std::uint32_t> found;
+        std::vector<std::uint32_t> new_large;
         for (std::size_t i = 0; i < regions.size(); ++i)
-            if (lengths[i] > kLargeSide * longest_side(whole)) found.push_back(regions.number(i));
-        if (found.empty() || large.size() + found.size() > kMaxLarge) return large;
-        large.insert(large.end(), found.begin(), found.end());
+            if (longest_sides[i] > kLargeSide * longest_side(whole)) new_large.push_back(regions.number(i));
+        if (new_large.empty() || large.size() + new_large.size() > kMaxLarge) return large;
+        large.insert(large.end(), new_large.begin(), new_large.end());
         std::sort(large.begin(), large.end());
     }
 }

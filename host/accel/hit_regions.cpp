@@ -201,18 +201,18 @@ HitRegion HitRegions::cone(std::size_t at) const {
     const Vec3 axis = vector(at + RAYA_CONE_AXIS).normalized();
     region.centre = vector(at + RAYA_CONE_BASE);
     region.segment = height * axis;
-    double widest = 0;
+    double max_end_radius = 0;
     for (const auto& [z, radius] : {std::pair{-z_error, r0}, std::pair{height + z_error, r1}}) {
         const double end_radius = radius + std::abs(slope) * z_error;
         const double outer_end_radius = std::sqrt(end_radius * end_radius + error);
-        widest = std::max(widest, outer_end_radius);
+        max_end_radius = std::max(max_end_radius, outer_end_radius);
         Vec3 arm;
         for (int i = 0; i < 3; ++i) arm[i] = outer_end_radius * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
         region.box.extendBy(region.centre + z * axis - arm);
         region.box.extendBy(region.centre + z * axis + arm);
     }
     widen(region.box, shift);
-    region.capsule_radius = widest + z_error + shift;
+    region.capsule_radius = max_end_radius + z_error + shift;
     region.normal = axis;
     region.plane_distance = axis.dot(region.centre) + 0.5 * height;
     region.half_thickness = 0.5 * height + z_error + shift;

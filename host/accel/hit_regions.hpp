@@ -21,9 +21,9 @@ struct HitRegion {
     static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
     Box box;
     Vec3 centre{0};                                          // centre of the shell; start of the segment
-    double outer_radius = kUnbounded, inner_radius = 0;      // of the shell
-    Vec3 normal{0};                                          // of the slab
-    double plane_distance = 0, half_thickness = kUnbounded;  // of the slab
+    double outer_radius = kUnbounded, inner_radius = 0;      // radii of the shell
+    Vec3 normal{0};                                          // normal of the slab
+    double plane_distance = 0, half_thickness = kUnbounded;  // define the slab (see above)
     Vec3 segment{0};                                         // vector from the segment's start to its end
     double capsule_radius = kUnbounded;
 
@@ -52,7 +52,6 @@ class HitRegions {
     /// Maximum distance of a hit: RAYA_FAR of the format.
     double far() const { return far_; }
 
-    /// Number of regions.
     std::size_t size() const { return numbers_.size(); }
     /// Object number of region i.
     std::uint32_t number(std::size_t i) const { return numbers_[i]; }

@@ -114,7 +114,7 @@ void fill_lists(Partition& p, const HitRegions& regions, const Voxels& voxels, c
     }
     for (std::size_t v = 1; v < p.starts.size(); ++v) p.starts[v] += p.starts[v - 1];
     p.objects.resize(entries);
-    std::vector<std::uint32_t> next_entries(p.starts.begin(), p.starts.end() - 1);  // of each voxel's list
+    std::vector<std::uint32_t> next_entries(p.starts.begin(), p.starts.end() - 1);  // index of each voxel's next entry
     for (std::size_t i = 0; i < regions.size(); ++i) {
         const std::uint32_t number = regions.number(i);
         voxels.visit(regions.region(i), [&](std::uint32_t voxel) { p.objects[next_entries[voxel]++] = number; });

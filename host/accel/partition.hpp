@@ -50,8 +50,8 @@ Partition partition(const PackedJob& job, const NumberFormat& format, const Divi
                     const std::vector<std::uint32_t>& separate = {});
 
 /// Returns the divisions of an acceleration grid along each axis, for about `voxels` (1..2^24) voxels that are nearly
-/// cubes. Returns fewer if the lists would otherwise have more than 16 entries per voxel and more than 16 per object on
-/// average, and 1x1x1 if the hit regions are unbounded.
+/// cubes. Chooses fewer voxels if the lists would otherwise have, on average, more than 16 entries per voxel and more
+/// than 16 per object. Returns 1x1x1 if the hit regions are unbounded.
 Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::uint64_t voxels,
                         const std::vector<std::uint32_t>& separate = {});
 

@@ -12,11 +12,11 @@
 namespace raya {
 namespace {
 
-// Compression level. For packet traces, level 4 takes half the time of zlib's default level, 6, and gives 8 % more
+// For packet traces, level 4 takes half the time of zlib's default level, 6, and gives 8 % more
 // bytes.
-constexpr int kLevel = 4;
-constexpr int kGzip = 16 + MAX_WBITS;  // windowBits: MAX_WBITS for the maximum window, 16 for gzip's header and trailer
-constexpr int kMemory = 8;             // memLevel: zlib's default
+constexpr int kCompressionLevel = 4;
+constexpr int kWindowBits = MAX_WBITS + 16;  // maximum window; + 16 for gzip's header and trailer
+constexpr int kMemLevel = 8;                 // zlib's default
 
 }  // namespace
 
@@ -55,7 +55,7 @@ std::string bytes_hash(std::string_view bytes) {
 
 struct GzipText::Stream {
     Stream() {
-        const int code = deflateInit2(&z, kLevel, Z_DEFLATED, kGzip, kMemory, Z_DEFAULT_STRATEGY);
+        const int code = deflateInit2(&z, kCompressionLevel, Z_DEFLATED, kWindowBits, kMemLevel, Z_DEFAULT_STRATEGY);
         if (code == Z_MEM_ERROR) throw std::bad_alloc();
         if (code != Z_OK) throw std::runtime_error("zlib: deflateInit2 failed");
     }

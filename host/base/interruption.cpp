@@ -15,19 +15,19 @@ namespace raya {
 namespace {
 
 // The paths of the registered files are in a table of fixed size, because a signal handler may neither allocate nor
-// lock. An empty name means that the entry has no file.
+// lock.
 struct FileEntry {
     std::atomic<bool> taken{false};
-    std::array<char, PATH_MAX> name{};
+    std::array<char, PATH_MAX> path{};  // empty: no file is registered
 };
 std::array<FileEntry, 16> file_table;
 static_assert(std::atomic<bool>::is_always_lock_free);
 std::atomic<bool> message_suppressed{false};
 
 using Handler = void (*)(int, siginfo_t*, void*);
-std::array<std::atomic<bool>, 32> is_protected;  // by signal number
-std::array<std::atomic<Handler>, 32>
-    library_handlers;  // by signal number: handler that a library tried to install; null if none
+std::array<std::atomic<bool>, 32> is_protected;  // [signal]: libraries cannot replace the signal's handler
+// [signal]: handler that a library tried to install; null if none.
+std::array<std::atomic<Handler>, 32> library_handlers;
 static_assert(std::atomic<Handler>::is_always_lock_free);
 
 /// The signal handler. It may run in any thread and calls only async-signal-safe functions.
@@ -62,7 +62,7 @@ void install_handler(int signal) {
 
 void remove_files_in_progress() {
     for (FileEntry& entry : file_table)
-        if (entry.taken.load() && entry.name[0] != '\0') ::unlink(entry.name.data());
+        if (entry.taken.load() && entry.path[0] != '\0') ::unlink(entry.path.data());
 }
 
 void install_interrupt_handlers() {
@@ -78,18 +78,18 @@ FileInProgress::FileInProgress(const std::filesystem::path& path) {
     if (path.native().size() >= PATH_MAX) return;
     for (FileEntry& entry : file_table) {
         if (entry.taken.exchange(true)) continue;
-        name_ = entry.name.data();  // empty in an entry that was free
-        std::strcpy(name_ + 1, path.c_str() + 1);
+        path_ = entry.path.data();  // empty, because the entry was free
+        std::strcpy(path_ + 1, path.c_str() + 1);
         std::atomic_signal_fence(std::memory_order_release);
-        name_[0] = path.c_str()[0];  // written last, so that the handler sees either the whole name or an empty one
+        path_[0] = path.c_str()[0];  // written last, so that the handler sees either the whole path or an empty one
         return;
     }
 }
 
 FileInProgress::~FileInProgress() {
     for (FileEntry& entry : file_table) {
-        if (entry.name.data() != name_) continue;
-        name_[0] = '\0';
+        if (entry.path.data() != path_) continue;
+        path_[0] = '\0';
         entry.taken.store(false);
     }
 }

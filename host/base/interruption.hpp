@@ -31,7 +31,7 @@ class FileInProgress {
     ~FileInProgress();
 
   private:
-    char* name_ = nullptr;  // entry in the table of registered files; null: not registered
+    char* path_ = nullptr;  // in the table of registered files; null: not registered
 };
 
 }  // namespace raya

@@ -15,7 +15,7 @@ using NlohmannJson = nlohmann::ordered_json;
 // the buffer's read position gives them.
 class JsonText : public std::streambuf {
   public:
-    JsonText(const std::string& text, Json& root) : root_(root) {
+    JsonText(const std::string& text, Json& document) : document_(document) {
         char* const begin = const_cast<char*>(text.data());  // setg() takes a mutable buffer; nothing writes to it
         setg(begin, begin, begin + text.size());
         // The library treats a zero byte as the end of the text.
@@ -57,7 +57,7 @@ class JsonText : public std::streambuf {
     }
     Json& append(Json value) {
         value.position_ = position();
-        if (open_trees_.empty()) return root_ = std::move(value);
+        if (open_trees_.empty()) return document_ = std::move(value);
         return open_trees_.back()->elements.emplace_back(std::move(value));
     }
     bool add_value(Json value) {
@@ -83,7 +83,7 @@ class JsonText : public std::streambuf {
         return true;
     }
 
-    Json& root_;
+    Json& document_;
     std::vector<Json::Tree*> open_trees_;
 };
 

@@ -1,4 +1,4 @@
-// JSON documents as values. Used to write reports, traces and studies, and to read baselines and checks.
+// JSON documents as values. raya writes reports, traces and studies with them, and reads baselines and checks.
 //
 // nlohmann's library writes and parses the text. This header does not include that library, because its templates would
 // add two to three seconds of compilation to each of fifty files.
@@ -88,8 +88,8 @@ class Json {
     /// Returns the member `key`. Throws JsonError if the member is missing.
     const Json& at(std::string_view key) const;
 
-    /// Return the value as the function's type. Throw JsonError if the value has another type. integer() also throws
-    /// JsonError if the value is not an integer in 0..`max`.
+    /// Return the value of a string, a number, an integer in 0..`max`, or the elements of an array. Throw JsonError for
+    /// other values.
     const std::string& text() const;
     double number() const;
     std::uint64_t integer(std::uint64_t max = UINT64_MAX) const;
@@ -137,7 +137,7 @@ class Json {
 
 struct Json::Tree {
     std::vector<Json> elements{};
-    std::vector<std::string> keys{};  // of an object: the names of its elements; of an array: empty
+    std::vector<std::string> keys{};  // names of an object's elements; empty for an array
     bool is_object = false;
 };
 

@@ -16,7 +16,6 @@ void print_log(std::string_view text);
 /// Replaces the status line on stderr, which must be a terminal, by `line`. print_log(), clear_status() or the next
 /// call erases the line.
 void show_status(std::string_view line);
-/// Erases the status line.
 void clear_status();
 
 // Levels of verbosity, and the messages that raya prints at each.

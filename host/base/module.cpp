@@ -44,15 +44,15 @@ std::string unsafe_entry_reason(const fs::path& path, const std::vector<uid_t>& 
     if (::lstat(path.c_str(), &status) != 0 || ::stat("/", &root) != 0)
         return fmt::format("'{}': {}", path.string(), std::generic_category().message(errno));
     // In a user namespace root may have another uid than 0, so the owner of "/" is also accepted as root.
-    const bool by_root = status.st_uid == 0 || status.st_uid == root.st_uid;
-    if (!by_root && std::find(owners.begin(), owners.end(), status.st_uid) == owners.end())
+    const bool is_owned_by_root = status.st_uid == 0 || status.st_uid == root.st_uid;
+    if (!is_owned_by_root && std::find(owners.begin(), owners.end(), status.st_uid) == owners.end())
         return fmt::format("'{}' belongs to user {}", path.string(), user_name(status.st_uid));
     if (sticky == Sticky::kAllowed && (status.st_mode & S_ISVTX) != 0) return {};
     // If the file has an access control list, the group bits are the mask of all its entries, not the group's rights.
     const bool has_list = ::lgetxattr(path.c_str(), "system.posix_acl_access", nullptr, 0) > 0;
-    const bool by_group =
+    const bool group_may_write =
         (status.st_mode & S_IWGRP) != 0 && (has_list || has_other_members(status.st_gid, status.st_uid));
-    if (!by_group && (status.st_mode & S_IWOTH) == 0) return {};
+    if (!group_may_write && (status.st_mode & S_IWOTH) == 0) return {};
     return fmt::format("other users may write '{}' (mode {:04o})", path.string(), status.st_mode & ALLPERMS);
 }
 

@@ -1,6 +1,5 @@
-// Modules: shared libraries that raya loads on first use, so that runs that do not use a module do not load the
-// libraries that it needs. Also checks that no other user may change files that contain code. "The program" is raya's
-// executable.
+// Modules: shared libraries that raya loads on first use. A run that does not use a module does not load the libraries
+// that the module needs. Also checks that no other user may change files with code. "The program" is raya's executable.
 #pragma once
 #include <sys/types.h>
 
@@ -25,9 +24,9 @@ struct MissingLibrary : ModuleError {
 /// loading.
 std::string memory_limit();
 
-/// Returns the function `symbol` of the module `name` (the file NAME.so in module_folder()), which stays loaded. Throws
-/// ModuleError, and UserError if users other than root, this user and the program's owner may change the file or its
-/// folder, or if a memory limit prevents loading.
+/// Returns the function `symbol` of the module `name` (the file NAME.so in module_folder()). The module stays loaded.
+/// Throws ModuleError if it does not load. Throws UserError if users other than root, this user and the program's owner
+/// may change the file or its folder, or if a memory limit prevents loading.
 void* module_function(const std::string& name, const char* symbol);
 
 /// The folder of the modules and of the other files installed with the program: ../lib/raya if the program's folder is
@@ -42,12 +41,12 @@ std::string unsafe_code_file_reason(const std::filesystem::path& file);
 /// Makes module_folder() use the path of `file` instead of the program's. For the Python module and tests.
 void set_program_file(const std::filesystem::path& file);
 
-/// Whether to accept a folder that other users may write if its sticky bit is set. This bit prevents users from
-/// replacing files in the folder that belong to another user.
+/// kAllowed: accept a folder that other users may write if its sticky bit is set. The bit prevents users from replacing
+/// other users' files in the folder.
 enum class Sticky { kRefused, kAllowed };
 
 /// Checks if users other than root and `owners` may change or replace `path` (absolute, without symbolic links).
-/// Returns the reason if they may: the file or folder, and its owner or mode; else an empty string. Accepts a group
+/// Returns the reason if they may (file or folder, and its owner or mode), else an empty string. Accepts a group
 /// with write permission if the owner is its only member. `sticky` applies to `path`; folders above may be sticky. Does
 /// not check folders that contain the folder `trusted`.
 std::string unsafe_path_reason(std::filesystem::path path, const std::vector<uid_t>& owners, Sticky sticky,

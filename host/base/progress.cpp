@@ -47,7 +47,7 @@ std::jthread announce_compiling(const std::string& device, std::chrono::millisec
 }
 
 ProgressBar::ProgressBar(bool wanted, const std::string& name) : stage_name_(name) {
-    if (wanted && shows_progress()) drawer_ = std::thread([this] { draw_until_ended(); });
+    if (wanted && shows_progress()) draw_thread_ = std::thread([this] { draw_until_ended(); });
 }
 
 ProgressBar::~ProgressBar() {
@@ -57,7 +57,7 @@ ProgressBar::~ProgressBar() {
         ended_ = true;
     }
     end_.notify_one();
-    drawer_.join();
+    draw_thread_.join();
 }
 
 void ProgressBar::stage(const std::string& name) {

@@ -24,8 +24,8 @@ struct StageProgress {
 std::string progress_line(const std::string& stage, const std::optional<StageProgress>& progress, double seconds);
 
 /// Starts a thread that prints messages about the compilation of kernels on stderr, unless --quiet is given. After 1 s,
-/// which is longer than loading cached kernels takes, it prints that kernels are being compiled for the device;
-/// `patience` later it prints remedies. When the returned thread is destroyed, it prints the time that compilation
+/// which is longer than loading cached kernels takes, it prints that kernels are being compiled for the device. After
+/// another `patience` it prints remedies. When the returned thread is destroyed, it prints the time that compilation
 /// took, if that time was more than 1 s.
 [[nodiscard]] std::jthread announce_compiling(const std::string& device,
                                               std::chrono::milliseconds patience = std::chrono::seconds(59));
@@ -41,7 +41,7 @@ class ProgressBar {
     ProgressBar& operator=(const ProgressBar&) = delete;
 
     /// Returns true if the bar is drawn.
-    bool active() const { return drawer_.joinable(); }
+    bool active() const { return draw_thread_.joinable(); }
 
     /// Starts the next stage. Its completed fraction is unknown until update() is called.
     void stage(const std::string& name);
@@ -59,7 +59,7 @@ class ProgressBar {
     std::string stage_name_;
     Clock::time_point stage_began_ = Clock::now();
     std::optional<StageProgress> progress_;
-    std::thread drawer_;
+    std::thread draw_thread_;
 };
 
 }  // namespace raya

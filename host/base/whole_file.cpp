@@ -96,7 +96,7 @@ void check_folder(const fs::path& path, const fs::path& folder) {
                "change its permissions or name a file in another folder");
 }
 
-/// The destination of a writable `path`.
+/// The file to which write_whole_file() writes.
 struct Target {
     fs::path file;        // symbolic links resolved
     bool direct = false;  // written without a temporary file, because it is a device, a pipe or stdout
@@ -137,15 +137,15 @@ Target checked_target(const fs::path& path) {
 using NextPiece = std::function<std::string_view()>;
 
 /// Writes all pieces to the descriptor and closes it. Returns 0 or the errno of the failed call.
-int write_and_close(int descriptor, const NextPiece& next) {
+int write_and_close(int descriptor, const NextPiece& next_piece) {
     int error = 0;
-    for (std::string_view bytes = next(); !bytes.empty() && error == 0;) {
+    for (std::string_view bytes = next_piece(); !bytes.empty() && error == 0;) {
         const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
         if (written >= 0)
             bytes.remove_prefix(static_cast<std::size_t>(written));
         else if (errno != EINTR)
             error = errno;
-        if (bytes.empty()) bytes = next();
+        if (bytes.empty()) bytes = next_piece();
     }
     // Network file systems may report a full disk only in close(). After EINTR Linux has closed the descriptor.
     if (::close(descriptor) != 0 && error == 0 && errno != EINTR) error = errno;
@@ -179,11 +179,11 @@ std::unique_ptr<TemporaryFile> open_temporary(const fs::path& target, const fs::
     }
 }
 
-void write_direct(const fs::path& path, const NextPiece& next) {
+void write_direct(const fs::path& path, const NextPiece& next_piece) {
     const int descriptor = is_standard_stream(path) ? take_stdout() : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor < 0 && errno == EINTR) return write_direct(path, next);  // open() waits for a pipe's reader
+    if (descriptor < 0 && errno == EINTR) return write_direct(path, next_piece);  // open() waits for a pipe's reader
     if (descriptor < 0) refuse(path, errno);
-    if (const int error = write_and_close(descriptor, next)) refuse(path, error);
+    if (const int error = write_and_close(descriptor, next_piece)) refuse(path, error);
 }
 
 }  // namespace
@@ -216,11 +216,11 @@ void write_whole_file(const fs::path& path, std::string_view bytes) {
     write_whole_file(path, [left = bytes]() mutable { return std::exchange(left, {}); });
 }
 
-void write_whole_file(const fs::path& path, const std::function<std::string_view()>& next) {
+void write_whole_file(const fs::path& path, const std::function<std::string_view()>& next_piece) {
     const Target target = checked_target(path);
-    if (target.direct) return write_direct(path, next);
+    if (target.direct) return write_direct(path, next_piece);
     const auto temporary = open_temporary(target.file, path);
-    if (const int error = write_and_close(temporary->descriptor, next)) refuse(path, error);
+    if (const int error = write_and_close(temporary->descriptor, next_piece)) refuse(path, error);
     if (std::rename(temporary->path.c_str(), target.file.c_str()) != 0) refuse(path, errno);
     temporary->renamed = true;
 }

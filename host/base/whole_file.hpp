@@ -14,12 +14,12 @@ struct UnreadableFile : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Whether read_file() reads a named pipe or refuses it.
+/// Treatment of a named pipe by read_file().
 enum class Pipes { kRefused, kRead };
 
-/// Returns all bytes of a regular file, of stdin if the name is "-" (standard_streams.hpp), or, with Pipes::kRead, of a
-/// pipe (`<(command)` in a shell). Throws UnreadableFile if the file does not exist, is a folder or a device, may not
-/// be read, has more than `max_bytes` bytes, or if reading fails.
+/// Returns all bytes of a regular file, or of stdin if the name is "-" (standard_streams.hpp). Reads a pipe
+/// (`<(command)` in a shell) only with Pipes::kRead. Throws UnreadableFile if the file does not exist, is a folder or a
+/// device, may not be read, has more than `max_bytes` bytes, or if reading fails.
 std::string read_file(const std::filesystem::path& path, Pipes pipes = Pipes::kRefused,
                       std::uint64_t max_bytes = std::uint64_t{1} << 36);
 
@@ -39,8 +39,8 @@ std::string file_identity(const std::filesystem::path& path);
 /// and remedy. Failures and interruptions (interruption.hpp) leave no temporary file.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// As above, but writes the file in pieces, so that the whole file need not be in memory. `next` returns one piece per
-/// call, valid until the following call, and an empty piece at the end.
-void write_whole_file(const std::filesystem::path& path, const std::function<std::string_view()>& next);
+/// Writes a file in the same way, but in pieces, so that the whole file need not be in memory. `next_piece` returns one
+/// piece per call, valid until the following call, and an empty piece at the end.
+void write_whole_file(const std::filesystem::path& path, const std::function<std::string_view()>& next_piece);
 
 }  // namespace raya

@@ -54,7 +54,7 @@ Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
 }
 
 Session::~Session() {
-    if (!queue_) return;  // this session was moved from
+    if (!queue_) return;  // another object has taken the contents of this session
     // The device must be idle when the program ends: PoCL's threads, which may still be compiling a kernel, crash with
     // SIGSEGV if PoCL's library is unloaded while they run. clFinish() does not throw.
     clFinish((*queue_)());
@@ -121,13 +121,13 @@ void Session::check_range(const std::string& label, const std::string& buffer, s
     }
 }
 
-void Session::check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks at,
+void Session::check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks layout,
                            std::size_t count, std::size_t blocks) {
-    check_range(label, buffer, at.pitch, at.offset, count);
-    if (at.first > size || (at.pitch > 0 && blocks > (size - at.first) / at.pitch)) {
+    check_range(label, buffer, layout.pitch, layout.offset, count);
+    if (layout.first > size || (layout.pitch > 0 && blocks > (size - layout.first) / layout.pitch)) {
         throw std::out_of_range(
             fmt::format("'{}': {} blocks of {} elements from element {} on exceed buffer '{}' of {} elements", label,
-                        blocks, at.pitch, at.first, buffer, size));
+                        blocks, layout.pitch, layout.first, buffer, size));
     }
 }
 
@@ -166,7 +166,7 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
         if (build.program() == program()) build.launch_s += seconds_since(start);
 }
 
-CommandRecord Session::finished(const PendingCommand& pending) const {
+CommandRecord Session::finished_record(const PendingCommand& pending) const {
     CommandRecord record = pending.record;
     guarded(fmt::format("'{}' ({})", record.label, record.kind), [&] {
         const cl_int status = pending.event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>();
@@ -187,7 +187,7 @@ void Session::flush() {
 void Session::finish() {
     const std::vector<PendingCommand> done = std::exchange(pending_, {});  // cleared even if a command failed
     guarded("waiting for the device", [this] { queue_->finish(); });
-    for (const PendingCommand& command : done) profile_.add(finished(command));
+    for (const PendingCommand& command : done) profile_.add(finished_record(command));
 }
 
 const Profile& Session::profile() {

@@ -60,9 +60,9 @@ class Session {
     /// options is built once per process.
     Program build(const std::string& name, const std::string& source, const std::vector<std::string>& options) const;
 
-    /// The maximum amount of work of a launch with this label, in units that the kernel defines (see LaunchGuard,
-    /// kernels.hpp). The value is UINT32_MAX, which means no limit, until the device has ended loops of such a launch
-    /// early.
+    /// Returns the maximum amount of work of a launch with this label, in units that the kernel defines; LaunchGuard
+    /// (kernels.hpp) lowers it. The value is UINT32_MAX, which means no limit, until the device has ended loops of such
+    /// a launch early.
     std::uint32_t& launch_limit(const std::string& label) {
         return launch_limits_.try_emplace(label, UINT32_MAX).first->second;
     }
@@ -135,8 +135,8 @@ class Session {
                    {target.memory(), target.name(), target_offset * sizeof(T)}, count * sizeof(T));
     }
 
-    /// Equidistant blocks of a buffer: the first block starts at element `first`, and each further block `pitch`
-    /// elements after the previous one. The range to copy starts at element `offset` of each block.
+    /// Equidistant blocks of a buffer: block i starts at element `first` + i * `pitch`. The range to copy starts at
+    /// element `offset` of each block.
     struct Blocks {
         std::size_t offset = 0, pitch = 0, first = 0;
     };
@@ -211,7 +211,7 @@ class Session {
 
     static void check_range(const std::string& label, const std::string& buffer, std::size_t size, std::size_t offset,
                             std::size_t count);
-    static void check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks at,
+    static void check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks layout,
                              std::size_t count, std::size_t blocks);
     cl::Buffer allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const;
     std::unique_ptr<HostMemory> host_memory(const std::string& name, std::size_t bytes) const;
@@ -238,10 +238,10 @@ class Session {
     /// messages.
     template <class Enqueue>
     void submit(const std::string& operation, CommandRecord record, Enqueue&& enqueue);
-    CommandRecord finished(const PendingCommand& pending) const;
+    CommandRecord finished_record(const PendingCommand& pending) const;
 
-    // Number of pending commands at which a session waits for the device and reads the commands' times. Until then
-    // their events occupy memory of the driver.
+    // If this number of commands is pending, the session waits for the device and reads the commands' times. Events of
+    // pending commands occupy memory of the driver.
     static constexpr std::size_t kMaxPendingCommands = 4096;
 
     cl::Device device_;
@@ -256,7 +256,7 @@ class Session {
     std::map<std::string, std::uint32_t> launch_limits_;
     bool logs_builds_ = logs_kernel_builds();
     std::vector<KernelBuild>* builds_ = nullptr;
-    // (kernel, group size) of all launches; only if builds are recorded or logged.
+    // (kernel, group size) of all launches; empty unless builds are recorded or logged.
     std::set<std::pair<cl_kernel, std::size_t>> launched_;
     bool announces_compiling_ = false;
     SpanLog* spans_ = nullptr;

@@ -31,8 +31,8 @@ std::string lower_case(std::string text) {
 /// (tests/portability/nested_loops.cl). On other devices the kernels detect loops that ended early
 /// (kernels/shared/loop_canary.clh).
 std::uint32_t max_loop_iterations_of(const std::string& device_name) {
-    constexpr std::uint32_t kLlvmpipe = 65535;
-    return device_name.find("llvmpipe") != std::string::npos ? kLlvmpipe : 0;
+    constexpr std::uint32_t kLlvmpipeIterations = 65535;
+    return device_name.find("llvmpipe") != std::string::npos ? kLlvmpipeIterations : 0;
 }
 
 std::string full_name(const DeviceInfo& device) { return device.platform + " " + device.name; }
@@ -74,9 +74,9 @@ std::size_t default_index(const std::vector<DeviceInfo>& devices, std::size_t or
 
 /// Returns the entry of a comma-separated list whose index is `ordinal` modulo the number of entries.
 std::string list_entry(const std::string& list, std::size_t ordinal) {
-    const auto entries = static_cast<std::size_t>(1 + std::count(list.begin(), list.end(), ','));
+    const auto entry_count = static_cast<std::size_t>(1 + std::count(list.begin(), list.end(), ','));
     std::size_t begin = 0;
-    for (std::size_t i = ordinal % entries; i > 0; --i) begin = list.find(',', begin) + 1;
+    for (std::size_t i = ordinal % entry_count; i > 0; --i) begin = list.find(',', begin) + 1;
     return list.substr(begin, list.find(',', begin) - begin);
 }
 
@@ -90,8 +90,9 @@ std::size_t named_index(const std::string& wanted, const std::vector<DeviceInfo>
     const std::vector<std::size_t> usable = usable_devices(part, devices);
     if (!usable.empty()) return usable.front();
     const auto found = std::find_if(devices.begin(), devices.end(), [&part](const DeviceInfo& device) {
-        const std::string all = fmt::format("{} {} {} {}", device.platform, device.name, device.version, device.driver);
-        return lower_case(all).find(part) != std::string::npos;
+        const std::string searched_text =
+            fmt::format("{} {} {} {}", device.platform, device.name, device.version, device.driver);
+        return lower_case(searched_text).find(part) != std::string::npos;
     });
     return static_cast<std::size_t>(found - devices.begin());
 }

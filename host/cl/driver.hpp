@@ -25,8 +25,8 @@ class DriverCall {
 void install_crash_handlers();
 
 /// For a rank of an MPI job: sets the prefix of its crash messages ("rank 1 on node7: ") and the time in seconds that
-/// the rank waits before it prints such a message. The first rank that prints ends the other ranks. If each rank has
-/// another delay and all ranks crash, only one rank prints.
+/// the rank waits before it prints such a message. The first rank that prints ends the other ranks. So if all ranks
+/// crash and their delays differ, only one rank prints.
 void set_crash_prefix(const std::string& prefix, double delay_s);
 
 /// Removes the crash handlers, so that crashes end the program by their signal and the parent process sees the signal.

@@ -20,8 +20,7 @@ std::string error_remedy(cl_int code);
 /// `operation` ("'rotate': copying ...").
 DeviceError device_error(const std::string& call, cl_int code, const std::string& operation);
 
-/// Runs `action` and returns its result. Converts a cl::Error into a DeviceError; `operation` names the operation in
-/// its message.
+/// Runs `action` and returns its result. Converts a cl::Error into a DeviceError, whose message contains `operation`.
 template <class Action>
 decltype(auto) guarded(const std::string& operation, Action&& action) {
     const DriverCall call(operation.c_str());

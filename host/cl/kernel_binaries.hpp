@@ -1,4 +1,4 @@
-// Kernel binaries installed with raya, so that the first render compiles nothing. They are files in the folder kernels/
+// Kernel binaries, installed with raya so that the first render compiles nothing. They are files in the folder kernels/
 // of module_folder(). The name of a file is a hash of source, options, device and driver. `raya render --cache-kernels`
 // writes them.
 #pragma once

@@ -13,7 +13,7 @@ namespace raya {
 namespace {
 
 constexpr std::array<std::uint32_t, 4> kLanes = {1, 4, 8, 16};
-constexpr std::uint32_t kMaxGroup = 1024;
+constexpr std::uint32_t kMaxGroupSize = 1024;
 constexpr std::uint32_t kMaxBounces = 31;  // the kernels store the pending rays of a tree as bits of one word
 
 void check_tuning(const KernelTuning& values) {
@@ -42,7 +42,7 @@ void check_kernel_options(const KernelOptions& options, const DeviceInfo& device
 }
 
 std::uint32_t max_group_size_of(const DeviceInfo& device) {
-    return static_cast<std::uint32_t>(std::min<std::size_t>(kMaxGroup, device.max_group_size));
+    return static_cast<std::uint32_t>(std::min<std::size_t>(kMaxGroupSize, device.max_group_size));
 }
 
 bool supports_register_limit(const DeviceInfo& device) { return device.platform.find("NVIDIA") != std::string::npos; }
@@ -61,10 +61,10 @@ std::uint32_t default_lanes(const DeviceInfo& device) {
 }
 
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus) {
-    constexpr std::size_t kGpuGroup = 128, kVectorGroup = 8;
+    constexpr std::size_t kGpuGroupSize = 128, kLlvmpipeGroupSize = 8;
     const bool cpu = device.type == "cpu";
     if (cpu && (torus || device.max_loop_iterations == 0)) return 1;
-    return static_cast<std::uint32_t>(std::min(cpu ? kVectorGroup : kGpuGroup, device.max_group_size));
+    return static_cast<std::uint32_t>(std::min(cpu ? kLlvmpipeGroupSize : kGpuGroupSize, device.max_group_size));
 }
 
 bool filters_are_valid(const NumberFormat& format, double extent) {

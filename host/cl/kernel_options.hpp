@@ -34,7 +34,7 @@ struct KernelOptions {
     std::uint32_t accel = RAYA_ACCEL_NONE;  // accelerator of the job
     std::uint32_t stack = 0;                // RAYA_BVH_STACK: number of entries of the traversal stack
     bool filter = false;  // filter spheres and polygons in fp32 before the exact test, see filters_are_valid()
-    // The scene has polygons, polygons with vertex normals (patches), cones.
+    // Each is true if the scene has such objects; patches are polygons with vertex normals.
     bool polygons = true, patches = true, cones = true;
     bool costs = false;  // torus nodes record the cost of each packet
     KernelTuning tuning{};
@@ -49,8 +49,7 @@ struct KernelChoice {
     std::uint32_t lanes = 0;       // V: 1, 4, 8 or 16; 0: chosen from the device
     std::uint32_t group_size = 0;  // L: 1..1024 work-items; 0: chosen from the device
     bool filter = true;            // use the fp32 filters if filters_are_valid(); they do not change the hits
-    // Each of the next two members, if false, selects replacement code in the kernels, which can thus be tested on any
-    // device.
+    // If one of the next two members is false, the kernels use replacement code, even if the device does not need it.
     bool local_words = true;       // keep the job's words in local memory if they fit; false: in global memory
     bool exact_arithmetic = true;  // use the device's division, square root and fused multiply-add if they are
                                    // correctly rounded; false: refine or emulate them
@@ -61,14 +60,15 @@ struct KernelChoice {
     std::string link_origin{};  // for reports: source of link_move
 };
 
-/// Returns the default V: the width of the device's float vectors on a CPU, at least 4; 1 elsewhere and on llvmpipe,
-/// which vectorises over work-items itself and takes minutes and gigabytes to compile wider kernels.
+/// Returns the default V. On a CPU it is the width of the device's float vectors, at least 4. On other devices it is 1,
+/// also on llvmpipe, which vectorises over work-items and takes minutes and gigabytes to compile wider kernels.
 std::uint32_t default_lanes(const DeviceInfo& device);
 
-/// Returns the default L: 1 on a CPU, where the lanes of a work-item fill the vectors; 8 on llvmpipe, which vectorises
-/// over the work-items of a group and has 256-bit vectors; else 128: with the 150 registers per work-item of the kernel
-/// `trace`, a GPU with 132 multiprocessors runs about 256 PEs of four warps at once (docs/gpu_resources.md). For a
-/// torus it is 1 on every CPU: a node of one work-item keeps packets in order (docs/packets.md).
+/// Returns the default L. On a CPU it is 1, because a work-item's lanes fill the vectors. On llvmpipe it is 8,
+/// because llvmpipe vectorises over work-items with 256-bit vectors. On other devices it is 128: with 150 registers per
+/// work-item (kernel `trace`), a GPU's 132 multiprocessors run about 256 PEs of four warps at once
+/// (docs/gpu_resources.md). For a torus it is 1 on every CPU, because a node of one work-item keeps packets in order
+/// (docs/packets.md).
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false);
 
 /// Returns true if the error bounds of kernels/geometry/sphere_filter.clh and outline_filter.clh are valid: `format` is

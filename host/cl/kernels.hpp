@@ -15,8 +15,8 @@
 
 namespace raya {
 
-/// A kernel: its file below kernels/, its name in that file, and its parameter types as in Kernel. Adjacent parameters
-/// of the same type carry their names (Uint), so that a caller cannot swap them.
+/// A kernel: its file below kernels/, its name in that file, and its parameter types as in Kernel. The types of
+/// adjacent uint parameters contain the parameters' names (Uint), so that a caller cannot swap the arguments.
 template <FixedText File, FixedText Name, class... Params>
 struct DescribedKernel : Kernel<Params...> {
     static constexpr const char* kFile = File.text;

@@ -19,7 +19,7 @@ std::size_t work_items(const DeviceInfo& device, std::uint32_t group) {
 }
 
 constexpr int kSamples = 2;  // number of samples of each rate in a measurement
-constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kSquareRoot = 4;  // indices of kOperations
+constexpr std::size_t kMultiplyAdd = 2, kDivide = 3, kSquareRoot = 4;  // indices into kOperations
 
 // Returns the size in bytes of each of the two buffers of a copy. Together they take at most an eighth of the device's
 // memory.
@@ -29,14 +29,14 @@ std::uint64_t copied_bytes(const DeviceInfo& device) {
 }
 
 double copy_bytes_per_s(Session& session, std::uint64_t bytes) {
-    Buffer<std::uint8_t> from = session.buffer<std::uint8_t>("peak, from", bytes),
-                         to = session.buffer<std::uint8_t>("peak, to", bytes);
-    session.fill("peak", from, 1);  // pages that were never written may not be allocated yet
-    session.fill("peak", to, 2);
+    Buffer<std::uint8_t> source = session.buffer<std::uint8_t>("peak, from", bytes),
+                         target = session.buffer<std::uint8_t>("peak, to", bytes);
+    session.fill("peak", source, 1);  // pages that were never written may not be allocated yet
+    session.fill("peak", target, 2);
     session.clear_profile();
-    for (int i = 0; i < kSamples; ++i) session.copy("peak", from, 0, to, 0, bytes);
+    for (int i = 0; i < kSamples; ++i) session.copy("peak", source, 0, target, 0, bytes);
     const std::uint64_t min_ns = session.profile().summary().front().min_ns;
-    // 2e9 = 2 x 10^9 ns/s: a copy reads and writes each byte.
+    // 2e9: a copy reads and writes each byte, and a second has 1e9 ns.
     return min_ns > 0 ? 2e9 * static_cast<double>(bytes) / static_cast<double>(min_ns) : 0;
 }
 
@@ -74,16 +74,16 @@ class PeakRates {
 OperationRates::OperationRates(Session& session, const NumberFormat& format, std::uint32_t lanes)
     : session_(session),
       group_size_(default_group_size(session.device())),
-      items_(work_items(session.device(), group_size_)),
+      work_items_(work_items(session.device(), group_size_)),
       lanes_(lanes),
       kernels_(session, {.lanes = lanes, .group_size = group_size_, .format = format}),
       chains_(kernels_.get<Chains>()),
-      results_(session.buffer<float>("results of operations", items_ * lanes)) {}
+      results_(session.buffer<float>("results of operations", work_items_ * lanes)) {}
 
 double OperationRates::launch_seconds(std::size_t kind) {
     session_.clear_profile();
-    session_.launch("operations", chains_, items_ / group_size_, group_size_, Uint<"kind">{static_cast<cl_uint>(kind)},
-                    Uint<"rounds">{rounds_[kind]}, 1.0f, results_);
+    session_.launch("operations", chains_, work_items_ / group_size_, group_size_,
+                    Uint<"kind">{static_cast<cl_uint>(kind)}, Uint<"rounds">{rounds_[kind]}, 1.0f, results_);
     const double ns = static_cast<double>(session_.profile().summary().back().total_ns);
     session_.clear_profile();
     return ns * 1e-9;
@@ -97,7 +97,7 @@ void OperationRates::find_rounds(std::size_t kind) {
 
 double OperationRates::measure(std::size_t kind, int samples) {
     if (rounds_[kind] == 0) find_rounds(kind);
-    const double operations = static_cast<double>(items_ * lanes_) * RAYA_CHAINS * rounds_[kind];
+    const double operations = static_cast<double>(work_items_ * lanes_) * RAYA_CHAINS * rounds_[kind];
     double highest_rate = 0;
     for (int i = 0; i < samples; ++i) {
         const double elapsed_s = launch_seconds(kind);
@@ -109,23 +109,23 @@ double OperationRates::measure(std::size_t kind, int samples) {
 DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std::uint32_t lanes) {
     constexpr int kMeasurements = 3;
     Session session(device);
-    DevicePeak best;
+    DevicePeak highest;
     if (session.profile().timed()) {
         PeakRates peak_rates(session, format, lanes);
-        double lowest_fp32 = std::numeric_limits<double>::infinity();
+        double lowest_fp32_per_s = std::numeric_limits<double>::infinity();
         for (int i = 0; i < kMeasurements; ++i) {
             const DevicePeak peak = peak_rates.measure_all();
-            lowest_fp32 = std::min(lowest_fp32, peak.fp32_per_s);
+            lowest_fp32_per_s = std::min(lowest_fp32_per_s, peak.fp32_per_s);
             for (double DevicePeak::*rate :
                  {&DevicePeak::fp32_per_s, &DevicePeak::multiply_per_s, &DevicePeak::divide_per_s,
                   &DevicePeak::sqrt_per_s, &DevicePeak::copy_bytes_per_s})
-                best.*rate = std::max(best.*rate, peak.*rate);
-            best.copy_bytes = peak.copy_bytes;
+                highest.*rate = std::max(highest.*rate, peak.*rate);
+            highest.copy_bytes = peak.copy_bytes;
         }
-        best.scatter = best.fp32_per_s > 0 ? 1 - lowest_fp32 / best.fp32_per_s : 0;
+        highest.scatter = highest.fp32_per_s > 0 ? 1 - lowest_fp32_per_s / highest.fp32_per_s : 0;
     }
-    best.format = format_name(format);
-    return best;
+    highest.format = format_name(format);
+    return highest;
 }
 
 ClockOffset clock_offset_of(std::uint64_t before, std::uint64_t queued, std::uint64_t after) {
@@ -142,7 +142,7 @@ ClockOffset measure_clock_offset(Session& session) {
     constexpr int kCommands = 16;
     Buffer<std::uint32_t> word = session.buffer<std::uint32_t>("clock offset", 1);
     std::uint64_t shortest_ns = ~std::uint64_t{0};
-    ClockOffset best;
+    ClockOffset offset;
     for (int i = 0; i < kCommands; ++i) {
         session.clear_profile();
         const std::uint64_t before = host_clock_ns();
@@ -151,10 +151,10 @@ ClockOffset measure_clock_offset(Session& session) {
         const std::uint64_t queued = session.profile().commands().back().queued;
         if (after - before >= shortest_ns) continue;
         shortest_ns = after - before;
-        best = clock_offset_of(before, queued, after);
+        offset = clock_offset_of(before, queued, after);
     }
     session.clear_profile();
-    return best;
+    return offset;
 }
 
 }  // namespace raya

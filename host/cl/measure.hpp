@@ -36,17 +36,17 @@ class OperationRates {
 
     Session& session_;
     std::uint32_t group_size_;
-    std::size_t items_, lanes_;
+    std::size_t work_items_, lanes_;  // number of work-items of a launch; V
     Kernels kernels_;
     Chains chains_;
     Buffer<float> results_;
-    std::array<std::uint32_t, kOperations.size()> rounds_{};  // loop iterations of a launch; 0: not chosen yet
+    std::array<std::uint32_t, kOperations.size()> rounds_{};  // number of loop iterations of a launch; 0: not chosen
 };
 
-/// Measures operations in fp32 with the device's default lanes and in `format` with `lanes`, and copies between two
-/// buffers of up to 256 MB, which exceed the caches. Returns the highest rates of three measurements; takes a few
-/// seconds. Uses its own session, so that its commands do not appear in the caller's profile. All rates are 0 if the
-/// device does not time its commands. Throws DeviceError.
+/// Measures the rates of operations in fp32 with the device's default lanes, of operations in `format` with `lanes`,
+/// and of copies between two buffers of up to 256 MB, which exceed the caches. Returns the highest rates of three
+/// measurements. Takes a few seconds. Uses its own session, so that its commands do not appear in the caller's profile.
+/// All rates are 0 if the device does not time its commands. Throws DeviceError.
 DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std::uint32_t lanes);
 
 /// Measures the offset of the device's clock. Enqueues 16 fills of one word and reads the host's clock before and after
@@ -55,8 +55,8 @@ DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std
 /// not time its commands.
 ClockOffset measure_clock_offset(Session& session);
 
-/// Returns the clock offset that follows from one command. The command was queued at `queued` (device clock) between
-/// `before` and `after` (host clock). Times in ns.
+/// Returns the clock offset that follows from one command. The command was queued at `queued` on the device's clock,
+/// and between `before` and `after` on the host's clock. Times are in ns.
 ClockOffset clock_offset_of(std::uint64_t before, std::uint64_t queued, std::uint64_t after);
 
 }  // namespace raya

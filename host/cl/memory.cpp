@@ -39,14 +39,14 @@ Staging::Staging(const cl::Context& context, const cl::CommandQueue& queue, Host
     : halves_{{{context, queue, kind, half_bytes}, {context, queue, kind, half_bytes}}} {}
 
 Staging::Place Staging::reserve(std::size_t bytes) {
-    if (bytes > half_bytes() - used_) {
+    if (bytes > half_bytes() - used_bytes_) {
         current_half_ = (current_half_ + 1) % halves_.size();
         halves_[current_half_].wait();
-        used_ = 0;
+        used_bytes_ = 0;
     }
     HostMemory& half = halves_[current_half_];
-    const Place place{half, half.bytes() + used_};
-    used_ = std::min(half_bytes(), (used_ + bytes + kAlignment - 1) / kAlignment * kAlignment);
+    const Place place{half, half.bytes() + used_bytes_};
+    used_bytes_ = std::min(half_bytes(), (used_bytes_ + bytes + kAlignment - 1) / kAlignment * kAlignment);
     return place;
 }
 

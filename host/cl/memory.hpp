@@ -12,8 +12,8 @@
 
 namespace raya {
 
-/// `size()` elements of T in the device's global memory, allocated by Session::buffer(), initially undefined. A Buffer
-/// is a handle: its copies refer to the same memory, which is freed with the last copy.
+/// An array of `size()` elements of T in the device's global memory, allocated by Session::buffer(), initially
+/// undefined. A Buffer is a handle: its copies refer to the same memory, which is freed with the last copy.
 template <class T>
 class Buffer {
     static_assert(std::is_trivially_copyable_v<T>, "buffers are copied byte by byte");
@@ -90,7 +90,7 @@ class Readback {
     std::size_t size_;
 };
 
-/// Sizes in bytes of one half of a Staging in pinned and in plain memory. Plain halves are for devices that share the
+/// Sizes in bytes of one half of a Staging, in pinned and in plain memory. Plain halves are for devices that share the
 /// host's memory, where a thread of the driver copies the bytes of a transfer. For a small transfer, waking that thread
 /// and waiting for it takes longer than copying the bytes twice through the staging buffer.
 inline constexpr std::size_t kPinnedHalfBytes = 4u << 20, kPlainHalfBytes = 64u << 10;
@@ -116,7 +116,7 @@ class Staging {
 
   private:
     std::array<HostMemory, 2> halves_;
-    std::size_t current_half_ = 0, used_ = 0;  // index of the current half; bytes reserved in it
+    std::size_t current_half_ = 0, used_bytes_ = 0;  // of the current half: index, and bytes reserved in it
 };
 
 }  // namespace raya

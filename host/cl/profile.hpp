@@ -114,7 +114,7 @@ struct DevicePeak {
     double fp32_per_s = 0;                    // multiply-adds with the default lanes, each counted as one operation
     std::string format;                       // number format of the render
     double multiply_per_s = 0;                // multiply-adds in that format, with the lanes of the render
-    double divide_per_s = 0, sqrt_per_s = 0;  // divisions and square roots, likewise
+    double divide_per_s = 0, sqrt_per_s = 0;  // divisions and square roots in that format and lanes
     double copy_bytes_per_s = 0;              // number of bytes that a copy from buffer to buffer reads and writes
     std::uint64_t copy_bytes = 0;             // size of each of the two buffers
     double scatter = 0;                       // (best - worst) / best of three measurements of fp32_per_s

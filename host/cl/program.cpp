@@ -30,11 +30,11 @@ std::string name_of(const cl::Device& device) {
     return platform.getInfo<CL_PLATFORM_NAME>() + " " + device.getInfo<CL_DEVICE_NAME>();
 }
 
-std::string failure_text(const cl::Error& error, const std::string& what, const std::string& log) {
-    const std::string text = device_error(error.what(), error.err(), what).what();
+std::string failure_text(const cl::Error& error, const std::string& operation, const std::string& log) {
+    const std::string text = device_error(error.what(), error.err(), operation).what();
     if (log.find("error") != log.npos) return text;
     const std::string problem = driver_cache_problem();
-    if (!problem.empty()) return what + ": " + problem;
+    if (!problem.empty()) return operation + ": " + problem;
     return text + "; if the log gives no reason, name an empty folder in POCL_CACHE_DIR: PoCL's cache may be damaged";
 }
 
@@ -77,20 +77,20 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
                  const std::vector<std::string>& options)
     : name_(std::move(name)), options_(joined(options)) {
     if (load_binary(context, device, source)) return;
-    const std::string what = fmt::format("building program '{}'", name_);
-    const std::string device_name = guarded(what, [&] {
+    const std::string operation = fmt::format("building program '{}'", name_);
+    const std::string device_name = guarded(operation, [&] {
         program_ = cl::Program(context, source);
         return name_of(device);
     });
     try {
-        const DriverCall call(what.c_str());
+        const DriverCall call(operation.c_str());
         program_.build(device, options_.c_str());
     } catch (const cl::Error& error) {
         const std::string log = log_of(program_, device);
         throw DeviceError(fmt::format("{}\n  device: {}\n  options: {}\n  build log:\n{}",
-                                      failure_text(error, what, log), device_name, options_, log));
+                                      failure_text(error, operation, log), device_name, options_, log));
     } catch (...) {            // out of memory inside the driver
-        program_() = nullptr;  // leaked: the driver has not unlocked the program, so releasing it would deadlock
+        program_() = nullptr;  // leaked: the driver holds the program's lock, so a release would deadlock
         throw;
     }
     log_ = log_of(program_, device);
@@ -111,7 +111,7 @@ bool Program::load_binary(const cl::Context& context, const cl::Device& device, 
         log_message(kDetailed,
                     fmt::format("binary of {}: refused by the driver: {}\n", name_, error_name(error.err())));
         return false;
-    } catch (...) {  // as in the constructor
+    } catch (...) {  // out of memory, as in the constructor
         program_() = nullptr;
         throw;
     }
@@ -127,8 +127,8 @@ void Program::save_binary() const {
 cl::Kernel Program::checked_kernel(const std::string& kernel_name, std::size_t argument_count) const {
     const std::string kernels = guarded(fmt::format("listing the kernels of program '{}'", name_),
                                         [&] { return program_.getInfo<CL_PROGRAM_KERNEL_NAMES>(); });
-    const std::string what = fmt::format("kernel '{}' of program '{}' (kernels: {})", kernel_name, name_, kernels);
-    return guarded(what, [&] {
+    const std::string operation = fmt::format("kernel '{}' of program '{}' (kernels: {})", kernel_name, name_, kernels);
+    return guarded(operation, [&] {
         cl::Kernel kernel(program_, kernel_name.c_str());
         const std::size_t expected = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
         if (expected != argument_count) {

@@ -39,39 +39,43 @@ void Session::read_bytes(const std::string& label, const cl::Buffer& source, con
 void Session::write_staged(const std::string& label, const cl::Buffer& target, const std::string& name,
                            std::size_t offset, std::size_t bytes, const std::byte* source) {
     for (std::size_t done_bytes = 0; done_bytes < bytes; done_bytes += staging_->half_bytes()) {
-        const std::size_t part = std::min(bytes - done_bytes, staging_->half_bytes());
-        const std::string operation = fmt::format("'{}': writing {} bytes into buffer '{}'", label, part, name);
-        const Staging::Place place = guarded(operation, [&] { return staging_->reserve(part); });
-        std::memcpy(place.bytes, source + done_bytes, part);
-        submit(operation, {.label = label, .kind = "write", .bytes = part, .target_name = name}, [&](cl::Event* event) {
-            queue_->enqueueWriteBuffer(target, CL_FALSE, offset + done_bytes, part, place.bytes, nullptr, event);
-            place.half.used_by(*event);
-        });
+        const std::size_t part_bytes = std::min(bytes - done_bytes, staging_->half_bytes());
+        const std::string operation = fmt::format("'{}': writing {} bytes into buffer '{}'", label, part_bytes, name);
+        const Staging::Place place = guarded(operation, [&] { return staging_->reserve(part_bytes); });
+        std::memcpy(place.bytes, source + done_bytes, part_bytes);
+        submit(operation, {.label = label, .kind = "write", .bytes = part_bytes, .target_name = name},
+               [&](cl::Event* event) {
+                   queue_->enqueueWriteBuffer(target, CL_FALSE, offset + done_bytes, part_bytes, place.bytes, nullptr,
+                                              event);
+                   place.half.used_by(*event);
+               });
     }
 }
 
 void Session::read_staged(const std::string& label, const cl::Buffer& source, const std::string& name,
                           std::size_t offset, std::size_t bytes, std::byte* target) {
-    std::optional<Staging::Place> previous;  // staging memory of the previous part, which starts at byte `copied`
-    std::size_t copied = 0;
+    std::optional<Staging::Place> previous;  // staging memory of the previous part
+    std::size_t copied_bytes = 0;            // number of bytes copied to `target`
     const std::string operation = fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name);
-    const auto copy_previous = [&](std::size_t part) {
+    const auto copy_previous = [&](std::size_t part_bytes) {
         guarded(operation, [&] { previous->half.wait(); });
-        std::memcpy(target + copied, previous->bytes, part);
-        copied += part;
+        std::memcpy(target + copied_bytes, previous->bytes, part_bytes);
+        copied_bytes += part_bytes;
     };
     for (std::size_t done_bytes = 0; done_bytes < bytes; done_bytes += staging_->half_bytes()) {
-        const std::size_t part = std::min(bytes - done_bytes, staging_->half_bytes());
-        const Staging::Place place = guarded(operation, [&] { return staging_->reserve(part); });
-        submit(operation, {.label = label, .kind = "read", .bytes = part, .target_name = name}, [&](cl::Event* event) {
-            queue_->enqueueReadBuffer(source, CL_FALSE, offset + done_bytes, part, place.bytes, nullptr, event);
-            place.half.used_by(*event);
-        });
+        const std::size_t part_bytes = std::min(bytes - done_bytes, staging_->half_bytes());
+        const Staging::Place place = guarded(operation, [&] { return staging_->reserve(part_bytes); });
+        submit(operation, {.label = label, .kind = "read", .bytes = part_bytes, .target_name = name},
+               [&](cl::Event* event) {
+                   queue_->enqueueReadBuffer(source, CL_FALSE, offset + done_bytes, part_bytes, place.bytes, nullptr,
+                                             event);
+                   place.half.used_by(*event);
+               });
         guarded(operation, [&] { queue_->flush(); });
         if (previous) copy_previous(staging_->half_bytes());
         previous.emplace(place);
     }
-    copy_previous(bytes - copied);
+    copy_previous(bytes - copied_bytes);
 }
 
 void Session::read_async(const std::string& label, const cl::Buffer& source, const std::string& name,

@@ -44,8 +44,7 @@ inline constexpr std::array<std::pair<const char*, std::uint32_t TunedValues::*>
 /// Returns the default values for a device that was not tuned.
 TunedValues default_values(const DeviceInfo& device, const TuningKey& key);
 
-/// Returns `kernels` with these values. If kernels.link_move is not kAutomatic, it stays
-/// unchanged. Throws UserError if
+/// Returns `kernels` with these values. If kernels.link_move is not kAutomatic, it stays unchanged. Throws UserError if
 /// link_exchange is out of range.
 KernelChoice with_values(KernelChoice kernels, const TunedValues& values);
 

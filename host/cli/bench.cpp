@@ -1,5 +1,5 @@
-// raya bench: measures rays per second by kernel, lanes and format on a device. Checks the images of all rows before
-// the first row is timed.
+// raya bench: measures rays per second on a device by kernel, lanes and format. Compares the images of all rows before
+// it times the first row.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -43,8 +43,8 @@ struct BenchCommand {
     std::optional<double> limit_s;  // maximum seconds to compile a kernel
 };
 
-// Checks the values of --tolerance, --page and --compare. Called before the measurements, because they take long.
-// Returns the report of --compare; without --compare, an empty report.
+// Checks the values of --tolerance, --page and --compare. Call read_baseline() before the measurements, because the
+// measurements take long. Returns the report of --compare; without --compare, an empty report.
 BenchReport read_baseline(const BenchCommand& command) {
     if (!(command.tolerance_percent >= 0 && command.tolerance_percent <= 100))
         throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance_percent));
@@ -65,24 +65,24 @@ void check_comparable(const BenchCommand& command, const BenchReport& baseline, 
 }
 
 void write_and_compare(const BenchCommand& command, const BenchReport& baseline, BenchReport measured) {
-    BenchComparison result;
+    BenchComparison comparison;
     if (!command.baseline.empty()) {
-        result = compare_bench(baseline, measured, command.tolerance_percent);
-        measured.compared = {{"baseline", command.baseline}, {"tolerance_percent", command.tolerance_percent},
-                             {"remarks", result.remarks},    {"compared", result.compared},
-                             {"slower", result.slower},      {"other_images", result.other_images},
-                             {"rows", result.rows}};
+        comparison = compare_bench(baseline, measured, command.tolerance_percent);
+        measured.compared = {{"baseline", command.baseline},  {"tolerance_percent", command.tolerance_percent},
+                             {"remarks", comparison.remarks}, {"compared", comparison.compared},
+                             {"slower", comparison.slower},   {"other_images", comparison.other_images},
+                             {"rows", comparison.rows}};
     }
     write_report_and_page({command.report, command.page}, to_json(measured));
     if (command.baseline.empty()) return;
     fmt::print("\ncompared with {}, tolerance {} % of its rates:\n{}", printable(command.baseline),
-               command.tolerance_percent, result.text);
+               command.tolerance_percent, comparison.text);
     std::fflush(stdout);
-    if (result.failed())
+    if (comparison.failed())
         throw CheckFailure{fmt::format("{}: {} of {} slower by more than {} %, {} with a different image",
-                                       command.baseline, result.slower, counted(result.compared, "row"),
-                                       command.tolerance_percent, result.other_images)};
-    fmt::print("{} compared, none slower by more than {} %, all images equal\n", counted(result.compared, "row"),
+                                       command.baseline, comparison.slower, counted(comparison.compared, "row"),
+                                       command.tolerance_percent, comparison.other_images)};
+    fmt::print("{} compared, none slower by more than {} %, all images equal\n", counted(comparison.compared, "row"),
                command.tolerance_percent);
 }
 
@@ -102,8 +102,8 @@ void write_and_check_builds(const BenchCommand& command, const BenchReport& repo
                                            build.build_s + build.launch_s, *command.limit_s)};
 }
 
-// Prepares the rows of one format. With --variants, a row is a render of a variant. Without --variants, a row is the
-// trace kernel with one of the numbers of lanes.
+// Prepares the rows of one format. With --variants, a row times whole renders of a variant. Without --variants, a row
+// times the trace kernel with a number of lanes.
 std::vector<BenchRow> rows_of(const BenchCommand& command, Session& session, const Scene& scene,
                               const RingSettings& settings, const NumberFormat& format) {
     std::vector<BenchRow> rows;
@@ -134,10 +134,10 @@ std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session
 }
 
 // If the torus is the only variant, refuses the options of ring machines, because they would have no effect.
-void refuse_unused_options(const CLI::App& parsed, const BenchCommand& command) {
+void refuse_unused_options(const CLI::App& parser, const BenchCommand& command) {
     if (std::ranges::count(command.variants, "torus") < std::max(1L, std::ssize(command.variants))) return;
     for (const char* option : {"--machine", "--pes", "--offset", "--mapping", "--fold", "--pe-memory"})
-        if (parsed.count(option) > 0)
+        if (parser.count(option) > 0)
             throw UserError(
                 fmt::format("{} with --variants torus: no effect, because the torus has 4x4x4 nodes without a memory "
                             "limit; leave out {}, or add the variant none",
@@ -172,10 +172,10 @@ void print_tables(const BenchCommand& command, Session& session, const std::vect
                          command.samples);
 }
 
-void bench(const CLI::App& parsed, BenchCommand command) {
+void bench(const CLI::App& parser, BenchCommand command) {
     Warnings warnings;
     warn_of_build_options(warnings);
-    refuse_unused_options(parsed, command);
+    refuse_unused_options(parser, command);
     check_build_options(command);
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
@@ -259,7 +259,7 @@ void add_bench_command(CLI::App& program) {
         "ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; raya compares the other "
         "variants with the first")
         ->delimiter(',')
-        ->allow_extra_args(false)  // the next argument is the scene
+        ->allow_extra_args(false)  // so that the scene may follow
         ->type_name("none,grid,bvh,torus")
         ->excludes(command->get_option("--accel"));
     CLI::Option* denormals = command->add_flag(

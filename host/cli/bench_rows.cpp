@@ -12,6 +12,7 @@
 #include "host/cl/measure.hpp"
 #include "host/error.hpp"
 #include "host/image/image.hpp"
+#include "host/model/unit_text.hpp"
 #include "host/report/render_report.hpp"
 #include "host/report/table.hpp"
 #include "host/ring/mapping.hpp"
@@ -44,9 +45,9 @@ BenchMeasurement make_measurement(const std::string& kernel, const Scene& scene,
             .hash = {}};
 }
 
-// Renders one image and returns a row with the image's event counts. `events(result)`: returns the event counts of an
-// image. `seconds(result)`: returns the measured time of an image. `work(settings, result)`: returns the operations and
-// bytes of the row's kernel; null if the row measures several kernels.
+// Renders one image and returns a row with the image's event counts. The functions take the result of a render:
+// `events` returns its event counts, `seconds` its measured seconds, and `work` the operations and bytes of its kernel.
+// `work` is null if the row measures several kernels.
 template <class Renderer, class Seconds>
 BenchRow row_of(BenchMeasurement measurement, const NumberFormat& format, std::shared_ptr<Renderer> renderer,
                 const EventCounts& (*events)(const decltype(renderer->render())&), Seconds seconds,
@@ -83,15 +84,15 @@ TorusSettings torus_settings_of(const RingSettings& s) {
     return t;
 }
 
-// Returns the first row with the same kernel and lanes. Slow-downs are relative to this row's time.
+// Returns the first row with the kernel and lanes of `row`. Its time is the base of the slow-down of `row`.
 const BenchRow& first_row_of_kernel_and_lanes(const std::vector<BenchRow>& rows, const BenchRow& row) {
     return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) {
         return r.result.kernel == row.result.kernel && r.result.lanes == row.result.lanes;
     });
 }
 
-// Returns the first row with the same format. Images are compared with this row's image, and speed-ups are relative to
-// its time.
+// Returns the first row with the format of `row`. Its image is the reference for the image of `row`, and its time is
+// the base of the speed-up of `row`.
 const BenchRow& first_row_of_format(const std::vector<BenchRow>& rows, const BenchRow& row) {
     return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) { return r.format == row.format; });
 }
@@ -225,11 +226,11 @@ void add_rooflines(BenchReport& report, const std::vector<BenchRow>& rows, const
         try {
             const auto key = std::pair(measurement.format, measurement.lanes);
             if (!peaks.contains(key)) peaks[key] = device_peak(device, rows[i].format, measurement.lanes);
-            const LabelSummary best{.label = rows[i].work->label,
-                                    .kind = "kernel",
-                                    .total_ns = static_cast<std::uint64_t>(measurement.best_s * 1e9)};
-            measurement.roofline = roofline(peaks[key], {*rows[i].work}, {best});
-        } catch (const DeviceError& error) {  // the row's times are valid without a roofline
+            const LabelSummary best_sample{.label = rows[i].work->label,
+                                           .kind = "kernel",
+                                           .total_ns = static_cast<std::uint64_t>(measurement.best_s * 1e9)};
+            measurement.roofline = roofline(peaks[key], {*rows[i].work}, {best_sample});
+        } catch (const DeviceError& error) {  // not rethrown: the row's times are valid without a roofline
             measurement.roofline.emplace().unavailable = error.what();
         }
     }

@@ -17,12 +17,12 @@ namespace raya {
 struct BenchRow {
     NumberFormat format;
     BenchMeasurement result{};          // take_samples() adds the times
-    EventCounts events{};               // event counts of an image
-    double build_s = 0;                 // seconds of the kernel builds
+    EventCounts events{};               // event counts of one image
+    double build_s = 0;                 // seconds that the kernel builds took
     std::string tuned{};                // source of the lanes and group size (host/cl/tuned.hpp)
-    bool flushed = false;               // built with -cl-denorms-are-zero, which may change the image
+    bool flushed = false;               // true with -cl-denorms-are-zero, which may change the image
     std::function<double()> image_s{};  // renders the image again; returns its seconds
-    std::optional<KernelWork> work{};   // operations and bytes of an image; empty unless the row times a single kernel
+    std::optional<KernelWork> work{};   // operations and bytes of the row's kernel; empty if the row times several
 };
 
 /// Prepares a row that measures the trace kernel's time on the device.
@@ -39,21 +39,21 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
 /// kernel differ in event counts. Skips rows that flush denormal numbers.
 void check_rows(const std::vector<BenchRow>& rows);
 
-/// Takes `samples` time samples of each row. For a sample, the row renders images until they have taken 20 ms; the
-/// sample is their mean time. The rows alternate, so that other programs disturb all rows equally.
+/// Takes `samples` time samples of each row. For a sample, the row renders images for at least 20 ms; the sample is the
+/// mean time of an image. The rows alternate, so that other programs disturb all rows equally.
 void take_samples(std::vector<BenchRow>& rows, std::uint32_t samples);
 
 /// Prints the rays per second, times, speed-up and slow-down of each row.
 void print_rows(const std::vector<BenchRow>& rows);
 
-/// Measures and prints, for each format, the operations of the number layer per second: the best of `samples` samples.
-/// Throws DeviceError.
+/// Measures how often per second the device can execute each operation of the number layer, for each format. Prints the
+/// best of `samples` samples. Throws DeviceError.
 void print_operations(Session& session, const std::vector<NumberFormat>& formats, std::uint32_t lanes, int samples);
 
 /// Prints the names of the files of tuned values (raya tune) that the rows used.
 void print_tuned(const std::vector<BenchRow>& rows);
 
-/// Prints the times of each row next to those of the same row with denormal numbers flushed to 0.
+/// Prints the times of each row with denormal numbers next to its times with denormal numbers flushed to 0.
 void print_denormals(const std::vector<BenchRow>& rows);
 
 /// Measures the device's peak for each format and number of lanes, and adds to `report` the roofline of each row that

@@ -15,7 +15,7 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kMaxPathFileBytes = 1 << 28;  // maximum size of a camera path's file
+constexpr std::uint64_t kMaxPathFileBytes = 1 << 28;
 
 std::string read_path_file(const std::string& file) try {
     std::string text = read_file(file, Pipes::kRead, kMaxPathFileBytes);

@@ -1,4 +1,4 @@
-// Reader of the files of --camera-path, which contain one camera per frame.
+// Reader of the file of --camera-path: one camera per frame.
 #pragma once
 #include <string>
 #include <vector>

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMaxIntervalS = 86'400;
-constexpr double kMaxSaveFraction = 0.05;          // maximum fraction of the render's time for saving
+constexpr double kMaxSaveFraction = 0.05;          // maximum fraction of the time that saving may take
 constexpr double kMinBandS = 0.05, kMaxBandS = 2;  // bounds on a band's target duration, seconds
 
 bool is_checkpoint(const std::string& file) {

@@ -42,7 +42,7 @@ class CheckpointFile {
 
     const CheckpointOptions& options_;
     RingCheckpointing callbacks_;
-    Clock::time_point last_save_ = Clock::now();  // end of the last save; before the first save, the start
+    Clock::time_point last_save_ = Clock::now();  // end of the last save; before it, time of construction
     double last_save_s_ = 0;                      // duration of the last save, seconds
 };
 

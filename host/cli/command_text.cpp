@@ -9,7 +9,7 @@
 namespace raya {
 namespace {
 
-// Returns true for two or more lower-case letters, digits and hyphens.
+// Returns true if the text has two or more characters, and all are lower-case letters, digits or hyphens.
 bool is_keyword(const std::string& text) {
     return text.size() > 1 && std::all_of(text.begin(), text.end(), [](unsigned char c) {
                return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '-';
@@ -35,9 +35,9 @@ bool starts_with_one_of(const std::string& text, const std::vector<std::string>&
                        [&](const std::string& prefix) { return text.starts_with(prefix); });
 }
 
-constexpr std::size_t kIndent = 2;              // blanks before names below a heading
-constexpr std::size_t kDescriptionIndent = 6;   // blanks before descriptions below the names
-constexpr std::size_t kMaxNameColumn = 24;      // the description of a longer name begins on the next line
+constexpr std::size_t kIndent = 2;              // number of blanks before names below a heading
+constexpr std::size_t kDescriptionIndent = 6;   // number of blanks before descriptions below names
+constexpr std::size_t kMaxNameColumn = 24;      // after a longer name, the description begins on the next line
 constexpr std::size_t kMinTwoColumnWidth = 60;  // minimum line width for descriptions next to the names
 
 struct Entry {
@@ -126,7 +126,7 @@ class HelpPage {
         return list;
     }
 
-    /// Returns the footer, formatted: paragraphs, and lines "  NAME   description" in columns.
+    /// Formats the footer: wraps its paragraphs, and aligns its lines "  NAME   description" in columns.
     std::string footer_text(const std::string& footer) const {
         std::string text;
         for (const std::string& line : lines_of(footer))
@@ -146,21 +146,21 @@ class HelpPage {
     }
 
     static std::vector<std::string> lines_of(const std::string& text) {
-        std::vector<std::string> all;
-        std::istringstream lines(text);
-        for (std::string line; std::getline(lines, line);) all.push_back(line);
-        return all;
+        std::vector<std::string> lines;
+        std::istringstream stream(text);
+        for (std::string line; std::getline(stream, line);) lines.push_back(line);
+        return lines;
     }
 
     static std::string names_of(const OptionText& option) {
         std::string text;
         for (const std::string& name : option.names) text += (text.empty() ? "" : ", ") + name;
-        return option.is_flag() || option.is_argument() ? text : text + ' ' + option.value;
+        return option.is_flag() || option.is_argument() ? text : text + ' ' + option.placeholder;
     }
 
     static std::string usage_text_of(const OptionText& o) {
         const std::string text =
-            o.is_argument() ? o.names.front() + (o.repeated ? "..." : "") : o.names.front() + ' ' + o.value;
+            o.is_argument() ? o.names.front() + (o.repeated ? "..." : "") : o.names.front() + ' ' + o.placeholder;
         return o.required ? text : '[' + text + ']';
     }
 
@@ -189,19 +189,19 @@ class HelpPage {
 ValueCompletion value_completion(const OptionText& option) {
     using enum ValueCompletion::Kind;
     if (!option.choices.empty()) return {.kind = option.repeated ? kList : kChoice, .choices = option.choices};
-    if (const auto choices = choices_in(option.value, '|'); !choices.empty())
+    if (const auto choices = choices_in(option.placeholder, '|'); !choices.empty())
         return {.kind = kChoice, .choices = choices};
-    if (const auto choices = choices_in(option.value, ','); !choices.empty())
+    if (const auto choices = choices_in(option.placeholder, ','); !choices.empty())
         return {.kind = kList, .choices = choices};
-    if (option.value.starts_with("DIR")) return {.kind = kFolder};
-    if (!starts_with_one_of(option.value, {"FILE", "SCENE", "IMAGE"})) return {};
-    const std::size_t dot = std::min(option.value.find('.'), option.value.size());
-    std::string extension = option.value.substr(dot);
+    if (option.placeholder.starts_with("DIR")) return {.kind = kFolder};
+    if (!starts_with_one_of(option.placeholder, {"FILE", "SCENE", "IMAGE"})) return {};
+    const std::size_t dot = std::min(option.placeholder.find('.'), option.placeholder.size());
+    std::string extension = option.placeholder.substr(dot);
     return {.kind = kFile, .extension = extension.substr(0, extension.find('['))};
 }
 
 std::string description_of(const OptionText& option) {
-    if (option.help.empty()) return option.value;
+    if (option.help.empty()) return option.placeholder;
     return option.default_value.empty() ? option.help : option.help + "; default: " + option.default_value;
 }
 

@@ -9,15 +9,15 @@ namespace raya {
 /// An option or a positional argument.
 struct OptionText {
     std::vector<std::string> names{};    // "-o", "--output"; or "SCENE" for a positional argument
-    std::string value{};                 // placeholder of the value: "FILE.json", "N|WxH"; empty: a flag
+    std::string placeholder{};           // of the value, in help: "FILE.json", "N|WxH"; empty: a flag
     std::string default_value{};         // empty: no default, or `help` contains the default
-    std::string help{};                  // the full text
+    std::string help{};                  // full help text
     std::string group{};                 // heading above the option in help
     bool required = false;               // must be given
     bool repeated = false;               // may have several values
     std::vector<std::string> choices{};  // legal values; empty if there is no finite list
 
-    bool is_flag() const { return value.empty(); }
+    bool is_flag() const { return placeholder.empty(); }
     bool is_argument() const { return !names.front().starts_with('-'); }
 };
 

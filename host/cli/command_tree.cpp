@@ -17,7 +17,7 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kDefaultWidth = 80, kMinWidth = 40, kMaxWidth = 120, kMaxColumns = 10'000;  // characters
+constexpr std::size_t kDefaultWidth = 80, kMinWidth = 40, kMaxWidth = 120, kMaxColumns = 10'000;  // line widths
 
 /// Returns the value of the environment variable COLUMNS; 0 if this value is not a number up to kMaxColumns.
 std::size_t columns_variable() {
@@ -26,8 +26,8 @@ std::size_t columns_variable() {
     const std::string_view text = columns;
     std::size_t width = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), width);
-    const bool legal = error == std::errc{} && end == text.data() + text.size() && width <= kMaxColumns;
-    return legal ? width : 0;
+    const bool is_legal = error == std::errc{} && end == text.data() + text.size() && width <= kMaxColumns;
+    return is_legal ? width : 0;
 }
 
 std::size_t terminal_width() {
@@ -79,7 +79,7 @@ OptionText option_text(CLI::Option& option) {
     for (const std::string& name : option.get_lnames()) text.names.push_back("--" + name);
     if (option.get_positional()) text.names = {option.get_name(true)};
     const std::string type = option.get_type_size() == 0 ? "" : option.get_type_name();
-    text.value = type.substr(0, type.find(":{"));
+    text.placeholder = type.substr(0, type.find(":{"));
     text.default_value = option.get_default_str();
     text.help = option.get_description();
     text.group = option.get_group();
@@ -104,7 +104,7 @@ CommandText command_text_of(const CLI::App& command) {
     text.footer = command.get_footer();
     for (const CLI::Option* option : command.get_options()) {
         if (option->get_group().empty()) continue;
-        // The choices are stored in validators, which CLI11 returns only for a non-const option.
+        // const_cast: CLI11 returns validators, which store the choices, only for a non-const option.
         auto& mutable_option = *const_cast<CLI::Option*>(option);
         (option->get_positional() ? text.arguments : text.options).push_back(option_text(mutable_option));
     }
@@ -126,7 +126,7 @@ CommandText command_text(const CLI::App& program) {
     for (const CommandText& command : text.commands) names.push_back(command.name);
     for (CommandText& command : text.commands)
         for (OptionText& argument : command.arguments)
-            if (argument.value == "COMMAND") argument.choices = names;
+            if (argument.placeholder == "COMMAND") argument.choices = names;
     return text;
 }
 

@@ -55,8 +55,8 @@ constexpr const char* kEnvironment =
     "  RAYA_RANK_TIMEOUT   seconds that a rank waits for other ranks; default: 600\n"
     "  XDG_CACHE_HOME      raya tune stores its values in raya/ in this folder; default: ~/.cache";
 
-/// Handler of std::terminate(). Reports a std::bad_alloc that no handler catches because it is thrown in a destructor,
-/// in a thread or before main().
+/// Called by std::terminate(). Reports a std::bad_alloc that is thrown in a destructor, in a thread or before main(),
+/// where no handler catches it.
 [[noreturn]] void report_uncaught() {
     const std::type_info* const type = abi::__cxa_current_exception_type();
     if (type == nullptr || *type != typeid(std::bad_alloc)) __gnu_cxx::__verbose_terminate_handler();
@@ -78,7 +78,7 @@ void open_standard_files() {
 
 // Runs raya as a worker process. If the task fails, the last line of the worker's output contains the error.
 int run_worker(const WorkerRequest& request) {
-    restore_crash_signals();  // the parent process reports crashes
+    restore_crash_signals();  // the parent process reports the worker's crashes
     const auto send_error = [&](const char* kind, const std::exception& error) {
         send_line(request.pipe, {{"error", error.what()}, {"kind", kind}});
         return kExitOk;
@@ -101,7 +101,7 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
         parse_arguments(program, {argv + 1, argv + argc});
         return kExitOk;
     } catch (const CLI::ParseError& error) {
-        return ranks.is_first() ? program.exit(error) : kExitOk;  // --help, --version
+        return ranks.is_first() ? program.exit(error) : kExitOk;  // --help or --version, not an error
     } catch (const RankFailure& failure) {
         return ranks.fail(failure);
     } catch (const UserError& error) {
@@ -118,7 +118,7 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
     }
 }
 
-/// Flushes stdout and returns `code`. If output is lost, reports this and returns kExitUserError instead of kExitOk.
+/// Flushes stdout and returns `code`. Reports lost output, and then returns kExitUserError instead of kExitOk.
 int flush_stdout(Ranks& ranks, int code) {
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
@@ -129,7 +129,7 @@ int flush_stdout(Ranks& ranks, int code) {
     return code == kExitOk ? kExitUserError : code;
 }
 
-// Lets only rank 0 report a signal. Called before MPI starts, because a signal may arrive during this start.
+// Lets only rank 0 report a signal. Called before MPI starts, because a signal may arrive while MPI starts.
 void silence_signals_of_other_ranks() {
     const std::optional<Launch> launch = find_launch();
     if (launch && launch->rank != 0) suppress_interrupt_message();
@@ -170,7 +170,7 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     auto owned_program = std::make_shared<CLI::App>(
         "A ray tracer on models of distributed-memory array machines, written as OpenCL kernels.", "raya");
     CLI::App& program = *owned_program;
-    program.formatter(std::make_shared<HelpFormatter>());  // inherited by the commands
+    program.formatter(std::make_shared<HelpFormatter>());  // the commands inherit it
     add_examples(program, {{"raya render scenes/centre.nff -o centre.png",
                             "Render a scene on a ring of 256 PEs and print their load balance"},
                            {"raya help render", "Print the help of render"}});
@@ -195,7 +195,7 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     add_manual_command(program);
     add_completion_command(program);
     add_help_command(program);
-    program.footer(std::string(kExitCodes) + kEnvironment);  // the commands have inherited a shorter footer
+    program.footer(std::string(kExitCodes) + kEnvironment);  // the commands keep the footer without kEnvironment
     add_verbosity_options(program, ranks);
     // Runs before the command's callback. Only rank 0 checks files, because only rank 0 writes them.
     program.parse_complete_callback([&program, &ranks] {

@@ -32,8 +32,8 @@ void add_generate_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
 void add_tune_command(CLI::App& program);
-/// The command calls `run` with its settings as JSON. By default the command replaces the process by Python with
-/// the module raya.lab.
+/// The command calls `run` with its settings as JSON. Without `run`, the command replaces the process with Python,
+/// which runs the module raya.lab.
 void add_study_command(CLI::App& program, const std::function<void(const std::string&)>& run = {});
 void add_page_command(CLI::App& program);
 void add_verify_command(CLI::App& program);

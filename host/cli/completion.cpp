@@ -9,15 +9,15 @@
 namespace raya {
 namespace {
 
-// Returns the tree of a command's subcommands, each with `options` instead of its own options.
-std::vector<CommandText> subcommand_names(const CommandText& command, const std::vector<OptionText>& options) {
+// Returns the tree of a command's subcommands. Each subcommand has `options` instead of its own options.
+std::vector<CommandText> subcommand_tree(const CommandText& command, const std::vector<OptionText>& options) {
     std::vector<CommandText> entries;
     for (const CommandText& subcommand : command.commands) {
         CommandText entry;
         entry.name = subcommand.name;
         entry.summary = subcommand.summary;
         entry.options = options;
-        entry.commands = subcommand_names(subcommand, options);
+        entry.commands = subcommand_tree(subcommand, options);
         entries.push_back(std::move(entry));
     }
     return entries;
@@ -28,9 +28,9 @@ CommandText with_commands_below_help(const CommandText& program) {
     CommandText completed = program;
     for (CommandText& command : completed.commands) {
         const std::vector<OptionText>& arguments = command.arguments;
-        if (arguments.size() != 1 || !arguments[0].repeated || arguments[0].value != "COMMAND") continue;
+        if (arguments.size() != 1 || !arguments[0].repeated || arguments[0].placeholder != "COMMAND") continue;
         command.arguments.clear();
-        command.commands = subcommand_names(program, command.options);
+        command.commands = subcommand_tree(program, command.options);
     }
     return completed;
 }
@@ -53,8 +53,8 @@ std::string bash_offer_of(const OptionText& option) {
     return "nothing";
 }
 
-// Returns bash code that sets four variables: `commands` and `options` to names; `word` to the arguments with which
-// _raya_offer completes the command's positional argument; `value` to those for the value of option $1.
+// Returns bash code that sets four variables: `commands` and `options` to names, `word` and `value` to arguments of
+// _raya_offer: `word` for the command's positional argument, `value` for the value of option $1.
 std::string bash_body_of(const CommandText& command) {
     std::vector<std::string> commands, options;
     std::string values;

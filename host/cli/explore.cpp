@@ -97,7 +97,7 @@ Json machine_json(const RingSettings& settings) {
             {"rates", rates_of(settings.machine.clock)}};
 }
 
-// Returns the page's data. The data contain no measured times, so that equal renders give equal pages.
+// Returns the page's data. The data contain no measured times, so that two runs with equal settings write equal pages.
 Json exploration(const ExploreCommand& command, const RingSettings& settings, const DeviceInfo& device,
                  const RingResult& result) {
     return {
@@ -114,7 +114,7 @@ Json exploration(const ExploreCommand& command, const RingSettings& settings, co
 
 // Refuses an image that is too large for a page. Called before the render.
 void check_pixels(const ImageSize& size) {
-    constexpr std::uint64_t kMaxPixels = 2'000'000;  // about 2 MB of page, twice the maximum of check_bytes()
+    constexpr std::uint64_t kMaxPixels = 2'000'000;  // a page of about 2 MB, twice the maximum in check_bytes()
     if (std::uint64_t{size.width} * size.height <= kMaxPixels) return;
     throw UserError(fmt::format("--size {}x{}: too many pixels for a page, maximum {}; remedy: a smaller --size",
                                 size.width, size.height, kMaxPixels));
@@ -132,10 +132,10 @@ void check_bytes(const std::string& scene, const CostImage& cost, std::size_t by
     constexpr std::size_t kMaxBytes = 1'000'000;  // maximum size of a page, small enough for e-mail
     if (bytes <= kMaxBytes) return;
     const double scale = 0.9 * std::sqrt(static_cast<double>(kMaxBytes) / static_cast<double>(bytes));
-    const auto smaller = [scale](std::uint32_t pixels) { return std::max(1, static_cast<int>(scale * pixels)); };
+    const auto smaller_side = [scale](std::uint32_t pixels) { return std::max(1, static_cast<int>(scale * pixels)); };
     throw UserError(fmt::format("{}: a page of {} x {} pixels would have {} bytes, maximum {}; remedy: --size {}x{}",
-                                scene, cost.width, cost.height, bytes, kMaxBytes, smaller(cost.width),
-                                smaller(cost.height)));
+                                scene, cost.width, cost.height, bytes, kMaxBytes, smaller_side(cost.width),
+                                smaller_side(cost.height)));
 }
 
 void explore(const ExploreCommand& command) {
@@ -154,7 +154,7 @@ void explore(const ExploreCommand& command) {
     warn_of_lost_objects(input.scene, renderer.scale(), settings.format, input.warnings);
     bar->stage("rendering");
     const RingResult result =
-        renderer.render(bar->active() ? [&](double done) { bar->update(done); } : ProgressCallback{});
+        renderer.render(bar->active() ? [&](double fraction) { bar->update(fraction); } : ProgressCallback{});
     bar->stage("writing");
     check_cycles(scene_name(command), result.cost());
     const std::string page = report_page(exploration(command, settings, session.device(), result));

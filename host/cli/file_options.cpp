@@ -39,8 +39,8 @@ class FileCheck {
         const std::string identity = identity_of(output);
         if (identity.empty()) return;
         refuse_if_input(output, identity);
-        const auto [known, is_new] = outputs_.emplace(identity, output);
-        if (!is_new) refuse_equal_outputs(output, known->second);
+        const auto [entry, is_new] = outputs_.emplace(identity, output);
+        if (!is_new) refuse_equal_outputs(output, entry->second);
     }
 
     // Refuses an output folder that contains an input of the command, because the command might overwrite the input.

@@ -21,7 +21,7 @@ struct FrameOptions {
     bool given() const { return !frames.empty() || !camera_path.empty() || turn.has_value(); }
 };
 
-/// The frames to render, `first` to `last`, of a sequence with the numbers `begin` to `end`.
+/// The frames to render, `first` to `last`, of a sequence whose frames are numbered `begin` to `end`.
 struct FrameRange {
     std::uint32_t first = 1, last = 1, begin = 1, end = 1;
     bool operator==(const FrameRange&) const = default;

@@ -16,9 +16,9 @@ namespace raya {
 /// The record's entry of a rendered frame.
 struct FrameEntry {
     std::uint32_t number = 0;
-    std::string settings;                                    // hash of everything that determines the frame
+    std::string settings;                                    // hash of the settings that determine the pixels
     std::string pixels;                                      // pixel_hash() of the image
-    double imbalance = 0, speed_up = 0;                      // load figures of the modelled machine
+    double imbalance = 0, speed_up = 0;                      // of the loads of the modelled machine
     std::vector<std::pair<std::string, std::string>> files;  // [path relative to the record, bytes_hash()]
 };
 
@@ -34,7 +34,7 @@ class FrameRecord {
                            const std::vector<std::string>& files) const;
 
     /// Adds or replaces the entry of a frame whose `files` have been written, and fills in entry.files. Writes the
-    /// record if the last write ended at least 20 times its own duration ago: writes take at most 5 % of the time.
+    /// record if the last write ended at least 20 times its duration ago, so that writes take at most 5 % of the time.
     const FrameEntry& add(FrameEntry entry, const std::vector<std::string>& files);
 
     /// Merges the frames that this object added with the frames that other processes have written to the file, and
@@ -43,10 +43,10 @@ class FrameRecord {
 
   private:
     void read();
-    std::string name_of(const std::string& file) const;
+    std::string name_of(const std::string& file) const;  // returns the path relative to the record
 
     std::filesystem::path file_;
-    std::map<std::uint32_t, FrameEntry> entries_;  // by frame number
+    std::map<std::uint32_t, FrameEntry> entries_;  // key: number of the frame
     std::set<std::uint32_t> added_;                // numbers of the frames that this object added
     Clock::time_point last_write_{};               // end of the last write
     Clock::duration write_duration_{};             // duration of the last write

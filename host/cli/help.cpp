@@ -1,4 +1,4 @@
-// raya help COMMAND: prints the same as raya COMMAND --help.
+// raya help COMMAND: prints the help that raya COMMAND --help prints.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -18,12 +18,12 @@ namespace {
 const CLI::App& subcommand_named(const CLI::App& command, const std::string& name) {
     for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
         if (subcommand->get_name() == name) return *subcommand;
-    const std::vector<std::string> known = command_names(command);
-    if (known.empty())
+    const std::vector<std::string> known_names = command_names(command);
+    if (known_names.empty())
         throw UserError(
             fmt::format("help: {} has no command {}; see raya help {}", command.get_name(), name, command.get_name()));
-    throw UserError(
-        fmt::format("help: no command {}{}; commands: {}", name, did_you_mean(name, known), fmt::join(known, ", ")));
+    throw UserError(fmt::format("help: no command {}{}; commands: {}", name, did_you_mean(name, known_names),
+                                fmt::join(known_names, ", ")));
 }
 
 void print_help(const CLI::App& program, const std::vector<std::string>& names) {

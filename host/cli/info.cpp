@@ -48,9 +48,9 @@ void add_options(CLI::App& command, InfoCommand& options) {
 // Returns the memory needs on the machine of --machine. Throws UserError if this machine does not support the options.
 // Without --machine, returns the memory needs on all machines; the entry of a machine that does not support the options
 // contains the reason. Throws UserError if no ring machine supports the options.
-std::vector<MachineNeeds> needs_of_machines(const CLI::App& parsed, const InfoCommand& command, SceneNeeds& needs) {
-    if (parsed.count("--machine") > 0) {
-        refuse_options_of_other_machines(parsed, machine_named(command.render.machine));
+std::vector<MachineNeeds> needs_of_machines(const CLI::App& parser, const InfoCommand& command, SceneNeeds& needs) {
+    if (parser.count("--machine") > 0) {
+        refuse_options_of_other_machines(parser, machine_named(command.render.machine));
         return {needs.needs_of(command.render.machine)};
     }
     std::vector<MachineNeeds> machine_needs;
@@ -71,13 +71,13 @@ std::vector<MachineNeeds> needs_of_machines(const CLI::App& parsed, const InfoCo
     return machine_needs;
 }
 
-void info(const CLI::App& parsed, const InfoCommand& command) {
+void info(const CLI::App& parser, const InfoCommand& command) {
     SceneInput input = read_scene(command.render.scene, command.render.strict);
     change_view(command.render.view, input.scene);
     SceneReport report;
     report.raya = raya_version();
     SceneNeeds needs(command.render, command.torus, input.scene);
-    report.machines = needs_of_machines(parsed, command, needs);
+    report.machines = needs_of_machines(parser, command, needs);
     report.formats = needs.formats();
     report.file = input_name(command.render.scene);
     report.box = scene_box(input.scene);

@@ -55,7 +55,7 @@ std::string heading(const std::string& text) { return ".SH " + upper(man_escaped
 
 std::string in_synopsis(const OptionText& o) {
     std::string text = o.is_argument() ? italic(o.names.front()) + (o.repeated ? " ..." : "")
-                                       : bold(o.names.front()) + ' ' + italic(o.value);
+                                       : bold(o.names.front()) + ' ' + italic(o.placeholder);
     return o.required ? text : '[' + text + ']';
 }
 
@@ -72,7 +72,7 @@ std::string entry(const OptionText& o) {
     std::string names;
     for (const std::string& name : o.names)
         names += (names.empty() ? "" : ", ") + (name.starts_with('-') ? bold(name) : italic(name));
-    if (!o.is_flag() && !o.is_argument()) names += ' ' + italic(o.value);
+    if (!o.is_flag() && !o.is_argument()) names += ' ' + italic(o.placeholder);
     return ".TP\n" + names + '\n' + line(description_of(o));
 }
 
@@ -98,7 +98,8 @@ std::string grouped(const CommandText& command, Heading&& make_heading) {
 bool have_same_options(const CommandText& a, const CommandText& b) {
     const auto equal = [](const std::vector<OptionText>& x, const std::vector<OptionText>& y) {
         return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const OptionText& p, const OptionText& q) {
-            return p.names == q.names && p.value == q.value && p.default_value == q.default_value && p.help == q.help;
+            return p.names == q.names && p.placeholder == q.placeholder && p.default_value == q.default_value &&
+                   p.help == q.help;
         });
     };
     return equal(a.arguments, b.arguments) && equal(a.options, b.options);

@@ -26,13 +26,13 @@ struct ManualCommand {
 
 void print_page(const std::vector<ManPage>& pages, const std::string& command) {
     const std::string name = command.empty() ? pages.front().name : pages.front().name + '-' + command;
-    std::vector<std::string> known;
+    std::vector<std::string> known_names;
     for (const ManPage& page : pages) {
         if (page.name == name) return fmt::print("{}", page.text);
-        if (page.name != pages.front().name) known.push_back(page.name.substr(pages.front().name.size() + 1));
+        if (page.name != pages.front().name) known_names.push_back(page.name.substr(pages.front().name.size() + 1));
     }
-    throw UserError(
-        fmt::format("no command {}{}; commands: {}", command, did_you_mean(command, known), fmt::join(known, ", ")));
+    throw UserError(fmt::format("no command {}{}; commands: {}", command, did_you_mean(command, known_names),
+                                fmt::join(known_names, ", ")));
 }
 
 void run_manual(const CLI::App& program, const ManualCommand& command) {

@@ -26,13 +26,13 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string nearest_name(const std::string& word, const std::vector<std::string>& names) {
-    constexpr std::size_t kMinPrefix = 3;
+std::string nearest_name(const std::string& misspelling, const std::vector<std::string>& names) {
+    constexpr std::size_t kMinPrefixSize = 3;
     std::string nearest;
-    std::size_t min_distance = word.size() / 3 + 1;
+    std::size_t min_distance = misspelling.size() / 3 + 1;
     for (const std::string& name : names) {
-        const bool has_prefix = word.size() >= kMinPrefix && name.starts_with(word);
-        const std::size_t distance = has_prefix ? 0 : edit_distance(word, name);
+        const bool has_prefix = misspelling.size() >= kMinPrefixSize && name.starts_with(misspelling);
+        const std::size_t distance = has_prefix ? 0 : edit_distance(misspelling, name);
         if (distance >= min_distance) continue;
         min_distance = distance;
         nearest = name;
@@ -40,8 +40,8 @@ std::string nearest_name(const std::string& word, const std::vector<std::string>
     return nearest;
 }
 
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& names) {
-    const std::string nearest = nearest_name(word, names);
+std::string did_you_mean(const std::string& misspelling, const std::vector<std::string>& names) {
+    const std::string nearest = nearest_name(misspelling, names);
     return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
 }
 

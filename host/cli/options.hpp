@@ -24,8 +24,8 @@ struct OptionValue<std::vector<Value>> : OptionValue<Value> {};
 [[noreturn]] void refuse_value(const std::string& option, const std::string& value, const char* reason,
                                const std::string& help);
 
-/// Throws UserError for an empty value, and for a number that is malformed or out of the type's range. CLI11 alone
-/// would treat an empty value as missing, wrap negative numbers and truncate large ones.
+/// Throws UserError for an empty value, and for a number that is malformed or out of the type's range. Without this
+/// check, CLI11 would treat an empty value as missing, wrap negative numbers and truncate large ones.
 template <class Value>
 void check_value(const std::string& option, const std::string& text, const std::string& help) {
     if (text.empty()) refuse_value(option, text, "must not be empty", help);
@@ -70,7 +70,7 @@ class OptionGroup {
     std::string previous_heading_;
 };
 
-/// Adds an option that check_value() checks and that is stored in `value`.
+/// Adds an option, checks its value with check_value() and stores it in `value`.
 template <class Value>
 CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const std::string& help = "") {
     CLI::Option* option = command.add_option(name, value, help);

@@ -6,11 +6,11 @@
 
 namespace raya {
 
-/// Throws UserError, which names `option`, if the page's file name does not end in .html or .htm.
+/// Throws UserError, which names `option`, unless `file` ends in .html or .htm, is stdout ("-"), or is in /dev/.
 void check_page_name(const std::string& option, const std::string& file);
 
-/// Returns the HTML page of a report of render, bench or verify. `text`: the report; `name`: its file, for messages.
-/// Throws UserError if `text` is not such a report. The page lists members that are missing in the report.
+/// Returns the HTML page of a report of render, bench, verify or gpu_day. `text`: the report; `name`: its file, for
+/// messages. Throws UserError unless `text` is such a report. The page lists members that are missing in the report.
 std::string page_of_report(const std::string& text, const std::string& name);
 
 struct ReportFiles {

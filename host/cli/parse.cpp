@@ -11,7 +11,7 @@
 namespace raya {
 
 std::vector<std::uint32_t> parse_sizes(const std::string& text) {
-    constexpr std::uint32_t kMaxSize = 1'000'000;  // the product of three sizes fits in 64 bits
+    constexpr std::uint32_t kMaxSize = 1'000'000;  // so that the product of three sizes fits in 64 bits
     std::vector<std::uint32_t> sizes;
     const char* position = text.data();
     const char* const end = position + text.size();
@@ -34,9 +34,9 @@ ImageSize parse_image_size(const std::string& text) {
 }
 
 std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
-                                               const std::string& legal) {
+                                               const std::string& legal_values) {
     const std::vector<std::uint32_t> sides = parse_sizes(text);
-    if (sides.size() != 3) throw UserError(fmt::format("{} {}: must be XxYxZ, {}", option, text, legal));
+    if (sides.size() != 3) throw UserError(fmt::format("{} {}: must be XxYxZ, {}", option, text, legal_values));
     return {sides[0], sides[1], sides[2]};
 }
 

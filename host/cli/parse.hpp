@@ -25,10 +25,10 @@ std::vector<std::uint32_t> parse_sizes(const std::string& text);
 /// checks that no side exceeds kMaxSide.
 ImageSize parse_image_size(const std::string& text);
 
-/// Parses three numbers, along x, y and z: "4x4x4". Throws UserError with the option's name and `legal`, a text on the
-/// legal values: "1..256 each".
+/// Parses three numbers, along x, y and z: "4x4x4". Throws UserError with `option` and `legal_values`, such as
+/// "1..256 each".
 std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
-                                               const std::string& legal);
+                                               const std::string& legal_values);
 
 /// Parses --accel: "none", "bvh", "grid" or "grid:AxBxC". Throws UserError with the option and its legal values.
 Accel parse_accel(const std::string& text);

@@ -34,7 +34,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
 /// An argument that belongs to no option or command.
 struct UnparsedArgument {
     std::string text;
-    bool after_separator = false;  // after "--"
+    bool after_separator = false;  // true if the argument follows "--"
 };
 
 UnparsedArgument first_unparsed(const CLI::App& program, const std::vector<std::string>& arguments) {
@@ -121,7 +121,7 @@ const CLI::Option* option_awaiting_value(const CLI::App& command, const std::str
 void check_argument_values(const CLI::App& program, const std::vector<std::string>& arguments) {
     constexpr std::size_t kMaxBytes = 4096;  // maximum size of an argument: Linux's PATH_MAX
     const CLI::App* command = &program;
-    const CLI::Option* valued_option = nullptr;  // the option whose value is this argument, else null
+    const CLI::Option* valued_option = nullptr;  // option whose value is the current argument; null: none
     bool after_separator = false;
     for (const std::string& argument : arguments) {
         if (argument.size() > kMaxBytes)
@@ -148,7 +148,7 @@ std::string with_suggestion(const CLI::App& program, std::string text) {
         const std::size_t end = text.find(": ");
         if (!text.starts_with(start) || end == std::string::npos || end < start.size()) continue;
         const std::string value = text.substr(start.size(), end - start.size());
-        // The choices are stored in validators, which CLI11 returns only for a non-const option.
+        // const_cast: CLI11 returns validators, which store the choices, only for a non-const option.
         const ValueCompletion offered = value_completion(option_text(*const_cast<CLI::Option*>(option)));
         if (!value.starts_with(
                 nearest_name(value, offered.choices)))  // "grid:4" starts with the choice grid, which is not misspelt
@@ -172,7 +172,7 @@ void parse_arguments(CLI::App& program, const std::vector<std::string>& argument
         check_argument_values(program, arguments);
         program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) throw;  // --help, --version
+        if (error.get_exit_code() == 0) throw;  // --help or --version, not an error
         throw UserError(failure_text(program, error, arguments));
     } catch (const UserError& error) {
         const std::string text = with_suggestion(program, error.what());

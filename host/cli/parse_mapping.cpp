@@ -44,21 +44,21 @@ constexpr std::uint32_t kMaxSeed = std::numeric_limits<std::uint32_t>::max();
 // form.
 std::uint32_t parse_parameter(const MappingText& mapping, std::string_view text) {
     std::optional<std::uint32_t> parameter;
-    std::string legal = mapping.name() + ", without a parameter";
+    std::string legal_form = mapping.name() + ", without a parameter";
     if (mapping.rule.kind == RAYA_GRID) {
         parameter = parse_pair(text);
-        legal = fmt::format("grid:AxB with A rows of B PEs, each 1..{}", kMaxSide);
+        legal_form = fmt::format("grid:AxB with A rows of B PEs, each 1..{}", kMaxSide);
     } else if (mapping.rule.kind == RAYA_TILES) {
         parameter = parse_pair(text);
-        legal = fmt::format("tiles:WxH with the sides of a tile in pixels, each 1..{}", kMaxSide);
+        legal_form = fmt::format("tiles:WxH with the sides of a tile in pixels, each 1..{}", kMaxSide);
     } else if (mapping.rule.kind == RAYA_RANDOM) {
         parameter = parse_number(text, 0, kMaxSeed);
-        legal = fmt::format("random:seed with a seed 0..{}, or random", kMaxSeed);
+        legal_form = fmt::format("random:seed with a seed 0..{}, or random", kMaxSeed);
     } else if (mapping.takes_offset_option) {
         parameter = parse_number(text, 0, kMaxSide - 1);
-        legal = "cyclic:p with an offset p 0..W-1, less than the image's width, or cyclic";
+        legal_form = "cyclic:p with an offset p 0..W-1, less than the image's width, or cyclic";
     }
-    if (!parameter) throw UserError(fmt::format("--mapping {}: must be {}", mapping.text, legal));
+    if (!parameter) throw UserError(fmt::format("--mapping {}: must be {}", mapping.text, legal_form));
     return *parameter;
 }
 
@@ -94,17 +94,17 @@ MappingText parse_mapping(const std::string& text) {
         MappingRule rule;  // rule of the mapping without a parameter
         bool needs_parameter = false, takes_offset_option = false;
     };
-    static const KnownMapping names[] = {{"cyclic", cyclic_mapping(0), false, true},
-                                         {"column", column_mapping()},
-                                         {"rows", rows_mapping()},
-                                         {"blocks", blocks_mapping()},
-                                         {"grid", grid_mapping(1, 1), true},
-                                         {"tiles", tiles_mapping(1, 1), true},
-                                         {"random", random_mapping(kDefaultSeed)}};
+    static const KnownMapping known_mappings[] = {{"cyclic", cyclic_mapping(0), false, true},
+                                                  {"column", column_mapping()},
+                                                  {"rows", rows_mapping()},
+                                                  {"blocks", blocks_mapping()},
+                                                  {"grid", grid_mapping(1, 1), true},
+                                                  {"tiles", tiles_mapping(1, 1), true},
+                                                  {"random", random_mapping(kDefaultSeed)}};
     const std::size_t colon = text.find(':');
-    const auto* const found = std::find_if(std::begin(names), std::end(names),
+    const auto* const found = std::find_if(std::begin(known_mappings), std::end(known_mappings),
                                            [&](const KnownMapping& n) { return n.name == text.substr(0, colon); });
-    if (found == std::end(names))
+    if (found == std::end(known_mappings))
         throw UserError(fmt::format("--mapping {}: no such mapping; mappings: {}, dynamic:CHUNK, hybrid:CHUNK", text,
                                     fmt::join(mapping_forms(), ", ")));
     MappingText mapping{text, found->rule, found->takes_offset_option};

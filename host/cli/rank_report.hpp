@@ -10,7 +10,7 @@
 
 namespace raya {
 
-/// Figures of this rank's part of a render.
+/// The work of this rank in a render.
 struct RankWork {
     std::uint32_t parts = 0;  // number of PEs or nodes that this rank simulates
     std::uint32_t lanes = 0, group_size = 0;

@@ -11,12 +11,12 @@
 namespace raya {
 namespace {
 
-void render(const CLI::App& parsed, const RenderCommand& command, Ranks& ranks) {
-    refuse_options_of_other_machines(parsed, machine_named(command.render.machine));
-    if (ranks.is_first()) check_render(parsed, command);  // only rank 0 writes files
+void render(const CLI::App& parser, const RenderCommand& command, Ranks& ranks) {
+    refuse_options_of_other_machines(parser, machine_named(command.render.machine));
+    if (ranks.is_first()) check_render(parser, command);  // only rank 0 writes files
     RenderRun run(command, ranks);
     if (command.frames.given())
-        render_frames(parsed, command, run);
+        render_frames(parser, command, run);
     else
         render_image(command, run);
     if (command.cache_kernels && ranks.is_first()) run.session().save_binaries();
@@ -59,11 +59,11 @@ std::vector<ShortHelp> render_short_help() {
 
 }  // namespace
 
-void check_render(const CLI::App& parsed, const RenderCommand& command) {
-    check_trace(parsed, command.trace);
-    check_checkpoint_options(parsed, command.checkpoint);
+void check_render(const CLI::App& parser, const RenderCommand& command) {
+    check_trace(parser, command.trace);
+    check_checkpoint_options(parser, command.checkpoint);
     if (command.frames.given()) check_frames(command);
-    check_output_files(parsed, command);
+    check_output_files(parser, command);
 }
 
 std::optional<Render> render_image(const RenderCommand& command, RenderRun& run) {

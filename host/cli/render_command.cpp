@@ -23,25 +23,25 @@ void check_packets(const std::string& file) {
             fmt::format("--packets {}: the file is compressed with gzip; choose a name that ends in .csv.gz", file));
 }
 
-void check_replay(const CLI::App& parsed, const TorusOptions& t) {
+void check_replay(const CLI::App& parser, const TorusOptions& t) {
     if (t.replay != "simgrid") throw UserError(fmt::format("--replay {}: must be simgrid", t.replay));
     if (!t.packets.ends_with(".csv.gz"))
         throw UserError(
             "--replay simgrid writes FILE.xml and FILE.replay next to the packets: add --packets FILE.csv.gz");
     const ReplayFiles files(t.packets);
-    check_files(parsed, {{"--replay", files.platform}, {"--replay", files.replay}});
+    check_files(parser, {{"--replay", files.platform}, {"--replay", files.replay}});
 }
 
 }  // namespace
 
-void check_output_files(const CLI::App& parsed, const RenderCommand& command) {
+void check_output_files(const CLI::App& parser, const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
     if (!find_launch())  // under mpirun, stdout may be a pseudoterminal although the output goes to a file
         for (const std::string& file : {command.image, command.cost, command.mask, packets})
             refuse_bytes_on_terminal(file);
     tone_of(command.tone, command.image);
     if (!packets.empty()) check_packets(packets);
-    if (!command.torus.replay.empty()) check_replay(parsed, command.torus);
+    if (!command.torus.replay.empty()) check_replay(parser, command.torus);
     if (!command.page.empty()) check_page_name("--page", command.page);
     if (!command.image.empty()) check_image_name(command.image, kImageExtensions);
     if (!command.cost.empty()) check_image_name(command.cost, kGreyImageExtensions);
@@ -69,7 +69,7 @@ SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options
 void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Device& device, const NumberFormat& format,
                  const std::vector<KernelWork>& works, Warnings& warnings) {
     report.measured.builds = recorder.builds();
-    if (!report.ranks.empty()) {  // rates need one device's work: `works` is of all ranks, the commands are rank 0's
+    if (!report.ranks.empty()) {  // `works` covers all ranks, the times of commands only rank 0
         report.measured.roofline.emplace().unavailable = "the roofline is for a single device; start a single rank";
         return;
     }
@@ -77,13 +77,13 @@ void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Devic
         const DevicePeak peak =
             recorder.spans().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
         report.measured.roofline = roofline(peak, works, report.measured.commands);
-        constexpr double kMaxScatter = 0.15;  // (best - worst) / best sample
+        constexpr double kMaxScatter = 0.15;  // maximum (best - worst) / best sample
         if (peak.scatter > kMaxScatter)
             warnings.add(
                 fmt::format("three measurements of the device's peak scatter by {:.0f} %: another program uses the "
                             "device; fractions of the peak are unreliable",
                             100 * peak.scatter));
-    } catch (const DeviceError& error) {  // the render's figures are valid without a roofline
+    } catch (const DeviceError& error) {  // not rethrown: the render's figures are valid without a roofline
         report.measured.roofline.emplace().unavailable = error.what();
     }
 }

@@ -27,7 +27,7 @@ namespace raya {
 struct RenderCommand {
     RenderOptions render;
     TorusOptions torus;
-    std::string image, cost, mask, report, page;
+    std::string image, cost, mask, report, page;  // names of output files; empty: not requested
     ToneOptions tone;
     FrameOptions frames;
     CheckpointOptions checkpoint;
@@ -61,10 +61,10 @@ struct Render {
     RenderReport report{};
     std::optional<RingResult> ring{};
     std::optional<TorusResult> torus{};
-    std::vector<PacketRecord> packets{};  // with RenderCommand::keep_packets
+    std::vector<PacketRecord> packets{};  // with keep_packets: every packet between nodes
     std::optional<TorusSettings> torus_settings{};
     std::uint32_t lights = 0;                 // number of the scene's lights
-    std::optional<History> history{};         // of the torus, with --async or --replay
+    std::optional<History> history{};         // history of the torus's messages, with --async or --replay
     std::vector<std::uint64_t> cycles{};      // with keep_packets: [superstep][node]: modelled cycles
     std::vector<std::uint64_t> link_words{};  // with keep_packets: [superstep][node][RAYA_LINKS]: number of words sent
 
@@ -83,28 +83,28 @@ std::optional<Render> render_image(const RenderCommand& command, RenderRun& run)
 void add_render_command_options(CLI::App& command, RenderCommand& options);
 
 /// Throws UserError if options are incompatible or a file is not writable.
-void check_render(const CLI::App& parsed, const RenderCommand& command);
+void check_render(const CLI::App& parser, const RenderCommand& command);
 
 /// Throws UserError for outputs that --frames does not support: stdout, and options for a single image, such as --page.
 void check_frames(const RenderCommand& command);
 
 /// Renders the frames, except those whose settings and files are the same as in the record (frame_record.hpp). Writes
-/// the frames' files and the record, and prints a line for each frame. `parsed`: the command's parser, which knows the
-/// options that were given. Throws UserError for invalid frames and unwritable files.
-void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderRun& run);
+/// the frames' files and the record, and prints a line for each frame. `parser` has the given options.
+/// Throws UserError for invalid frames and unwritable files.
+void render_frames(const CLI::App& parser, const RenderCommand& command, RenderRun& run);
 
 /// Rank 0 reads the scene and applies the view options. Other ranks get the scene's name and resolution, without
 /// objects. With several ranks and a ring machine, sets `options.accel` on all ranks to rank 0's choice.
 SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks);
 
 /// Throws UserError for an output file's unsupported name, and for options that do not apply to the output files.
-void check_output_files(const CLI::App& parsed, const RenderCommand& command);
+void check_output_files(const CLI::App& parser, const RenderCommand& command);
 
 /// Returns the tone mapping of the command's image if the image has 8-bit codes; empty for linear
 /// images, and if no image is written.
 std::optional<ImageCodes> codes_of(const RenderCommand& command);
 
-/// Adds a small copy of the image, with the tone mapping of the command's image, for the report's page.
+/// Adds a small copy of `image` to the report, with the tone mapping of the command's output image.
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image);
 
 /// Returns a report with the members that reports of all machines have: scene, view, image, device, measured times.

@@ -35,27 +35,27 @@ std::vector<std::string> files_of(const RenderCommand& frame_command) {
     return files;
 }
 
-void check_frame_files(const CLI::App& parsed, const RenderCommand& command, const std::vector<Frame>& frames) {
+void check_frame_files(const CLI::App& parser, const RenderCommand& command, const std::vector<Frame>& frames) {
     std::vector<NamedFile> outputs = {{"--frames", frame_record_file(command.image)}};
     for (const Frame& frame : frames)
         for (const auto& [option, file] : command.files())
             if (!file.empty()) outputs.push_back({option, numbered(file, frame.number)});
-    check_files(parsed, outputs);
+    check_files(parser, outputs);
 }
 
 // Returns a text with all that the pixels of the frames depend on, except the camera and the image size: version of
 // raya, options, build options, and the scene with its lights.
-std::string settings_of(const CLI::App& parsed, const Scene& scene) {
+std::string settings_of(const CLI::App& parser, const Scene& scene) {
     static const std::set<std::string> irrelevant_options = {"SCENE",    "--output", "--cost",   "--mask",
                                                              "--report", "--turn",   "--frames", "--camera-path",
                                                              "--quiet",  "--verbose"};
     std::string text = raya_version();
-    for (const CLI::Option* option : parsed.get_options())
+    for (const CLI::Option* option : parser.get_options())
         if (option->count() > 0 && !irrelevant_options.contains(option->get_name()))
             text += fmt::format("\n{} {}", option->get_name(), fmt::join(option->results(), " "));
-    Scene objects = scene;
-    objects.view = {};
-    return fmt::format("{}\n{}\n{}\n{}", text, user_build_options(), scene.name, bytes_hash(write_nff(objects)));
+    Scene content = scene;
+    content.view = {};
+    return fmt::format("{}\n{}\n{}\n{}", text, user_build_options(), scene.name, bytes_hash(write_nff(content)));
 }
 
 std::string settings_hash(const std::string& settings, const Scene& scene) {
@@ -76,7 +76,7 @@ void print_frame(const RenderCommand& frame_command, const FrameEntry& frame, bo
 }
 
 struct FrameTotals {
-    std::size_t frames = 0, rendered = 0;
+    std::size_t frames = 0, rendered = 0;  // numbers of frames
     double min_imbalance = 0, max_imbalance = 0, imbalance_sum = 0;
 
     void add(double imbalance, bool is_rendered) {
@@ -118,16 +118,16 @@ void check_frames(const RenderCommand& command) {
                 option));
 }
 
-void render_frames(const CLI::App& parsed, const RenderCommand& command, RenderRun& run) {
+void render_frames(const CLI::App& parser, const RenderCommand& command, RenderRun& run) {
     Ranks& ranks = run.ranks;
     std::vector<Frame> frames;
     std::optional<FrameRecord> record;
     std::string settings;
     if (ranks.is_first()) {
         frames = frames_of(command.frames, run.input.scene.view);
-        check_frame_files(parsed, command, frames);
+        check_frame_files(parser, command, frames);
         record.emplace(frame_record_file(command.image));
-        settings = settings_of(parsed, run.input.scene);
+        settings = settings_of(parser, run.input.scene);
     }
     auto count = static_cast<std::uint32_t>(frames.size());
     ranks.broadcast(count);

@@ -174,9 +174,9 @@ void check_slot_options(const RenderOptions& o, const MappingText& mapping, cons
             fmt::format("--offset {}: must be 0..{}, less than the image's width", *o.offset, image.width - 1));
 }
 
-// Returns --mapping or, if it is not given, the machine's mapping. A dynamic or hybrid mapping is only simulated. For
-// it this function returns the cyclic mapping: the device traces with it, and it is the static part of a hybrid
-// mapping.
+// Returns --mapping or, if it is not given, the machine's mapping. Returns the cyclic mapping for a dynamic or hybrid
+// mapping: the host only simulates a dynamic or hybrid mapping, while the device traces with the cyclic mapping. A
+// hybrid mapping assigns its static part cyclically, too.
 MappingText requested_mapping(const RenderOptions& o, const Machine& machine) {
     if (!o.mapping.empty()) return parse_mapping(is_dynamic(o.mapping) ? "cyclic" : o.mapping);
     if (machine.mapping.has_slots()) return parse_mapping("cyclic");

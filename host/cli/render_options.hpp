@@ -26,7 +26,7 @@ struct RenderOptions {
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
 };
 
-/// Adds the options of RenderOptions except the scene; those of anti-aliasing only if `antialiasing` is true.
+/// Adds the options of RenderOptions except the scene, and except anti-aliasing if `antialiasing` is false.
 void add_render_options(CLI::App& command, RenderOptions& options, bool antialiasing = true);
 
 // Each of these functions returns the value of an option or, if it is not given, its default. The functions throw

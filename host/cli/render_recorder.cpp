@@ -66,7 +66,7 @@ void RenderRecorder::compare_clocks(Ranks& ranks) {
     has_several_ranks_ = true;
     rank_clock_ = rank_clock(ranks, host_clock_ns);
     const auto offset =
-        static_cast<std::uint64_t>(rank_clock_.offset_ns);  // may be negative: additions wrap modulo 2^64
+        static_cast<std::uint64_t>(rank_clock_.offset_ns);  // if negative, the sums below wrap modulo 2^64
     const std::vector<std::uint64_t> begins = ranks.all_gather(begin_ns_ + offset);
     begin_ns_ = *std::min_element(begins.begin(), begins.end()) - offset;
     for (const RankClock& c : ranks.all_gather(rank_clock_))

@@ -34,10 +34,9 @@ void check_trace(const CLI::App& command, const TraceOptions& trace);
 class RenderRecorder {
   public:
     /// `profile`: records the time of each build. Without trace and profile, the recorder has only the spans that its
-    /// owner adds by spans().
+    /// owner adds to spans().
     RenderRecorder(const TraceOptions& trace, bool profile);
 
-    /// Returns true if a trace is requested.
     bool traces() const { return !trace_.file.empty(); }
     SpanLog& spans() { return spans_; }
 

@@ -67,8 +67,8 @@ Session& RenderRun::session() {
     progress.stage("preparing");
     device_ =
         recorder.spans().during("choose device", [&] { return choose_device(options.device, ranks.rank_on_host()); });
-    // Loads OpenImageIO after the OpenCL drivers. Both use TBB, a process keeps the first TBB that it loads, and
-    // Intel's OpenCL runtime needs a newer version than OpenImageIO.
+    // OpenImageIO is loaded after the OpenCL drivers. Both use TBB, a process keeps the first TBB that it loads, and
+    // Intel's OpenCL runtime needs a newer TBB than OpenImageIO.
     for (const std::string& file : image_files_)
         if (ranks.is_first() && !file.empty()) load_encoder(file);
     opened_session_.emplace(recorder.spans().during("open device", [&] { return Session(device_, timing_); }));

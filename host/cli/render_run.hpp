@@ -58,7 +58,7 @@ class RenderRun {
     /// Returns the session on the device. The first call loads tuned values and image encoders, and opens the device.
     /// All images of a sequence share the session and its programs.
     Session& session();
-    const cl::Device& device() const { return device_; }  // valid after the first session()
+    const cl::Device& device() const { return device_; }  // valid after the first call of session()
 
     Ranks& ranks;
     RenderRecorder recorder;

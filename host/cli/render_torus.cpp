@@ -28,7 +28,7 @@ struct TorusOutputs {
     }
 
     std::optional<PacketTrace> packets;
-    bool keep_packets = false;  // record `records`, `cycles` and `link_words`
+    bool keep_packets = false;  // store `records`, `cycles` and `link_words`
     std::vector<PacketRecord> records;
     std::vector<std::uint64_t> cycles, link_words;  // [superstep][node], [superstep][node][RAYA_LINKS]
     std::optional<TorusTrace> trace;

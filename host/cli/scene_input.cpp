@@ -73,11 +73,11 @@ void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warning
 
 void warn_of_lost_objects(const Scene& scene, const LengthScale& scale, const NumberFormat& format,
                           Warnings& warnings) {
-    if (scale.vanishing == 0) return;
+    if (scale.vanishing_count == 0) return;
     warnings.add(
         fmt::format("{}: {} spheres, cones or checkers are invisible: they are smaller than {:.3g}, the minimum of {} "
                     "in a scene with lengths up to {:.3g}; remedy: --format fp32",
-                    scene.name, scale.vanishing, scale.min_visible, format_name(format), scale.largest));
+                    scene.name, scale.vanishing_count, scale.min_visible, format_name(format), scale.largest_length));
 }
 
 }  // namespace raya

@@ -17,9 +17,9 @@ class SceneNeeds {
     /// All arguments must outlive this object.
     SceneNeeds(const RenderOptions& render, const TorusOptions& torus, const Scene& scene);
 
-    /// Returns the machine's memory needs with accelerators none, bvh and grid, or only with the accelerator of
-    /// --accel. Throws UserError if the machine does not support the options' values. A scene that does not
-    /// fit is not an error; the result contains the missing bytes.
+    /// Returns the machine's memory needs with the accelerator of --accel or, without --accel, with each of none, bvh
+    /// and grid. Throws UserError if the machine does not support the options' values. A scene that does not fit is not
+    /// an error; the result contains the missing bytes.
     MachineNeeds needs_of(const std::string& machine);
 
     /// Returns how the scene fits the number formats of the machines for which needs_of() was called.

@@ -132,9 +132,9 @@ void add_study_options(CLI::App& command, StudyCommand& options) {
     add_value(command, "--size", options.size,
               "Image size in pixels a side, 17..4096; default: the study's size, 256 in most studies")
         ->type_name("N");
-    add_value(
-        command, "--views", options.views,
-        "Pictures of the ensembles of the studies of load, 20..5000, divided among the scene families; default: 108")
+    add_value(command, "--views", options.views,
+              "Number of pictures in the ensembles of the studies of load, 20..5000, divided among the scene families; "
+              "default: 108")
         ->type_name("N");
     add_value(command, "--seed", options.seed,
               "Seed of the first picture of a family, 1..90000; the others count up from it; default: 1")
@@ -151,8 +151,8 @@ void add_study_options(CLI::App& command, StudyCommand& options) {
     add_tuned_option(command, options.no_tuned);
 }
 
-// Returns the folder of the Python module, in the build folder or in an installation under a prefix; empty if
-// there is none.
+// Returns the folder that contains the Python package raya, in the build folder or in the installation of `program`.
+// Returns an empty path if neither contains the package.
 fs::path package_folder(const fs::path& program) {
     std::error_code error;
     for (const fs::path& folder :

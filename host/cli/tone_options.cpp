@@ -30,7 +30,7 @@ ToneCurve parse_curve(const std::string& text) {
 void add_tone_options(CLI::App& command, ToneOptions& t) {
     const OptionGroup group(command, kImageGroup);
     add_value(command, "--exposure", t.exposure,
-              "8-bit images: multiply colours by 2^EV, -64..64 stops; the report's hash is of the colours before this")
+              "8-bit images: multiply colours by 2^EV, -64..64 stops; the report's hash does not change")
         ->type_name("EV")
         ->default_str("0");
     add_value(command, "--gamma", t.gamma,

@@ -11,7 +11,7 @@ class App;
 
 namespace raya {
 
-/// The options as given on the command line. Empty: the default.
+/// The options as given on the command line. An empty value means the default.
 struct ToneOptions {
     std::optional<double> exposure;  // stops: colours are multiplied by 2^exposure
     std::optional<double> gamma;     // colours are raised to the power 1/gamma

@@ -61,7 +61,7 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
         "N");
     add("--link-exchange", t.link_exchange,
         "How the host moves packets over links, which does not change the result: as copies between buffers or by a "
-        "kernel; auto: as raya tune stored it, else the kernel on a CPU, elsewhere the faster one, measured when "
+        "kernel; auto: as raya tune stored it, else the kernel on a CPU, elsewhere the faster method, measured when "
         "the render begins",
         "auto|copies|kernel")
         ->default_str("auto");

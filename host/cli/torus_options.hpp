@@ -21,7 +21,7 @@ struct TorusOptions {
 /// add_render_options().
 void add_torus_options(CLI::App& command, TorusOptions& torus);
 
-/// The files that --replay simgrid writes for packet trace FILE.csv.gz: FILE.xml (SimGrid's platform), FILE.replay.
+/// Names of the files that --replay simgrid writes next to FILE.csv.gz: FILE.xml (`platform`), FILE.replay (`replay`).
 struct ReplayFiles {
     explicit ReplayFiles(const std::string& packets);
     std::string platform, replay;

@@ -115,7 +115,7 @@ TunedEntry entry_of(const Tuning& tuning, const std::string& scene) {
     return {tuning.workload.key(), tuning.best, 1 / tuning.ratio, scene};
 }
 
-void tune_device(const CLI::App& parsed, TuneCommand& command) {
+void tune_device(const CLI::App& parser, TuneCommand& command) {
     check_range("--seconds", command.seconds, 1, 86400);
     check_range("--candidate-seconds", command.candidate_seconds, 1, 3600);
     Warnings warnings;
@@ -129,7 +129,7 @@ void tune_device(const CLI::App& parsed, TuneCommand& command) {
         read_scene(render.scene, render.strict);  // so that errors in the scene are reported before the first trial
     const DeviceInfo device = device_info(choose_device(render.device));
     const std::filesystem::path file = tuned_path(device);
-    check_files(parsed, {{"tune", file}});
+    check_files(parser, {{"tune", file}});
     fmt::print("tuning {} ({}, driver {}): {}, {:.0f} s\n", device.name, device.platform, device.driver,
                counted(workloads.size(), "workload"), command.seconds);
     std::fflush(stdout);

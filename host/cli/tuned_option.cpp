@@ -14,8 +14,8 @@ void add_tuned_option(CLI::App& command, bool& no_tuned) {
 
 ScopedTunedSource use_tuned(bool no_tuned, Warnings* warnings) {
     const auto warn = [warnings](const std::string& text) {
-        Warnings unused;
-        (warnings ? *warnings : unused).add(text);
+        Warnings local_warnings;
+        (warnings ? *warnings : local_warnings).add(text);
     };
     return ScopedTunedSource(no_tuned ? TunedSource{} : stored_choices(warn));
 }

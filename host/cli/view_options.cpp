@@ -20,8 +20,8 @@ constexpr const char* kLight = "must be a position X,Y,Z, or position and colour
 
 constexpr std::size_t kMaxShownBytes = 60;  // maximum bytes of a value in messages
 
-/// Parses comma-separated numbers. Returns an empty vector if a number is malformed or its magnitude
-/// exceeds kMaxSceneLength.
+/// Parses comma-separated numbers. Returns an empty vector if a number is malformed or its magnitude exceeds
+/// kMaxSceneLength.
 std::vector<double> numbers_of(std::string_view text) {
     std::vector<double> numbers;
     while (true) {
@@ -36,13 +36,13 @@ std::vector<double> numbers_of(std::string_view text) {
     }
 }
 
-[[noreturn]] void refuse(const std::string& option, const std::string& text, const char* legal) {
-    throw UserError(fmt::format("{} {}: {}", option, text.substr(0, kMaxShownBytes), legal));
+[[noreturn]] void refuse(const std::string& option, const std::string& text, const char* legal_values) {
+    throw UserError(fmt::format("{} {}: {}", option, text.substr(0, kMaxShownBytes), legal_values));
 }
 
-Vec3 vector_of(const std::string& option, const std::string& text, const char* legal) {
+Vec3 vector_of(const std::string& option, const std::string& text, const char* legal_values) {
     const std::vector<double> numbers = numbers_of(text);
-    if (numbers.size() != 3) refuse(option, text, legal);
+    if (numbers.size() != 3) refuse(option, text, legal_values);
     return {numbers[0], numbers[1], numbers[2]};
 }
 

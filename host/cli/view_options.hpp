@@ -31,7 +31,7 @@ void add_view_options(CLI::App& command, ViewOptions& view);
 /// Returns the names of the options that add_view_options() adds, without dashes.
 const std::vector<std::string>& view_option_names();
 
-/// Applies the camera options to `view`. Throws UserError as change_view() does.
+/// Applies the camera options to `view`. Throws UserError with the options' names for an invalid camera.
 void change_viewpoint(const ViewOptions& options, View& view);
 
 /// Applies all options to the scene, with the range checks of the NFF reader. Throws UserError with the option's name.

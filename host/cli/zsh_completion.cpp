@@ -20,12 +20,12 @@ std::string zsh_escaped(const std::string& text) {
 // Returns the message and action of an _arguments spec, ":NAME:(a b)", for an option's value or a positional argument.
 std::string zsh_value_spec(const OptionText& option) {
     const ValueCompletion value = value_completion(option);
-    const std::string name = ':' + zsh_escaped(option.value) + ':';
+    const std::string name = ':' + zsh_escaped(option.placeholder) + ':';
     switch (value.kind) {
         case ValueCompletion::Kind::kChoice:
             return fmt::format("{}({})", name, fmt::join(value.choices, " "));
         case ValueCompletion::Kind::kList:
-            return fmt::format("{}_values -s , {} {}", name, shell_quoted(zsh_escaped(option.value)),
+            return fmt::format("{}_values -s , {} {}", name, shell_quoted(zsh_escaped(option.placeholder)),
                                fmt::join(value.choices, " "));
         case ValueCompletion::Kind::kFile:
             return fmt::format("{}_files -g \"*{}(-.)\"", name, value.extension);

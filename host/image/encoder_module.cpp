@@ -46,8 +46,8 @@ OIIO::ImageSpec make_spec(const PictureToEncode& picture) {
     OIIO::ImageSpec spec(picture.width, picture.height, picture.channels,
                          format == "exr" ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
     if (picture.channels == 1) spec.channelnames = {"Y"};
-    // If DateTime is missing, OpenImageIO writes the current date. It ignores a DateTime that is not a string and
-    // prints a debug message, which debug = 0 disables.
+    // Without a DateTime, OpenImageIO writes the current date. It ignores a DateTime that is not a string, so the files
+    // have no date. It also prints a debug message, which debug = 0 disables.
     if (format == "exr" || format == "tiff") spec.attribute("DateTime", 0);
     OIIO::attribute("debug", 0);
     if (format != "exr") {

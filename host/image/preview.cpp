@@ -37,24 +37,24 @@ Image as_displayed(const Image& image, const Tone& tone) {
 Image preview_of(const Image& image, int max_side) {
     if (image.width < 1 || image.height < 1 || max_side < 1) throw std::logic_error("preview_of: no pixels");
     const int longer_side = std::max(image.width, image.height);
-    Image small{
+    Image preview{
         preview_side(image.width, longer_side, max_side), preview_side(image.height, longer_side, max_side), {}};
     const auto width = static_cast<std::size_t>(image.width);
-    for (int y = 0; y < small.height; ++y)
-        for (int x = 0; x < small.width; ++x) {
-            const std::size_t top = first_pixel(y, small.height, image.height),
-                              end_row = first_pixel(y + 1, small.height, image.height),
-                              left = first_pixel(x, small.width, image.width),
-                              end_column = first_pixel(x + 1, small.width, image.width);
+    for (int y = 0; y < preview.height; ++y)
+        for (int x = 0; x < preview.width; ++x) {
+            const std::size_t top = first_pixel(y, preview.height, image.height),
+                              end_row = first_pixel(y + 1, preview.height, image.height),
+                              left = first_pixel(x, preview.width, image.width),
+                              end_column = first_pixel(x + 1, preview.width, image.width);
             double sums[3] = {};
             for (std::size_t row = top; row < end_row; ++row)
                 for (std::size_t column = left; column < end_column; ++column)
                     for (std::size_t c = 0; c < 3; ++c)
                         sums[c] += clamped_light(image.rgb[3 * (row * width + column) + c]);
             const auto pixels = static_cast<double>((end_row - top) * (end_column - left));
-            for (const double sum : sums) small.rgb.push_back(static_cast<float>(sum / pixels));
+            for (const double sum : sums) preview.rgb.push_back(static_cast<float>(sum / pixels));
         }
-    return small;
+    return preview;
 }
 
 }  // namespace raya

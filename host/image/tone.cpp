@@ -54,8 +54,8 @@ std::array<std::uint8_t, 3> ToneCodes::operator()(const float* rgb) const {
     std::array<double, 3> linear{};
     for (std::size_t i = 0; i < 3; ++i)
         linear[i] = std::isnan(rgb[i]) ? 0 : factor_ * std::clamp<double>(rgb[i], -kMaxFloat, kMaxFloat);
-    const double light = luminance(linear);
-    const double scale = curve_ == ToneCurve::kReinhard && light > 0 ? 1 / (1 + light) : 1;
+    const double pixel_luminance = luminance(linear);
+    const double scale = curve_ == ToneCurve::kReinhard && pixel_luminance > 0 ? 1 / (1 + pixel_luminance) : 1;
     std::array<std::uint8_t, 3> codes{};
     for (std::size_t i = 0; i < 3; ++i) codes[i] = code_between(borders_, linear[i] * scale);
     return codes;

@@ -10,8 +10,8 @@
 
 namespace raya {
 
-/// borders[k]: the linear value at which the nearest code changes from k to k + 1. Its encoded value is (k + 1/2) /
-/// 255.
+/// borders[k]: the linear value at which the nearest code changes from k to k + 1. Its encoded value is
+/// (k + 1/2) / 255.
 using CodeBorders = std::array<double, 255>;
 
 /// Returns the borders of a transfer curve. `linear_from`: the inverse of the curve, from encoded values 0..1 to linear
@@ -23,7 +23,6 @@ CodeBorders code_borders(Curve&& linear_from) {
     return borders;
 }
 
-/// Returns the borders of the sRGB curve.
 const CodeBorders& srgb_borders();
 
 /// Returns the code 0..255 that is nearest to 255 curve(linear), for the curve of `borders`; 0 for negative values and

@@ -31,8 +31,8 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .moves = 6 + kRayMoves,
      .branches = kRayBranches,
      .work = "weight; the direction is charged to the shaded hit, because highlights need it too"},
-    // cos: 3, 1 - cos^2: 1, e^2: 1, g: 1, e cos - root: 2, times N: 3, + e D: 3, normalise: 3 + 3, weight: 1, P-: 3.
-    // Divisions: 1 / ior, normalise. Moves: push 7, pop 7. Branches: g < 0, level.
+    // cos: 3, 1 - cos^2: 1, e^2: 1, g: 1, e cos - square root: 2, times N: 3, + e D: 3, normalise: 3 + 3, weight: 1,
+    // P-: 3. Divisions: 1 / ior, normalise. Moves: push 7, pop 7. Branches: g < 0, level.
     {.event = RAYA_REFRACTED,
      .multiply_accumulates = 3 + 1 + 1 + 1 + 2 + 3 + 3 + 3 + 3 + 1 + 3,
      .divisions = 2,
@@ -152,7 +152,7 @@ static_assert(budgets_in_order());
 const std::array<Budget, RAYA_EVENTS>& budgets() { return kBudgets; }
 
 std::uint32_t cycles_of(const Budget& b) {
-    return b.multiply_accumulates + kDivisionCycles * b.divisions + kRootCycles * b.roots + b.moves +
+    return b.multiply_accumulates + kDivisionCycles * b.divisions + kSquareRootCycles * b.roots + b.moves +
            kBranchCycles * b.branches;
 }
 
@@ -171,14 +171,14 @@ Operations operations_of(const EventCounts& events) {
 
 // Each colour component of a pixel takes four additions and one multiplication by 1/9. The two buses load both operands
 // of an operation in parallel with arithmetic. But the result must be stored before the next operands are loaded, so
-// each operation takes one move. Branches: one for each side of the pixel, whether a neighbour exists.
+// each operation takes one move. Branches: one for each side of the pixel, to test whether a neighbour exists.
 std::uint64_t filter_cycles(std::uint64_t pixels) {
     constexpr Budget kPixel = {.multiply_accumulates = 3 * (4 + 1), .moves = 3 * (4 + 1), .branches = 4};
     return pixels * cycles_of(kPixel);
 }
 
 // For each side of a pixel and colour component: clamp of both values to 0..1: 4, difference: 1, comparison with the
-// threshold: 1. Branches for each side: whether a neighbour exists, and one per component. Moves: store of the mark.
+// threshold: 1. Branches for each side: one to test for a neighbour, one per component. Moves: store of the mark.
 std::uint64_t compare_cycles(std::uint64_t pixels) {
     constexpr Budget kPixel = {.multiply_accumulates = 4 * 3 * (4 + 1 + 1), .moves = 1, .branches = 4 * (1 + 3)};
     return pixels * cycles_of(kPixel);

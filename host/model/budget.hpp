@@ -27,11 +27,11 @@
 namespace raya {
 
 inline constexpr std::uint32_t kSeedCycles = 3;  // extract the table index, read the table, set the exponent
-inline constexpr std::uint32_t kDivisionCycles = kSeedCycles + 2 + 1;  // seed, Newton step, a y
-inline constexpr std::uint32_t kRootCycles = kSeedCycles + 1 + 3 + 1;  // seed, x/2, Newton step, x y
+inline constexpr std::uint32_t kDivisionCycles = kSeedCycles + 2 + 1;        // seed, Newton step, a y
+inline constexpr std::uint32_t kSquareRootCycles = kSeedCycles + 1 + 3 + 1;  // seed, x/2, Newton step, x y
 inline constexpr std::uint32_t kBranchCycles = 3;
 
-/// Numbers of operations that one event costs; `roots`: number of square roots.
+/// Numbers of operations that one event costs. `roots`: number of square roots.
 struct Budget {
     int event = 0;                           // RAYA_* of kernels/shared/events.h
     std::uint32_t multiply_accumulates = 0;  // additions, multiplications, comparisons and multiply-accumulates
@@ -47,18 +47,18 @@ const std::array<Budget, RAYA_EVENTS>& budgets();
 /// Returns the cycles of one event with this budget.
 std::uint32_t cycles_of(const Budget& budget);
 
-/// Total numbers of operations of many events (members as in Budget).
+/// Total numbers of operations of many events. The members are those of Budget.
 struct Operations {
     std::uint64_t multiply_accumulates = 0, divisions = 0, roots = 0, moves = 0, branches = 0;
 };
 Operations operations_of(const EventCounts& events);
 
-// Anti-aliasing has no events, because it costs the same for every pixel.
+// The kernels count no events of anti-aliasing, because it costs the same for every pixel.
 
-/// Modelled cycles of one PE for filtering `pixels` pixels with their neighbours (kernels/ring/filter.cl).
+/// Returns a PE's modelled cycles for filtering `pixels` pixels with their neighbours (kernels/ring/filter.cl).
 std::uint64_t filter_cycles(std::uint64_t pixels);
 
-/// Modelled cycles of one PE for comparing `pixels` pixels with their neighbours (kernels/ring/contrast.cl).
+/// Returns a PE's modelled cycles for comparing `pixels` pixels with their neighbours (kernels/ring/contrast.cl).
 std::uint64_t compare_cycles(std::uint64_t pixels);
 
 }  // namespace raya

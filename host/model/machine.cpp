@@ -16,8 +16,7 @@ namespace raya {
 namespace {
 
 // Marks of sources: [P] printed in the paper that describes the machine, [D] derived from printed figures, [T] data
-// sheet,
-// [?] assumed here.
+// sheet, [?] assumed here.
 
 constexpr double kNoTime = std::numeric_limits<double>::infinity();  // rate of a transfer that takes no time
 constexpr const char *kCyclePrinted = "[P] 100 ns, 20 MFLOPS: one multiply-accumulate a cycle",

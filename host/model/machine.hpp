@@ -37,8 +37,8 @@ struct AccelSummary {
     AccelKind kind = AccelKind::kNone;
     std::uint64_t words = 0;  // number of 32-bit words of the structure in the job
     Divisions divisions{};    // of a grid
-    std::uint64_t copies =
-        0;  // of a grid: number of entries in the voxels' lists minus number of distinct objects in them
+    // Of a grid: number of entries in the voxels' lists minus number of distinct objects in the lists.
+    std::uint64_t copies = 0;
     std::uint32_t separate = 0;  // number of separate objects (docs/glossary.md)
     std::uint64_t nodes = 0;     // number of nodes of a BVH
     std::uint64_t leaves = 0;    // number of leaves of a BVH
@@ -92,7 +92,7 @@ struct Machine {
     std::optional<std::uint32_t> pes;              // number of PEs; empty: one per image column
     std::optional<std::uint64_t> pe_memory_bytes;  // memory of a PE; empty: no limit
     std::uint32_t bounces = 8;             // maximum number of reflections and refractions after the primary ray
-    NumberFormat format{};                 // of the PEs' arithmetic
+    NumberFormat format{};                 // number format of the PEs' arithmetic
     MappingRule mapping{};                 // of a ring: mapping of pixels to PEs
     Accel accel{};                         // of a ring: acceleration structure in every PE
     std::optional<DynamicPlan> dynamic{};  // empty: PEs do not request pixels at run time

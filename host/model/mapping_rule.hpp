@@ -23,10 +23,10 @@ enum class Fold : std::uint32_t { kCyclic = RAYA_FOLD_CYCLIC, kBlock = RAYA_FOLD
 
 /// A mapping rule, created by one of the functions below.
 struct MappingRule {
-    /// RAYA_ROWS, RAYA_BLOCKS, RAYA_GRID, RAYA_TILES or RAYA_RANDOM; for mappings with slots it is their fold
+    /// RAYA_ROWS, RAYA_BLOCKS, RAYA_GRID, RAYA_TILES or RAYA_RANDOM; for a mapping with slots, its fold
     /// (RAYA_FOLD_CYCLIC or RAYA_FOLD_BLOCK).
     std::uint32_t kind = RAYA_FOLD_CYCLIC;
-    std::uint32_t parameter = 0;  // argument of the function: offset, seed or two lengths; 0 if it has none
+    std::uint32_t parameter = 0;  // argument of the function: offset, seed or raya_pair(); 0 if it has none
 
     bool has_slots() const { return kind <= RAYA_FOLD_BLOCK; }
     /// Returns the number of PEs that a grid_mapping() requires; empty for other rules, which map to any number of PEs.

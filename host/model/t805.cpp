@@ -41,8 +41,7 @@ constexpr std::array<T805Work, RAYA_EVENTS> kWork = {{
      .additions = 3 + (2 + 3) + 2 + 2 + 3 + 3 + 1 + 0 + 3 + 3 + 3 + 1 + (1 + 2 + 2 + 4) / 3,
      .multiplications = 0 + (3 + 3) + 3 + 3 + 3 + 3 + 1 + 1 + 4 + 4 + 4 + 2 + 1},
     // sphere: square root and t, P, P - C, normalise, N.D, orient, margin, P+, N.D, times -2, R, Kd C, w A, ambient,
-    // kr;
-    // the node sends the ambient term to the root as a return packet
+    // kr; the node sends the ambient term to the root as a return packet
     {.event = RAYA_SHADED,
      .additions = 3 + 3 + 3 + 2 + 2 + 3 + 3 + 3 + 2 + 0 + 3 + 0 + 0 + 3 + 0,
      .multiplications = 0 + 3 + 0 + (3 + 3) + 3 + 0 + 1 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 1,
@@ -72,12 +71,12 @@ constexpr bool work_in_order() {
 static_assert(work_in_order());
 
 std::uint32_t cycles_of(const T805Work& work, const Budget& budget, const PacketCharge& packets) {
-    const std::uint32_t operations = work.additions + work.multiplications + budget.divisions +
-                                     budget.roots;  // number of operations that load an operand
+    // Number of operations that load an operand.
+    const std::uint32_t operations = work.additions + work.multiplications + budget.divisions + budget.roots;
     return kT805AdditionCycles * work.additions + kT805MultiplicationCycles * work.multiplications +
-           kT805DivisionCycles * budget.divisions + kT805RootCycles * budget.roots + kT805OperandCycles * operations +
-           kT805MoveCycles * budget.moves + kT805StoreCycles * packets.words_of(work.creates) +
-           kT805BranchCycles * budget.branches;
+           kT805DivisionCycles * budget.divisions + kT805SquareRootCycles * budget.roots +
+           kT805OperandCycles * operations + kT805MoveCycles * budget.moves +
+           kT805StoreCycles * packets.words_of(work.creates) + kT805BranchCycles * budget.branches;
 }
 
 }  // namespace

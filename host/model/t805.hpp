@@ -29,23 +29,23 @@ inline double t805_ms(std::uint64_t cycles) { return 1e-6 * kT805CycleNs * stati
 inline constexpr double kT805OneWayBytesPerS = 1.7e6, kT805BothWaysBytesPerS = 2.4e6;
 
 inline constexpr std::uint32_t kT805AdditionCycles = 6, kT805MultiplicationCycles = 11, kT805DivisionCycles = 16,
-                               kT805RootCycles = 119;
+                               kT805SquareRootCycles = 119;
 inline constexpr std::uint32_t kT805OperandCycles = 2 + 2, kT805StoreCycles = 2 + 2,
                                kT805MoveCycles = kT805OperandCycles + kT805StoreCycles, kT805BranchCycles = 6;
 inline constexpr std::uint32_t kT805MessageCycles = 19, kT805MessageWordCycles = 2;
 
-/// Packet that an event creates. kContribution is a contribution to the pixel. It is a separate return packet; with
-/// PacketCharge::one_return_per_ray it is part of the ray's return packet.
+/// Packet that an event creates. kContribution is a contribution to the pixel: a separate return packet or, with
+/// PacketCharge::one_return_per_ray, a part of the ray's return packet.
 enum class CreatedPacket { kNone, kRay, kReturn, kContribution };
 
 /// Packet sizes, in 32-bit words, that the time model charges for the creation and the transfer of packets. The default
 /// sizes are those of the kernels (kernels/shared/packet.h), which create a return packet for each contribution of a
-/// ray. `one_return_per_ray` selects Yoshitani & Yamazaki's protocol instead: one return packet per ray, with the
-/// fields that their Table 1 marks (Layx, Layy, kind of ray, luminance r, g, b).
+/// ray. `one_return_per_ray` selects Yoshitani & Yamazaki's protocol instead: one return packet per ray other than a
+/// shadow ray, sent after the ray's shadow rays, with the fields that their Table 1 marks (Layx, Layy, kind of ray,
+/// luminance r, g, b).
 struct PacketCharge {
     std::uint32_t ray_words = RAYA_PACKET_WORDS;
-    bool one_return_per_ray =
-        false;  // one return packet per ray other than a shadow ray, sent after the ray's shadow rays
+    bool one_return_per_ray = false;
 
     static constexpr std::uint32_t kRayReturnWords = 6;  // number of words of a return packet if one_return_per_ray
     std::uint32_t return_words() const {

@@ -22,7 +22,7 @@ struct Communication {
 
 /// The loads of P PEs, in modelled cycles, and their statistics.
 struct Load {
-    std::vector<std::uint64_t> per_pe;  // [PE]: its load
+    std::vector<std::uint64_t> per_pe;  // [PE]: load of the PE
     double mean = 0;
     std::uint64_t max = 0, min = 0;
     double imbalance = 0;   // u = (max - mean) / mean (Kohata & Ito 1993, Fig. 8); 0 if all loads are 0
@@ -54,7 +54,7 @@ struct ModelledTime {
 
 /// Modelled times of a torus whose nodes compute while its links transfer (host/torus/async_machine.hpp), milliseconds.
 struct AsynchronousTime {
-    double finish_ms = 0;         // when the last task has ended and the last return is delivered
+    double finish_ms = 0;         // time at which the last task has ended and the last return is delivered
     double processor_ms = 0;      // busy time of the busiest processor
     double links_ms = 0;          // busy time of the busiest direction of a link
     double port_ms = 0;           // maximum over the nodes: total time for which full ports blocked the main task
@@ -66,7 +66,7 @@ struct AsynchronousTime {
 /// nodes and of the image from the root to the host. The time of a real machine is between overlapped_ms and
 /// stepwise_ms, because computation and communication overlap only in part.
 struct TorusTime {
-    double compute_ms = 0;     // maximum over the nodes
+    double compute_ms = 0;     // computation time, maximum over the nodes
     double messages_ms = 0;    // processor time for sending and receiving, maximum over the nodes
     double processor_ms = 0;   // computation plus sending and receiving, maximum over the nodes
     double links_ms = 0;       // transfer time of both directions of a link, maximum over the links

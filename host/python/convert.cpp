@@ -28,7 +28,7 @@ std::vector<std::string> option_arguments(const py::dict& options) {
     std::vector<std::string> arguments;
     for (const auto& [key, value] : options) {
         std::string name = py::str(key);
-        while (name.ends_with('_')) name.pop_back();  // "from_": the option --from; `from` is a keyword of Python
+        while (name.ends_with('_')) name.pop_back();  // from_ sets --from, because `from` is a Python keyword
         for (char& letter : name)
             if (letter == '_') letter = '-';
         const std::string option = "--" + name;

@@ -41,8 +41,8 @@ py::array copy_of(const std::vector<T>& values) {
     return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-/// Converts an integer array [height, width] of modelled cycles. Raises ValueError for an array of other dimensions or
-/// type, or with negative numbers.
+/// Converts an array [height, width] of modelled cycles. Raises ValueError unless the array has two dimensions and its
+/// elements are integers of 0 or more.
 CostImage cost_image_of(const py::array& cost);
 
 }  // namespace raya

@@ -26,7 +26,7 @@ namespace {
 
 using OptionalNumber = std::optional<std::uint32_t>;
 
-// Returns the mapping that these options of `raya render` select. Invalid values give the same messages as there.
+// Returns the mapping that these options of `raya render` select. Throws UserError with the messages of `raya render`.
 raya_mapping mapping_of(const ImageSize& size, const std::string& mapping, OptionalNumber offset,
                         const std::string& fold, OptionalNumber pes) {
     if (is_dynamic(mapping))
@@ -63,17 +63,17 @@ py::array loads(const py::array& costs, const std::string& mapping, OptionalNumb
 py::array imbalances(const py::array& costs, std::uint32_t pes, const std::vector<std::uint32_t>& offsets,
                      const std::string& fold) {
     const CostImage cost = cost_image_of(costs);
-    std::vector<double> u;
+    std::vector<double> imbalance_by_offset;
     {
-        const py::gil_scoped_release free;
-        u = imbalance_of_offsets(cost, pes, parse_fold(fold) == Fold::kBlock ? RAYA_FOLD_BLOCK : RAYA_FOLD_CYCLIC,
-                                 offsets);
+        const py::gil_scoped_release no_gil;
+        imbalance_by_offset = imbalance_of_offsets(
+            cost, pes, parse_fold(fold) == Fold::kBlock ? RAYA_FOLD_BLOCK : RAYA_FOLD_CYCLIC, offsets);
     }
-    return copy_of(u);
+    return copy_of(imbalance_by_offset);
 }
 
-// If there are at most as many PEs as slots (image columns), every PE owns whole slots. To save time, the loads of the
-// slots are then computed once per offset. They form an image of one row, whose columns are mapped to the PEs.
+// If there are at most as many PEs as slots (image columns), every PE owns whole slots. speedups() then saves time: it
+// computes the loads of the slots once per offset, as an image of one row, and maps the columns of this row to the PEs.
 py::array speedups(const py::array& costs, const std::vector<std::uint32_t>& pes,
                    const std::vector<std::uint32_t>& offsets, const std::string& fold) {
     const CostImage cost = cost_image_of(costs);
@@ -114,11 +114,10 @@ py::dict schedule(const py::array& costs, const std::string& plan, const std::st
 }
 
 // Returns the number of rotations that bring each PE the neighbours of its pixels once from each of the four sides, if
-// each PE sends all its pixels in every rotation. To save time, this function uses at most two rows: if every slot
-// belongs to one PE, only the pairs of slots to which neighbouring pixels belong matter, and two rows of the image have
-// the same pairs as all rows: a row has all horizontal pairs (s, s + 1 mod W) except the pair of its last and its first
-// pixel. For an offset p > 0 different pairs are missing in two successive rows; for p = 0 the same pair is missing in
-// all rows.
+// each PE sends all its pixels in every rotation. If every slot belongs to one PE, the number depends only on the pairs
+// of slots that own neighbouring pixels. Two rows of the image have the same pairs as all rows, so that two rows are
+// enough. Proof for horizontal neighbours: a row has all pairs (s, s + 1 mod W) except the pair of its last and first
+// pixel. For an offset p > 0, successive rows miss different pairs; for p = 0, all rows miss the same pair.
 std::uint64_t neighbour_rotations(raya_mapping mapping) {
     if (raya_has_slots(mapping) && mapping.pes <= mapping.width) mapping.height = std::min(mapping.height, 2u);
     std::uint64_t rotations = 0;
@@ -144,9 +143,9 @@ std::uint32_t pixels_of_largest_share(std::uint32_t width, std::uint32_t height,
     return largest_share(mapping_of({width, height}, mapping, offset, fold, pes));
 }
 
-// Computes modelled times of the SPA for every offset of the cyclic mapping: of the busiest PE in each pass, of
-// filtering and comparing neighbouring pixels, and of the rotations that bring the neighbouring pixels. Broadcast and
-// gather are not included. `trace`, `supersample`: cycles of each pixel in the two passes, [H, W].
+// Computes modelled times of the SPA for every offset of the cyclic mapping: the time of the busiest PE in each pass,
+// of filtering and comparing neighbouring pixels, and of the rotations that bring the neighbouring pixels. Excludes the
+// times of broadcast and gather. `trace`, `supersample`: cycles of each pixel in the two passes, [H, W].
 py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::string& antialias,
                       const std::optional<py::array>& supersample) {
     const CostImage trace_cost = cost_image_of(trace);
@@ -192,7 +191,7 @@ py::array reference_image(const Scene& scene, std::uint32_t size, int bounces, i
     const auto side = static_cast<int>(size);
     reference::Image image;
     {
-        const py::gil_scoped_release free;
+        const py::gil_scoped_release no_gil;
         image = reference::render(scene, {.width = side, .height = side, .bounces = bounces, .threads = threads});
     }
     py::array_t<double> array({side, side, 3});
@@ -271,8 +270,8 @@ void add_loads(py::module_& module) {
                          "Number of rotations of the ring that bring each PE the neighbours of its pixels from all "
                          "four sides, if every PE sends all its pixels in each rotation.");
     add_mapping_function("exchange_rotations", exchange_rotations,
-                         "Number of rotations as rotations() returns it, but counted by the renderer's own function "
-                         "over all rows of the image.");
+                         "The same number as rotations() returns, counted by the renderer's function over all rows of "
+                         "the image.");
     add_mapping_function("largest_share", pixels_of_largest_share,
                          "Number of pixels of the PE that owns the most pixels.");
     module.def("loads", loads, py::arg("cost"), py::arg("mapping") = "", py::arg("offset") = py::none(),
@@ -285,7 +284,7 @@ void add_loads(py::module_& module) {
     module.def(
         "speedups", speedups, py::arg("cost"), py::arg("pes"), py::arg("offsets"), py::arg("fold") = "cyclic",
         "float64 [n]: sum / max of the loads with the cyclic mapping, for each number of PEs pes[i] with the offset "
-        "offsets[i]. If offsets has one element, it is the offset for all.");
+        "offsets[i]. If offsets has one element, it is the offset for all numbers of PEs.");
     module.def(
         "schedule", schedule, py::arg("cost"), py::arg("plan"), py::arg("mapping") = "", py::arg("offset") = py::none(),
         py::arg("fold") = "", py::arg("pes") = py::none(),
@@ -317,8 +316,8 @@ void add_loads(py::module_& module) {
                "uint32 [nodes, 6]: the node at the other end of each link +x, -x, +y, -y, +z, -z of each node of a 3-D "
                "torus of nodes = (I, J, K).");
     module.def("machines", all_machines,
-               "Returns all machines, as a list of dicts. A value of None: pes: one PE per image column; "
-               "pe_memory_bytes: no limit; a rate: unknown.");
+               "Returns all machines, as a list of dicts. None means: for pes, one PE per image column; for "
+               "pe_memory_bytes, no limit; for a rate, unknown.");
     module.def("reference", reference_image, py::arg("scene"), py::arg("size"), py::arg("bounces") = 8,
                py::arg("threads") = 2,
                "float64 [size, size, 3]: linear red, green and blue of the image of the double-precision reference.");

@@ -1,4 +1,4 @@
-// The Python module raya._engine: renders, scenes and loads as numpy arrays. The package in raya/ imports it.
+// The Python module raya._engine, which loads and renders scenes and models loads. The package in raya/ imports it.
 #include "host/base/module.hpp"
 
 #include <dlfcn.h>
@@ -14,8 +14,8 @@
 
 namespace {
 
-// Returns the path of this shared object. raya's other modules are in the same folder, not in that of the Python
-// interpreter.
+// Returns the path of this shared object. raya searches for its shared libraries in the folder of this file, not in the
+// folder of the Python interpreter.
 std::filesystem::path this_module_file() {
     Dl_info info{};
     ::dladdr(reinterpret_cast<void*>(&this_module_file), &info);
@@ -36,7 +36,7 @@ PYBIND11_MODULE(_engine, module) {
         "A part of the scene does not fit into the memory of a PE or node.";
     pybind11::register_exception<DeviceError>(module, "DeviceError", PyExc_RuntimeError).doc() =
         "The OpenCL device was not found or failed.";
-    // Number of words that each node sends to the host in each superstep.
+    // Number of 32-bit words that each torus node sends to the host in each superstep.
     module.attr("STATUS_WORDS") = std::uint32_t{RAYA_STATUS_WORDS};
     module.attr("__version__") = raya_version();
     add_scenes(module);

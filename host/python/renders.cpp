@@ -50,7 +50,7 @@ py::array cost_of(const py::object& self) {
     return cost_array(*phase.recorded_cost, self);
 }
 
-// Returns a dict with figure(phase) for each phase, by the phase's name. `property`: name for messages.
+// Returns a dict of figure(phase) by the phase's name. `property`: name of the Result's property, for messages.
 template <class Figure>
 py::dict by_phase(const py::object& self, const char* property, Figure figure) {
     py::dict figures;
@@ -66,7 +66,7 @@ py::dict costs_of(const py::object& self) {
     });
 }
 
-// Names of the events, in the order of kernels/shared/events.h.
+// Names of the counted events, in the order of kernels/shared/events.h.
 constexpr const char* kEvents[RAYA_EVENTS] = {"primary",       "primary_hits", "reflected",    "refracted",
                                               "shadow",        "shadow_hits",  "sphere_tests", "plane_tests",
                                               "polygon_tests", "cone_tests",   "shaded",       "lit",

@@ -127,12 +127,12 @@ void add_scenes(py::module_& module) {
             "random_view", random_view, py::arg("seed"),
             "Returns the scene seen from a random eye: at the same distance from the target, 5 to 75 degrees above the "
             "target.")
-        .def("turned", turned_scene, py::arg("degrees"), "Returns the scene with the eye rotated around the target.")
+        .def("turned", turned_scene, py::arg("degrees"), "Returns the scene with the eye turned around the target.")
         .def("without_lights", without_lights,
              "Returns the scene without lights, for which the kernels trace no shadow rays.")
         .def("scattered", scattered, py::arg("seed"),
              "Returns the scene with a random centre for each sphere. Every sphere lies in the cube [-1, 1]^3.")
-        .def("moved_within", moved_within,
+        .def("moved_into_voxels", moved_into_voxels,
              "Returns the scene with each sphere moved so that it lies inside the voxel that contains its centre. The "
              "cube [-1, 1]^3 has 4 x 4 x 4 voxels; radii must be less than half a voxel's side.")
         .def("touching_walls", touching_walls,

@@ -21,32 +21,32 @@
 namespace raya {
 namespace {
 
-// Saves Python's signal handlers and restores them in the destructor, because drivers replace signal handlers (LLVM in
+// Saves Python's signal handlers and restores them in the destructor, because OpenCL drivers replace them (the LLVM in
 // PoCL does).
 class SignalHandlers {
   public:
     SignalHandlers() {
-        for (int signal = 1; signal < 32; ++signal) ::sigaction(signal, nullptr, &before_[signal]);
+        for (int signal = 1; signal < 32; ++signal) ::sigaction(signal, nullptr, &saved_handlers_[signal]);
     }
     ~SignalHandlers() {
-        for (int signal = 1; signal < 32; ++signal) ::sigaction(signal, &before_[signal], nullptr);
+        for (int signal = 1; signal < 32; ++signal) ::sigaction(signal, &saved_handlers_[signal], nullptr);
     }
     SignalHandlers(const SignalHandlers&) = delete;
     SignalHandlers& operator=(const SignalHandlers&) = delete;
 
   private:
-    struct sigaction before_[32]{};
+    struct sigaction saved_handlers_[32]{};
 };
 
-// Chooses a device with a larger default stack size for new threads: PoCL creates its threads when devices are queried,
-// and puts the private memory of a work-group on their stacks (host/cl/driver.cpp).
+// Calls choose_device() with a larger default stack size for new threads. PoCL creates its threads in this call and
+// puts the private memory of a work-group on their stacks (host/cl/driver.cpp).
 cl::Device choose_device_with_stacks(const std::string& name) {
-    pthread_attr_t before, large;
-    ::pthread_getattr_default_np(&before);
-    ::pthread_attr_init(&large);
-    ::pthread_attr_setstacksize(&large, std::size_t{128} << 20);
-    ::pthread_setattr_default_np(&large);
-    const auto restore = [&] { ::pthread_setattr_default_np(&before); };
+    pthread_attr_t saved_attributes, large_stack;
+    ::pthread_getattr_default_np(&saved_attributes);
+    ::pthread_attr_init(&large_stack);
+    ::pthread_attr_setstacksize(&large_stack, std::size_t{128} << 20);
+    ::pthread_setattr_default_np(&large_stack);
+    const auto restore = [&] { ::pthread_setattr_default_np(&saved_attributes); };
     try {
         cl::Device device = choose_device(name);
         restore();
@@ -78,8 +78,8 @@ RenderCommand parse_options(CLI::App& program, const py::dict& options) {
     return command;
 }
 
-// If the option `name` has the value True, removes the option from `options` and returns true. Used for `cost` and
-// `packets`: True stores the arrays in the Result; a text names the file to which they are written.
+// If the option `name` has the value True, removes the option from `options` and returns true. For `cost` and
+// `packets`, True stores the arrays in the Result; any other value is the name of the file for the arrays.
 bool takes_true(py::dict& options, const char* name) {
     if (!options.contains(name) || options[name].ptr() != Py_True) return false;
     options.attr("pop")(name);
@@ -135,14 +135,14 @@ void add_study_settings(py::module_& module) {
 }
 
 PythonSession& PythonSession::shared(const std::string& device) {
-    // Never destroyed, because drivers may be unloaded before the program destroys static objects.
+    // The map is never destroyed, because drivers may be unloaded before the program destroys static objects.
     static auto* const sessions = new std::map<std::string, PythonSession>;
     const SignalHandlers handlers;
     return sessions->try_emplace(device, device).first->second;
 }
 
-std::shared_ptr<Render> PythonSession::render(const Scene& scene, const py::dict& given, const py::object& progress) {
-    py::dict options(given.attr("copy")());
+std::shared_ptr<Render> PythonSession::render(const Scene& scene, const py::dict& kwargs, const py::object& progress) {
+    py::dict options(kwargs.attr("copy")());
     const bool stores_costs = takes_true(options, "cost"), stores_packets = takes_true(options, "packets");
     const PixelSubset pixels = pixels_of(options);
     CLI::App program;
@@ -153,11 +153,11 @@ std::shared_ptr<Render> PythonSession::render(const Scene& scene, const py::dict
     command.keep_packets = stores_packets;
     command.summary = command.prints_profile = false;
     command.progress = [&progress](double fraction) {
-        const py::gil_scoped_acquire python;
+        const py::gil_scoped_acquire gil;
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         if (!progress.is_none()) progress(fraction);
     };
-    const py::gil_scoped_release free;
+    const py::gil_scoped_release no_gil;
     const std::lock_guard lock(mutex_);
     const SignalHandlers handlers;
     RenderRun run(command, SceneInput{scene, {}, {}}, device_, session_);

@@ -17,7 +17,7 @@ namespace raya {
 /// An open device with the OpenCL programs built for it. Renders from several threads run one after another.
 class PythonSession {
   public:
-    /// Opens the device that `device` selects, as the option --device. Throws DeviceError.
+    /// Opens the device that `device` selects, as the option --device does. Throws DeviceError.
     explicit PythonSession(const std::string& device);
 
     const DeviceInfo& info() const { return session_.device(); }
@@ -27,7 +27,7 @@ class PythonSession {
     /// called with the completed fraction, 0..1. Throws UserError, DeviceError.
     std::shared_ptr<Render> render(const Scene& scene, const py::dict& options, const py::object& progress);
 
-    /// Returns the session of renders without a session argument. There is one such session for each value of `device`.
+    /// Returns the session of render() calls without a session argument: one session for each value of `device`.
     static PythonSession& shared(const std::string& device);
 
   private:

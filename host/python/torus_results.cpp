@@ -53,8 +53,8 @@ py::dict supersteps_of(const Result& r) {
     return arrays;
 }
 
-// Modelled times of the root node, as in torus_time(): the time of its processor, which computes and handles all
-// messages over the root's links, and the time of the root's busiest link.
+// Returns modelled times of the root node, computed as in torus_time(): the time of its processor, which computes and
+// handles all messages over the root's links, and the time of the root's busiest link.
 py::dict root_times(const Result& r) {
     const TorusResult& result = torus_of(*r, "root");
     const raya_torus& torus = r->torus_settings->torus;
@@ -62,11 +62,11 @@ py::dict root_times(const Result& r) {
     double link_ms = 0;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
         const std::uint32_t end = raya_link_end(torus, RAYA_ROOT, link);
-        const std::size_t out = std::size_t{RAYA_ROOT} * RAYA_LINKS + link;
-        const std::size_t in = std::size_t{end} * RAYA_LINKS + (link ^ 1u);
-        cycles += t805_message_cycles(result.link_packets[out], result.link_words[out]) +
-                  t805_message_cycles(result.link_packets[in], result.link_words[in]);
-        link_ms = std::max(link_ms, t805_link_ms(result.link_words[out], result.link_words[in]));
+        const std::size_t sent = std::size_t{RAYA_ROOT} * RAYA_LINKS + link;
+        const std::size_t received = std::size_t{end} * RAYA_LINKS + (link ^ 1u);
+        cycles += t805_message_cycles(result.link_packets[sent], result.link_words[sent]) +
+                  t805_message_cycles(result.link_packets[received], result.link_words[received]);
+        link_ms = std::max(link_ms, t805_link_ms(result.link_words[sent], result.link_words[received]));
     }
     py::dict times;
     times["processor_ms"] = t805_ms(cycles);
@@ -84,10 +84,10 @@ py::dict node_memory(const Result& r) {
     const TorusResult& result = torus_of(*r, "node_memory");
     const std::uint32_t links = links_of_node(r->torus_settings->torus);
     const std::uint64_t scene = result.node_bytes - node_bytes(0, result.buffers, links);
-    const std::uint32_t shortest = raya_min_queue(r->lights, r->torus_settings->bounces);
+    const std::uint32_t min_queue = raya_min_queue(r->lights, r->torus_settings->bounces);
     py::dict bytes;
     bytes["scene"] = scene;
-    bytes["shortest"] = scene + node_bytes(0, buffers_for(shortest), links);
+    bytes["shortest"] = scene + node_bytes(0, buffers_for(min_queue), links);
     bytes["used"] = result.node_bytes;
     return bytes;
 }
@@ -121,7 +121,7 @@ AsyncMachine async_machine(const py::kwargs& changes) {
 
 double simulated_ms(const Result& r, const py::kwargs& changes) {
     const AsyncMachine machine = async_machine(changes);
-    const py::gil_scoped_release free;
+    const py::gil_scoped_release no_gil;
     return simulate(r->torus_settings->torus, history_of(*r), machine).finish_ms;
 }
 
@@ -157,8 +157,8 @@ void add_torus_results(py::module_& module, ResultClass& result) {
         .def_property_readonly("work_ms", work_ms, "Modelled ms of computation, summed over all nodes of the torus.")
         .def_property_readonly(
             "node_memory", node_memory,
-            "dict: bytes of memory of the node with the most objects' words: 'scene' for its part of the scene alone, "
-            "'shortest' including the shortest possible buffers, 'used' including the buffers of this render.")
+            "dict: bytes of memory of the node whose part of the scene is largest: 'scene' for this part alone, "
+            "'shortest' with the shortest possible buffers, 'used' with the buffers of this render.")
         .def_property_readonly("packets", packets_of,
                                "Structured array of the packets between nodes: superstep, source, destination, kind "
                                "(index of PACKET_KINDS), words, pixel. Empty unless rendered with packets=True.")
@@ -185,10 +185,11 @@ void add_torus_results(py::module_& module, ResultClass& result) {
             "uint64 [S, nodes, 6]: number of words that each node sends over each link in each superstep. Empty unless "
             "rendered with packets=True.")
         .def("simulate", simulated_ms,
-             "Modelled ms of the torus without supersteps. Keyword arguments change the machine: message_cycles and "
-             "word_cycles (cycles of the processor per message and per word), one_way and both_ways (rate of a link in "
-             "bytes/s if one direction or both directions transfer; 0: transfers take no time), buffer (number of "
-             "rays, and of returns, that an output thread holds). Raises ValueError unless rendered with async_=True.")
+             "Modelled ms that the torus takes without supersteps. Keyword arguments change the machine: "
+             "message_cycles and word_cycles (cycles of the processor per message and per word), one_way and both_ways "
+             "(rate of a link in bytes/s if one direction or both directions transfer; 0: transfers take no time), "
+             "buffer (number of rays, and of returns, that an output thread holds). Raises ValueError unless rendered "
+             "with async_=True.")
         .def("write_replay", write_replay, py::arg("platform"), py::arg("replay"),
              "Writes the machine to the file `platform` and the history of messages to the file `replay`, for SimGrid "
              "(docs/packets.md). Takes the keyword arguments of simulate(). Returns the number of messages.");

@@ -106,10 +106,10 @@ std::unique_ptr<Ranks> open_ranks() {
     if (launch->count && *launch->count != ranks->count()) {
         const std::string library = ranks->library();
         ranks->close(0);
-        throw UserError(fmt::format(
-            "started as one of {} processes, but {}, with which raya was built, has {}; remedy: use the mpirun of that "
-            "MPI",
-            *launch->count, library, ranks->count()));
+        throw UserError(
+            fmt::format("started as one of {} processes, but {}, with which raya was built, reports {}; remedy: use "
+                        "the mpirun of that MPI",
+                        *launch->count, library, ranks->count()));
     }
     if (!ranks->has_several()) {
         ranks->close(0);

@@ -16,7 +16,7 @@ struct Launch {
     std::optional<std::uint32_t> count;  // number of ranks; empty if the launcher does not set it
 };
 
-/// Return the environment's Launch, or empty if no launcher has started this process. find_launch() reads environment
+/// Return rank and number of ranks, or empty if no launcher has started this process. find_launch() reads environment
 /// variables with std::getenv. launch_from() reads them with `get_variable`, which returns nullptr for an unset
 /// variable.
 std::optional<Launch> launch_from(const std::function<const char*(const char*)>& get_variable);

@@ -11,7 +11,7 @@
 
 namespace raya {
 
-/// One-way time of a message: the minimum of many measurements, because other load can only increase the time.
+/// One-way time of a message: the minimum of many measurements, because other programs can only increase the time.
 struct MessageTime {
     std::uint64_t bytes = 0;  // length of the message
     double seconds = 0;
@@ -36,7 +36,7 @@ struct RankPlace {
     std::uint32_t cores = 0;    // number of cores of the host
 };
 
-/// Returns the place of this process. `host`: name of the process's host, which the result contains.
+/// Returns the place of this process. `host`: name of the host, which is copied to the result.
 RankPlace place_of_this_process(const std::string& host);
 
 /// Result of ping().
@@ -45,7 +45,7 @@ struct PingReport {
     std::vector<RankPlace> ranks;       // [rank]
     std::uint32_t partner = 0;          // lowest rank on another host than rank 0; 1 if there is none
     std::vector<MessageTime> messages;  // times of messages between rank 0 and the partner
-    std::vector<MessageTime> gathers;   // times of all-gathers as in a torus superstep; bytes: of each rank
+    std::vector<MessageTime> gathers;   // times of all-gathers as in a torus superstep; `bytes`: length from each rank
     Network network;                    // fitted to `messages`
 
     Json json() const;

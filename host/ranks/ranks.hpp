@@ -71,7 +71,7 @@ class Ranks {
     std::vector<T> all_gather(const T& own_element) {
         return all_gather(std::span(&own_element, 1), std::vector<std::size_t>(count_, 1));
     }
-    /// Needs no message for the sizes, because the caller passes them. sizes[rank]: number of elements of the rank.
+    /// This overload sends no sizes, because the caller passes them. sizes[rank]: number of elements of the rank.
     template <Sendable T>
     std::vector<T> all_gather(std::span<const T> own_elements, std::vector<std::size_t> sizes) {
         std::size_t total_elements = 0;
@@ -80,7 +80,7 @@ class Ranks {
         gather_bytes(std::as_bytes(own_elements), std::as_writable_bytes(std::span(gathered)), sizes);
         return gathered;
     }
-    /// Collective: returns the elements of all ranks in rank 0, and an empty vector in other ranks. For large data.
+    /// Collective: returns the elements of all ranks in rank 0, and an empty vector in other ranks. Suits large data.
     template <Sendable T>
     std::vector<T> gather(std::span<const T> own_elements, const std::vector<std::size_t>& sizes) {
         if (!is_first()) {
@@ -134,7 +134,7 @@ class Ranks {
     /// With a single rank, prints the error and returns the code.
     int fail(const std::string& text, int code);
 
-    /// Prints a failure that another rank has reported, and ends all ranks with its exit code.
+    /// Prints a failure that another rank has reported, and ends all ranks with the failure's exit code.
     int fail(const RankFailure& failure);
 
     /// Collective: closes the transport and returns the maximum of all exit codes.

@@ -46,8 +46,8 @@ inline double failure_delay_s(std::uint32_t rank) {
     return std::min(kDelayPerRank_s * rank, kMaxDelay_s);
 }
 
-/// Transfer of bytes between ranks. All ranks must make the same collective calls in the same order, each from one
-/// thread. A call that waits longer than a time limit throws RankFailure.
+/// Transfer of bytes between ranks. All ranks must make the same collective calls in the same order. Each rank must
+/// make its calls from one thread. A call that waits longer than a time limit throws RankFailure.
 class Transport {
   public:
     virtual ~Transport() = default;

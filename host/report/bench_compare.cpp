@@ -26,7 +26,7 @@ const BenchMeasurement* find_row(const Rows& rows, const BenchMeasurement& wante
 /// Returns the change of a rate in percent.
 double percent_change(double before, double now) { return 100 * (now / before - 1); }
 
-std::string percent(double value) { return fmt::format("{:+.1f} %", value); }
+std::string change_cell(double value) { return fmt::format("{:+.1f} %", value); }
 
 std::vector<std::string> key_cells(const BenchMeasurement& row) {
     return {row.kernel, row.scene, row.size, row.format, std::to_string(row.lanes), std::to_string(row.group_size)};
@@ -37,26 +37,26 @@ std::vector<std::string> joined(std::vector<std::string> first, const std::vecto
     return first;
 }
 
-std::string rate(double value) { return fmt::format("{:.1f}", value); }
+std::string rate_cell(double value) { return fmt::format("{:.1f}", value); }
 
 /// Returns the verdict on a row that both runs have, and counts the row in `comparison`.
 std::string verdict(BenchComparison& comparison, const BenchMeasurement& before, const BenchMeasurement& now,
                     double tolerance) {
-    const double best = percent_change(before.best_rate(), now.best_rate());
-    const double median = percent_change(before.median_rate(), now.median_rate());
+    const double best_change = percent_change(before.best_rate(), now.best_rate());
+    const double median_change = percent_change(before.median_rate(), now.median_rate());
     ++comparison.compared;
     if (now.hash != before.hash) {
         ++comparison.other_images;
         return fmt::format("OTHER IMAGE: {}, was {}", now.hash.substr(0, 8), before.hash.substr(0, 8));
     }
-    if (std::max(best, median) < -tolerance) {
+    if (std::max(best_change, median_change) < -tolerance) {
         ++comparison.slower;
         return "SLOWER";
     }
-    return std::min(best, median) > tolerance ? "faster" : "as before";
+    return std::min(best_change, median_change) > tolerance ? "faster" : "as before";
 }
 
-/// Adds a remark and a warning if the texts of the two runs differ.
+/// Adds a remark and a warning if the two runs have different texts for `property`.
 void add_difference(BenchComparison& comparison, const char* property, const std::string& before,
                     const std::string& now) {
     if (before == now) return;
@@ -94,22 +94,22 @@ BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& no
             before == nullptr ? "not in the baseline" : verdict(comparison, *before, row, tolerance);
         comparison.rows.push_back(row_json(before, &row, verdict_text));
         if (before == nullptr) {
-            table.push_back(joined(key_cells(row),
-                                   {rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", "-", verdict_text}));
+            table.push_back(joined(key_cells(row), {rate_cell(row.best_rate()), "-", "-", rate_cell(row.median_rate()),
+                                                    "-", "-", verdict_text}));
             continue;
         }
-        table.push_back(
-            joined(key_cells(row), {rate(row.best_rate()), rate(before->best_rate()),
-                                    percent(percent_change(before->best_rate(), row.best_rate())),
-                                    rate(row.median_rate()), rate(before->median_rate()),
-                                    percent(percent_change(before->median_rate(), row.median_rate())), verdict_text}));
+        table.push_back(joined(key_cells(row),
+                               {rate_cell(row.best_rate()), rate_cell(before->best_rate()),
+                                change_cell(percent_change(before->best_rate(), row.best_rate())),
+                                rate_cell(row.median_rate()), rate_cell(before->median_rate()),
+                                change_cell(percent_change(before->median_rate(), row.median_rate())), verdict_text}));
     }
     for (const BenchMeasurement& row : baseline.rows) {
         if (find_row(now.rows, row) != nullptr) continue;
         const std::string verdict_text = "in the baseline alone";
         comparison.rows.push_back(row_json(&row, nullptr, verdict_text));
-        table.push_back(
-            joined(key_cells(row), {"-", rate(row.best_rate()), "-", "-", rate(row.median_rate()), "-", verdict_text}));
+        table.push_back(joined(key_cells(row), {"-", rate_cell(row.best_rate()), "-", "-", rate_cell(row.median_rate()),
+                                                "-", verdict_text}));
     }
     comparison.text += text_table(table);
     return comparison;

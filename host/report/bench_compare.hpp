@@ -22,9 +22,9 @@ struct BenchComparison {
 int rows_in_common(const BenchReport& baseline, const BenchReport& now);
 
 /// Compares `now` with `baseline`. A row counts as slower if both its best and its median rate are lower by more than
-/// `tolerance` percent. A slower kernel lowers both rates, whereas other programs often lower only one. A different
-/// image is a failure regardless of the rates. A different device, driver or version of raya causes a warning. The
-/// table also lists rows that only one run has.
+/// `tolerance` percent. A slower kernel lowers both rates, whereas other programs on the device often lower only one. A
+/// different image is a failure regardless of the rates. A different device, driver or version of raya causes a
+/// warning. The table also lists rows that only one run has.
 BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& now, double tolerance);
 
 }  // namespace raya

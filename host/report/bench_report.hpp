@@ -22,7 +22,7 @@ struct BenchMeasurement {
     std::uint64_t rays = 0;              // number of rays of one image
     double best_s = 0, median_s = 0;     // seconds per image, > 0: kernel time on the device, or host time of a render
     int samples = 0;                     // number of samples
-    std::string hash;                    // image hash
+    std::string hash;                    // of the image
     std::string build_options = {};      // options passed to the compiler
     std::optional<Roofline> roofline{};  // one row, of the best sample; empty: the peak was not measured
 
@@ -34,8 +34,8 @@ struct BenchMeasurement {
 struct BenchBuild {
     std::string kernel, variant, format;  // kernel file; variant that uses the program; number format
     std::uint32_t lanes = 0;
-    double build_s = 0;   // time of compilation
-    double launch_s = 0;  // time of the first launch of each kernel
+    double build_s = 0;   // seconds of compilation
+    double launch_s = 0;  // seconds of the first launches, summed over the program's kernels
     std::size_t binary_bytes = 0;
     std::string build_options{};
 };

@@ -62,10 +62,10 @@ struct RenderReport {
     struct {
         std::string name, topology;
         std::string mapping;              // "cyclic", "column", "rows", "blocks"; or with parameters: "grid:16x16"
-        std::optional<std::string> fold;  // of a mapping with slots
+        std::optional<std::string> fold;  // empty: the mapping has no slots
         std::string format;
         std::uint32_t pes = 0;
-        std::optional<std::uint32_t> offset;  // p of a mapping with slots
+        std::optional<std::uint32_t> offset;  // p; empty: the mapping has no slots
         std::uint32_t bounces = 0;
         int length_exponent = 0;  // lengths of the scene are multiplied by 2^this (host/scene/length_scale.hpp)
         std::uint64_t pe_memory_bytes = 0;  // 0: no limit
@@ -79,9 +79,9 @@ struct RenderReport {
     } device;
 
     EventCounts events{};
-    std::optional<std::uint64_t> requests;            // pixel requests, if dynamic scheduling was simulated
-    Load load;                                        // sum of the loads of all phases
-    std::vector<std::pair<std::string, Load>> loads;  // [phase]: name, load
+    std::optional<std::uint64_t> requests;            // number of pixel requests; empty: scheduling was static
+    Load load;                                        // loads summed over all phases
+    std::vector<std::pair<std::string, Load>> loads;  // name and load of each phase
     std::optional<Antialiasing> antialias;
     std::optional<AccelSummary> accel;  // empty: no accelerator
     Communication communication;
@@ -95,17 +95,15 @@ struct RenderReport {
         std::vector<LabelSummary> commands;
         std::vector<ProgramBuild> builds{};  // `builds` and `roofline`: only with --profile or --page
         std::optional<Roofline> roofline{};
-        double earlier_s = 0;  // part of render_s spent in earlier runs, from whose checkpoint this run resumed
+        double earlier_s = 0;  // part of render_s: earlier runs, from whose checkpoint this run resumed
     } measured;
 };
 
 /// Value of the member "kind", which identifies the report.
 inline constexpr const char* kRenderReportKind = "raya render";
 
-/// Returns the number of rays of all kinds.
+/// Return the number of rays, and of intersection tests, of all kinds.
 std::uint64_t ray_count(const EventCounts& events);
-
-/// Returns the number of intersection tests of all kinds.
 std::uint64_t test_count(const EventCounts& events);
 
 /// Returns the report as JSON. docs/report.md documents the members. Later versions may add members, but do not remove

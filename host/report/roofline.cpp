@@ -61,12 +61,13 @@ std::vector<std::string> cells_of(const RooflineRow& r) {
 
 std::string peak_lines(const DevicePeak& p) {
     return fmt::format(
-        "peak    {:.2f} Gop/s multiply-adds in fp32; in {}: {:.2f} multiply-adds, {:.2f} divisions, {:.2f} roots; "
+        "peak    {:.2f} Gop/s multiply-adds in fp32; in {}: {:.2f} multiply-adds, {:.2f} divisions, {:.2f} square "
+        "roots; "
         "{:.2f} GB/s copied\n"
         "        measured in this run by small programs; copies of {} MB, each byte counted as read and as written\n"
         "        (the table of commands counts it once)\n"
-        "op      an addition, multiplication, comparison, multiply-add, division or root in the budgets of the "
-        "counted events\n"
+        "op      an addition, multiplication, comparison, multiply-add, division or square root in the budgets of "
+        "the counted events\n"
         "MB      the minimum that the kernel has to read and write. The roof is compute above {:.2f} op/byte, "
         "otherwise bandwidth\n",
         1e-9 * p.fp32_per_s, p.format, 1e-9 * p.multiply_per_s, 1e-9 * p.divide_per_s, 1e-9 * p.sqrt_per_s,

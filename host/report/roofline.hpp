@@ -20,17 +20,17 @@ namespace raya {
 /// Total work of all launches of a kernel. The launches have the same label.
 struct KernelWork {
     std::string label;
-    std::uint64_t rays = 0;        // number of rays traced or generated
-    std::uint64_t operations = 0;  // number of operations except divisions and square roots
-    std::uint64_t divisions = 0, roots = 0;
-    std::uint64_t bytes = 0;  // minimum number of bytes that the kernel must read and write
+    std::uint64_t rays = 0;                  // number of rays traced or generated
+    std::uint64_t operations = 0;            // number of operations except divisions and square roots
+    std::uint64_t divisions = 0, roots = 0;  // roots: square roots
+    std::uint64_t bytes = 0;                 // minimum number of bytes that the kernel must read and write
     std::uint64_t all_operations() const { return operations + divisions + roots; }
 };
 
 /// Returns the rays and operations of these events. The caller must set `bytes`.
 KernelWork work_of(const std::string& label, const EventCounts& events);
 
-/// The lower of the two roofs.
+/// The lower of a kernel's two roofs.
 enum class Bound { kCompute, kBandwidth };
 
 /// One kernel's rate compared with the device's peak.
@@ -46,7 +46,7 @@ struct RooflineRow {
 struct Roofline {
     DevicePeak peak{};
     std::vector<RooflineRow> rows{};
-    std::string unavailable{};  // reason why there is no roofline; empty: there is a roofline
+    std::string unavailable{};  // reason why there is no roofline; empty: there is one
 };
 
 /// Returns a row for each kernel of `works` that `commands` contains with a time > 0; no rows if the peak is unknown.

@@ -42,10 +42,10 @@ Json format_json(const FormatFit& f) {
     return {{"format", f.format},
             {"fits", f.refusal.empty()},
             {"length_exponent", f.scale.exponent},
-            {"largest", f.scale.largest},
-            {"smallest", f.scale.smallest},
+            {"largest", f.scale.largest_length},
+            {"smallest", f.scale.smallest_length},
             {"least_seen", f.scale.min_visible},
-            {"vanishing", f.scale.vanishing},
+            {"vanishing", f.scale.vanishing_count},
             {"refusal", f.refusal.empty() ? Json() : Json(f.refusal)}};
 }
 
@@ -127,9 +127,9 @@ std::string format_text(const FormatFit& f) {
     if (!f.refusal.empty()) return f.refusal;
     std::string text = f.format + ": ";
     text += f.scale.exponent == 0 ? "lengths unchanged" : fmt::format("lengths x 2^{}", f.scale.exponent);
-    if (f.scale.vanishing > 0)
-        text += fmt::format(", {} spheres, cones or checkers smaller than {:.3g} are not visible", f.scale.vanishing,
-                            f.scale.min_visible);
+    if (f.scale.vanishing_count > 0)
+        text += fmt::format(", {} spheres, cones or checkers smaller than {:.3g} are not visible",
+                            f.scale.vanishing_count, f.scale.min_visible);
     return text;
 }
 

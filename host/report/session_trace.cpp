@@ -22,17 +22,17 @@ class DeviceTimes {
         : shift_(offset.offset_ns - static_cast<std::int64_t>(begin)) {}
 
     // Returns the later of the converted time `device_ns` and the time `not_before`.
-    std::uint64_t at(std::uint64_t device_ns, std::uint64_t not_before) {
+    std::uint64_t trace_ns(std::uint64_t device_ns, std::uint64_t not_before) {
         const std::int64_t shifted = static_cast<std::int64_t>(device_ns) + shift_;
         if (shifted >= static_cast<std::int64_t>(not_before)) return static_cast<std::uint64_t>(shifted);
-        ++moved_;
+        ++moved_count_;
         return not_before;
     }
-    std::uint64_t moved() const { return moved_; }
+    std::uint64_t moved_count() const { return moved_count_; }
 
   private:
     std::int64_t shift_;
-    std::uint64_t moved_ = 0;
+    std::uint64_t moved_count_ = 0;
 };
 
 Json arguments_of(const CommandRecord& c) {
@@ -53,7 +53,7 @@ Json arguments_of(const CommandRecord& c) {
 }
 
 // Returns the number of the first track in which no slice is open at time `start`; adds a track if there is none.
-// `busy_until`: [track - 1]: end of the track's last slice.
+// `busy_until`[track - 1]: end time of the track's last slice.
 std::uint32_t free_track(TraceFile& trace, std::uint32_t process, std::vector<std::uint64_t>& busy_until,
                          std::uint64_t start) {
     const auto found =
@@ -96,13 +96,13 @@ void add_device_commands(TraceFile& trace, const std::string& device, const Prof
     DeviceTimes times(offset, begin);
     std::vector<std::uint64_t> busy_until;
     for (const CommandRecord& c : profile.commands()) {
-        const std::uint64_t start = times.at(c.started, 0), end = times.at(c.ended, start);
+        const std::uint64_t start = times.trace_ns(c.started, 0), end = times.trace_ns(c.ended, start);
         const std::uint32_t track = free_track(trace, process, busy_until, start);
         trace.slice({process, track}, c.label, start, end, arguments_of(c));
         busy_until[track - 1] = end;
     }
     trace.metadata()["device_clock"] = clock_json(offset);
-    if (times.moved() > 0) trace.metadata()["device_times_moved"] = times.moved();
+    if (times.moved_count() > 0) trace.metadata()["device_times_moved"] = times.moved_count();
 }
 
 }  // namespace raya

@@ -33,7 +33,7 @@ struct TorusReport {
         std::uint64_t max_bytes = 0;  // bytes over the busiest link
         std::uint64_t total_bytes = 0;
         std::array<std::uint64_t, RAYA_LINKS> by_direction{};  // bytes over +x, -x, +y, -y, +z, -z links
-        std::vector<std::uint64_t> sent;                       // [node]: bytes sent
+        std::vector<std::uint64_t> sent;                       // [node]: number of bytes that the node sent
         double mean_bytes() const {
             return count > 0 ? static_cast<double>(total_bytes) / static_cast<double>(count) : 0;
         }
@@ -52,7 +52,7 @@ Json torus_json(const TorusReport& report);
 /// Returns member "modelled_ms" of the render report.
 Json torus_time_json(const TorusTime& time);
 
-/// Returns what one return packet contains: "rays" (the colour of a ray) or "terms" (one term of it).
+/// Returns what one return packet contains: "rays" (the colour of a ray) or "terms" (one term of the colour).
 const char* returns_name(const PacketCharge& packets);
 
 /// Returns the numbers of operations of all counted events on T805s (host/model/t805.hpp).

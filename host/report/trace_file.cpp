@@ -18,9 +18,9 @@ std::string json_text(const Json& json) { return json.dump(); }
 
 std::string microseconds(std::uint64_t ns) { return fmt::format("{}.{:03}", ns / 1000, ns % 1000); }
 
-std::string name_record(const char* what, TraceTrack track, const Json& arguments) {
-    return fmt::format(R"({{"ph":"M","name":"{}","pid":{},"tid":{},"args":{}}})", what, track.process, track.thread,
-                       json_text(arguments));
+std::string name_record(const char* record_name, TraceTrack track, const Json& arguments) {
+    return fmt::format(R"({{"ph":"M","name":"{}","pid":{},"tid":{},"args":{}}})", record_name, track.process,
+                       track.thread, json_text(arguments));
 }
 
 }  // namespace
@@ -79,19 +79,19 @@ void TraceFile::counter(std::uint32_t process, const std::string& name, std::uin
                     microseconds(at_ns), json_text(arguments)));
 }
 
-void TraceFile::flow(const std::string& name, TraceTrack from, std::uint64_t from_ns, TraceTrack to,
-                     std::uint64_t to_ns) {
-    check_named(from);
-    check_named(to);
-    if (to_ns < from_ns) throw std::logic_error(fmt::format("trace: flow '{}' goes back in time", name));
+void TraceFile::flow(const std::string& name, TraceTrack start_track, std::uint64_t start_ns, TraceTrack end_track,
+                     std::uint64_t end_ns) {
+    check_named(start_track);
+    check_named(end_track);
+    if (end_ns < start_ns) throw std::logic_error(fmt::format("trace: flow '{}' goes back in time", name));
     if (!reserve(2)) return;
     ++flows_;
     const auto add_end = [&](const char* phase, TraceTrack track, std::uint64_t at_ns) {
         add(fmt::format(R"({{"ph":{},"cat":"flow","name":{},"id":{},"pid":{},"tid":{},"ts":{}}})", phase,
                         json_text(name), flows_, track.process, track.thread, microseconds(at_ns)));
     };
-    add_end(R"("s")", from, from_ns);
-    add_end(R"("f","bp":"e")", to, to_ns);
+    add_end(R"("s")", start_track, start_ns);
+    add_end(R"("f","bp":"e")", end_track, end_ns);
 }
 
 void TraceFile::add(const Part& part) {
@@ -113,8 +113,8 @@ std::string TraceFile::tail() const {
 
 std::string TraceFile::finish(bool compressed) const {
     std::string_view names = names_, text = text_;
-    (text.empty() ? names : text)
-        .remove_suffix(text.empty() && names.empty() ? 0 : 2);  // no comma after the last event
+    // No comma follows the last event.
+    (text.empty() ? names : text).remove_suffix(text.empty() && names.empty() ? 0 : 2);
     const std::string beginning = head(), end = tail();
     if (!compressed) return fmt::format("{}{}{}{}", beginning, names, text, end);
     GzipText file;

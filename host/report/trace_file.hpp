@@ -51,8 +51,9 @@ class TraceFile {
     void counter(std::uint32_t process, const std::string& name, std::uint64_t at_ns,
                  const std::vector<std::pair<std::string, double>>& values);
 
-    /// Adds an arrow from the slice at time `from_ns` on track `from` to the slice at time `to_ns` on track `to`.
-    void flow(const std::string& name, TraceTrack from, std::uint64_t from_ns, TraceTrack to, std::uint64_t to_ns);
+    /// Adds an arrow from the slice at time `start_ns` on `start_track` to the slice at time `end_ns` on `end_track`.
+    void flow(const std::string& name, TraceTrack start_track, std::uint64_t start_ns, TraceTrack end_track,
+              std::uint64_t end_ns);
 
     /// Member "otherData" of the trace.
     Json& metadata() { return metadata_; }
@@ -66,7 +67,6 @@ class TraceFile {
     Part part() const { return {names_, text_, events_, left_out_}; }
     void add(const Part& part);
 
-    /// Returns the number of events in the trace.
     std::size_t events() const { return events_; }
     /// Returns the number of events that were left out because they exceeded the maximum.
     std::size_t left_out() const { return left_out_; }
@@ -82,8 +82,8 @@ class TraceFile {
     std::string tail() const;
 
     std::size_t max_events_, events_ = 0, left_out_ = 0, flows_ = 0;
-    std::map<TraceTrack, std::vector<std::uint64_t>>
-        open_;  // [track]: end times of the open slices, outer slices first
+    // [track]: end times of the open slices, outer slices first.
+    std::map<TraceTrack, std::vector<std::uint64_t>> open_;
     std::map<TraceTrack, std::uint64_t> last_start_;
     std::string names_, text_;
     Json metadata_ = Json::object();
@@ -95,9 +95,9 @@ struct TracedPe {
     std::string remark;  // "busiest", "idlest" or empty
 };
 
-/// Selects `max_count` PEs, or all if there are not more, and returns them sorted by number. A quarter of them are the
-/// busiest PEs, a quarter the idlest; of PEs with equal loads, those with lower numbers are selected. The others are
-/// evenly spaced from PE 0 on. `loads`: [PE].
+/// Selects `max_count` PEs, or all if there are not more, and returns them sorted by number. A quarter of the selected
+/// PEs are the busiest, a quarter the idlest; of PEs with equal loads, those with lower numbers are selected. The
+/// others are evenly spaced from PE 0 on. `loads`: [PE].
 std::vector<TracedPe> traced_pes(const std::vector<std::uint64_t>& loads, std::size_t max_count);
 
 /// Returns a name such as "PE 17 (busiest)". `kind`: "PE" or "node".

@@ -140,9 +140,10 @@ void Ring::take(const Buffer<float>& all_blocks, std::size_t distance) {
     move("ring.take", all_blocks, 0, front_, before_wrap, segment_.count - before_wrap);
 }
 
-void Ring::move(const char* label, const Buffer<float>& source, std::size_t first, Buffer<float>& target,
-                std::size_t at, std::size_t blocks) {
-    session_.copy(label, source, first * block_words_, target, at * block_words_, blocks * block_words_);
+void Ring::move(const char* label, const Buffer<float>& source, std::size_t first_source, Buffer<float>& target,
+                std::size_t first_target, std::size_t blocks) {
+    session_.copy(label, source, first_source * block_words_, target, first_target * block_words_,
+                  blocks * block_words_);
 }
 
 }  // namespace raya

@@ -1,5 +1,5 @@
-// Bus and ring of the machine (Kohata & Ito 1993, section on the array), modelled by labelled buffer transfers that are
-// counted, and the distribution of PEs over ranks.
+// Bus and ring of the machine (Kohata & Ito 1993, section on the array), and the distribution of PEs over ranks.
+// Labelled buffer transfers, which are counted, model the transfers of bus and ring.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -56,7 +56,7 @@ class Bus {
     void broadcast(Buffer<std::uint32_t>& target, std::span<const std::uint32_t> words);
 
     /// Sends `words` words of each row from one PE (`source`, in `pe_memory`) to another (`target`, in `blocks`). The
-    /// two buffers must be different, and source.rows must equal target.rows.
+    /// buffers must be different, and source.rows must equal target.rows.
     void send(const Buffer<float>& pe_memory, PeWords source, Buffer<float>& blocks, PeWords target, std::size_t words);
 
     /// Broadcasts `words` words of each row of one PE to all other PEs. Each device has one buffer `all_blocks`, with
@@ -106,7 +106,7 @@ class Ring {
     void rotate(RingDirection direction);
 
     /// For each PE i, copies the block of PE (i + distance) mod P from `all_blocks` into the block of PE i.
-    /// `all_blocks`: blocks that were broadcast over the bus, [PE of all ranks][rows][row_words]. Not counted.
+    /// `all_blocks`: blocks broadcast over the bus, which has counted them; [PE of all ranks][rows][row_words].
     void take(const Buffer<float>& all_blocks, std::size_t distance);
 
     /// Current blocks of the PEs of this rank's segment, [PE][rows][row_words].
@@ -116,9 +116,9 @@ class Ring {
     void rotate_within_rank(RingDirection direction);
     void send_block(RingDirection direction);
     void receive_block(RingDirection direction);
-    /// Copies `blocks` blocks. `first` is the index of the first source block, `at` that of the first target block.
-    void move(const char* label, const Buffer<float>& source, std::size_t first, Buffer<float>& target, std::size_t at,
-              std::size_t blocks);
+    /// Copies `blocks` blocks. `first_source`, `first_target`: indices of the first block in each buffer.
+    void move(const char* label, const Buffer<float>& source, std::size_t first_source, Buffer<float>& target,
+              std::size_t first_target, std::size_t blocks);
 
     Session& session_;
     Communication& communication_;

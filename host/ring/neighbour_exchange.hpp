@@ -1,5 +1,5 @@
-// Exchange of neighbours' pixels between PEs, over ring or bus. Every PE receives the blocks of the
-// PEs that own neighbours of its pixels.
+// Exchange of neighbours' pixels between PEs, over ring or bus. Every PE receives the blocks of the PEs that own
+// neighbours of its pixels.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -33,19 +33,21 @@ class NeighbourExchange {
 
     std::uint32_t band() const { return band_; }
 
-    /// Moves every pixel to the PEs that need it as a neighbour on one of `sides`, and calls `arrived` after each
+    /// Moves every pixel to the PEs that need it as a neighbour on one of `sides`, and calls `on_arrival` after each
     /// arrival of blocks that contain such neighbours. `pixels`: pixels of this rank's PEs, [PE][3][capacity]. The
     /// order of the sides is unspecified.
     void visit(const Buffer<float>& pixels, std::initializer_list<raya_u32> sides,
-               const std::function<void(const Arrival&)>& arrived);
+               const std::function<void(const Arrival&)>& on_arrival);
 
   private:
-    using Arrived = std::function<void(const Arrival&)>;
+    using ArrivalCallback = std::function<void(const Arrival&)>;
 
-    void exchange_by_rotation(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin, const Arrived& arrived);
-    void exchange_by_transfers(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin, const Arrived& arrived);
+    void exchange_by_rotation(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin,
+                              const ArrivalCallback& on_arrival);
+    void exchange_by_transfers(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin,
+                               const ArrivalCallback& on_arrival);
     void exchange_by_broadcast(const Buffer<float>& pixels, std::initializer_list<raya_u32> sides, std::uint32_t begin,
-                               const Arrived& arrived);
+                               const ArrivalCallback& on_arrival);
     std::size_t band_pixels(std::uint32_t begin) const;
 
     std::uint32_t pes_, capacity_, band_;

@@ -29,7 +29,7 @@ constexpr std::uint64_t kPixelBytes = 12;  // three colour components of 4 bytes
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
     PeMemory memory{.job_words = demand.job_words, .tree_words = kRayTreeWords + kPendingRayWords * demand.bounces};
     const bool exchanges = demand.antialias != AntialiasMethod::kNone;
-    // The number that is reduced until the memory suffices.
+    // The number of pixels that is reduced until the PE's memory suffices.
     std::uint32_t& fitted_pixels = exchanges ? memory.band_pixels : memory.block_pixels;
     if (exchanges) memory.block_pixels = demand.share_pixels;
     if (demand.antialias == AntialiasMethod::kFilter) memory.sum_pixels = demand.share_pixels;

@@ -1,4 +1,4 @@
-// Plan of a PE's memory: its contents, and the number of the PE's pixels that fit at a time. A PE of the ring machine
+// Plan of a PE's memory: the contents, and the number of the PE's pixels that fit at a time. A PE of the ring machine
 // can access only its own memory.
 #pragma once
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Checkpoints of a ring render: traces the image in bands, saves the state between bands, and resumes the render.
+// Checkpoints of a ring render: tracing the image in bands, saving the state between bands, and resuming the render.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace raya {
 namespace {
 
 constexpr std::uint32_t kFirstBands = 64;        // the first band is 1 / kFirstBands of a share
-constexpr std::uint32_t kMinPixelsPerLane = 16;  // in the first band. With fewer, some lanes would be idle
+constexpr std::uint32_t kMinPixelsPerLane = 16;  // minimum in the first band, so that no lane is idle
 
 std::string words_hash(const std::vector<std::uint32_t>& words) {
     return bytes_hash({reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});

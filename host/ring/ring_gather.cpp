@@ -142,10 +142,10 @@ void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
     for (std::size_t i = 0; i < counters_.size(); ++i) {
         std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
         session_.read("read cost", counters_[i].cycles, cycles);
-        collect(cycles, window_, [&](const PeSegment& pes, std::span<const std::uint64_t> counted) {
+        collect(cycles, window_, [&](const PeSegment& pes, std::span<const std::uint64_t> rank_cycles) {
             for_each_pixel(settings_.mapping, pes, range,
                            [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
-                               const std::uint64_t cost = counted[pe * window_ + pixel];
+                               const std::uint64_t cost = rank_cycles[pe * window_ + pixel];
                                result.phases[i].recorded_cost->cycles[image_pixel] = cost;
                                if (counters_.size() > 1) result.all.recorded_cost->cycles[image_pixel] += cost;
                            });
@@ -158,10 +158,10 @@ void RingRenderer::collect_marks(RingResult& result) {
     if (ranks_.is_first()) result.mask = black_image(settings_.mapping);
     std::vector<std::uint8_t> marks(contrast_->marks().size());
     session_.read("read marks", contrast_->marks(), marks);
-    collect(marks, window_, [&](const PeSegment& pes, std::span<const std::uint8_t> marked) {
-        const PixelRange all{0, 0, share_pixels_};
-        for_each_pixel(settings_.mapping, pes, all, [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
-            const std::uint8_t mark = marked[pe * window_ + pixel];
+    collect(marks, window_, [&](const PeSegment& pes, std::span<const std::uint8_t> rank_marks) {
+        const PixelRange share{0, 0, share_pixels_};
+        for_each_pixel(settings_.mapping, pes, share, [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
+            const std::uint8_t mark = rank_marks[pe * window_ + pixel];
             result.recomputed += mark;
             std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * image_pixel), 3,
                         static_cast<float>(mark));
@@ -174,13 +174,13 @@ void RingRenderer::collect_events(RingResult& result) {
     const auto cycles = cycles_of_events();
     std::vector<std::uint64_t> sum_loads(settings_.mapping.pes);
     for (std::size_t i = 0; i < counters_.size(); ++i) {
-        std::vector<std::uint64_t> counted(counters_[i].events.size()), loads(pes_.count), all_loads;
-        session_.read("read counters", counters_[i].events, counted);
+        std::vector<std::uint64_t> counts(counters_[i].events.size()), loads(pes_.count), all_loads;
+        session_.read("read counters", counters_[i].events, counts);
         EventCounts events{};
-        for (std::size_t n = 0; n < counted.size(); ++n) {
+        for (std::size_t n = 0; n < counts.size(); ++n) {
             const std::size_t event = n % RAYA_EVENTS, pe = n / RAYA_EVENTS / settings_.kernels.group_size;
-            events[event] += counted[n];
-            loads[pe] += cycles[event] * counted[n];
+            events[event] += counts[n];
+            loads[pe] += cycles[event] * counts[n];
         }
         if (i == 0) check_all_traced(events, settings_.mapping, pes_, session_.device());
         add_events(ranks_.all_gather(events), result.phases[i].events, result.all.events);

@@ -13,9 +13,9 @@
 namespace raya {
 namespace {
 
-// Returns true if PEs should copy the job's words into local memory. Each PE then copies them in each launch.
-// If the kernel uses an accelerator and reads only a few of many words, the copy takes longer than it saves. Returns
-// false if the words do not fit, or if the copying loop could exceed the device's limit of loop iterations.
+// Returns true if PEs should copy the job's words into local memory in each launch. Returns false if the words do not
+// fit, or if the copying loop could exceed the device's limit of loop iterations. Also returns false for many words
+// with an accelerator: the kernel then reads only a few of the words, so the copy takes longer than it saves.
 bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel) {
     constexpr std::size_t kMaxCopiedBytes = 64 * 1024;
     constexpr std::size_t kMaxCopiedWords = 4096;
@@ -57,7 +57,7 @@ RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSett
     return job;
 }
 
-// The members of a RingJob other than the job's words, as they are sent to other ranks.
+// The members of a RingJob, other than the job's words, that rank 0 sends to other ranks.
 struct RingFigures {
     AccelSummary accel;
     double accel_s = 0;
@@ -99,8 +99,8 @@ RingSettings checked_settings(RingSettings settings, const DeviceInfo& device) {
 LaunchWork launch_work(const RingSettings& settings, const KernelOptions& options, std::size_t objects,
                        std::size_t lights, std::uint32_t pes, const DeviceInfo& device) {
     if (const std::uint32_t work = settings.work_per_launch) return {work, work, work};
-    constexpr double kTestsPerLaunch = 2e8;  // a quarter of a second on two CPU cores
-    constexpr double kRaysPerPixel = 6;      // typical
+    constexpr double kTestsPerLaunch = 2e8;  // they take a quarter of a second on two CPU cores
+    constexpr double kRaysPerPixel = 6;      // typical number
     const double tests_of_ray = static_cast<double>(
         settings.accel.kind != AccelKind::kNone ? std::min(kTestsPerRay, objects) : std::max<std::size_t>(1, objects));
     const double max = max_launch_work(settings.accel.kind, tests_of_ray * static_cast<double>(1 + lights), device);

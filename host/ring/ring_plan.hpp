@@ -49,7 +49,7 @@ PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::
 RingSettings checked_settings(RingSettings settings, const DeviceInfo& device);
 
 /// Returns the work limits of a launch. A launch should take at most about a second, so that progress is shown, Ctrl-C
-/// takes effect and no GPU watchdog ends it, and it must not exceed the loop iterations that the device allows.
+/// takes effect and no GPU watchdog ends the launch. It must not exceed the loop iterations that the device allows.
 /// `objects`, `lights`: numbers of objects and lights of the scene; `pes`: number of PEs on this device.
 LaunchWork launch_work(const RingSettings& settings, const KernelOptions& options, std::size_t objects,
                        std::size_t lights, std::uint32_t pes, const DeviceInfo& device);

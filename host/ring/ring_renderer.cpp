@@ -92,7 +92,7 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const RingChec
     const SpanLog::Span rendering = session_.span("render");
     started_ = Clock::now();
     checkpointing_ = checkpointing;
-    const RankTraffic before = ranks_.traffic();
+    const RankTraffic traffic_before = ranks_.traffic();
     RingResult result;
     prepare(result);
     bus_.broadcast(broadcast_, job_.job.words());
@@ -105,13 +105,13 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const RingChec
     if (settings_.dynamic && ranks_.is_first()) simulate_schedule(result);
     result.render_s = earlier_s_ + seconds_since(started_);
     result.earlier_s = earlier_s_;
-    result.traffic = ranks_.traffic() - before;
+    result.traffic = ranks_.traffic() - traffic_before;
     gathered_ = {};
     describe(result);
     return result;
 }
 
-// Renders one block, the pixels of each PE's share that fit its memory at a time, one device window after another.
+// Renders one block (the pixels of a share that fit the PE's memory at a time), one device window after another.
 void RingRenderer::render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress) {
     const std::uint32_t end = std::min(share_pixels_, block + memory_.block_pixels);
     if (resumed_ && resumed_->window >= end) return;

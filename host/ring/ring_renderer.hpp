@@ -26,7 +26,7 @@ class RingRenderer {
   public:
     /// Packs the scene, checks that it fits a PE's memory, builds the kernels and allocates the device memory for the
     /// PEs of this rank. Only rank 0 uses `scene`. Throws UserError if the scene does not fit, a setting is out of
-    /// range or there are more ranks than PEs, and DeviceError.
+    /// range or there are more ranks than PEs, and DeviceError if the device fails.
     RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks = Ranks::single());
 
     /// Renders one image. May be called repeatedly. In ranks other than 0 the result covers only this rank and has no
@@ -92,7 +92,7 @@ class RingRenderer {
 
     // State of a render with checkpoints.
     const RingCheckpointing* checkpointing_ = nullptr;
-    std::optional<RingState> resumed_;  // the loaded checkpoint, until its window is complete
+    std::optional<RingState> resumed_;  // the loaded checkpoint, until the window of its pixels is complete
     std::uint32_t band_ = 0;            // length of the next band, in pixels of each PE's share
     double earlier_s_ = 0;              // seconds of earlier runs
     Clock::time_point started_;

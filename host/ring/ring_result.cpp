@@ -22,17 +22,17 @@ std::uint64_t launch_bytes(const RingSettings& s, const RingResult& r, const std
     return launches_of(r, label) * (sizeof(std::uint32_t) * words + 2 * sizeof(std::uint64_t) * counters);
 }
 
-KernelWork trace_work(const RingSettings& s, const RingResult& r, const Phase& phase, bool first) {
+KernelWork trace_work(const RingSettings& s, const RingResult& r, const Phase& phase, bool first_pass) {
     const std::uint64_t pixels = std::uint64_t{s.mapping.width} * s.mapping.height;
     KernelWork work = work_of(phase.name, phase.events);
-    const std::uint64_t written = (kColourBytes + sizeof(std::uint64_t)) * (first ? pixels : r.recomputed);
-    const std::uint64_t read = first ? 0 : pixels + kColourBytes * r.recomputed;
-    work.bytes = launch_bytes(s, r, phase.name) + written + read;
+    const std::uint64_t written_bytes = (kColourBytes + sizeof(std::uint64_t)) * (first_pass ? pixels : r.recomputed);
+    const std::uint64_t read_bytes = first_pass ? 0 : pixels + kColourBytes * r.recomputed;
+    work.bytes = launch_bytes(s, r, phase.name) + written_bytes + read_bytes;
     return work;
 }
 
-// For each of `pixels` pixels: `operations` operations on each of three colour components, and `colours` colours read
-// or written.
+// Returns the work of a kernel that, for each of `pixels` pixels, does `operations` operations on each of three colour
+// components and reads or writes `colours` colours.
 KernelWork neighbour_work(const std::string& label, std::uint64_t pixels, std::uint64_t operations,
                           std::uint64_t colours) {
     KernelWork work;

@@ -70,17 +70,17 @@ double trace_seconds(const RingResult& result);
 ///     the counters. It writes 12 bytes of colour and 8 bytes of cycles for each traced pixel. Supersampling also reads
 ///     a mark of each pixel and the colour of each marked pixel. Words that a kernel reads without copying (--accel
 ///     grid) are not included.
-///   - sums of neighbours: for each pixel with such a neighbour, reads the neighbour's colour and the sum, and writes
-///     the sum. Comparisons: reads both colours. Means: for each pixel, reads the sum and writes the mean.
+///   - sums of neighbours: for each neighbour of each pixel, reads the neighbour's colour and the sum, writes the sum.
+///     Comparisons: reads the colours of pixel and neighbour. Means: for each pixel, reads the sum, writes the mean.
 std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const RingResult& result);
 
-/// Adds the modelled run of the machine to a trace, from time 0 on: a track for the machine's phases and one for each
-/// of `pes` selected PEs (host/report/trace_file.hpp). The phases are broadcast, trace, rotations (or bus transfers)
-/// and sums or comparisons, supersampling, gather. In the tracing phases each PE waits for the busiest one. Counters:
-/// live rays (one for each PE that traces) and the imbalance u of the phase. The times are those of modelled_time()
-/// (host/model/time_model.hpp) and end at its total. Each phase is shown as a whole, even if a PE's memory holds only a
-/// block of its share, and each side of the neighbourhood shows a quarter of the cycles of filtering or comparing. If
-/// the machine's rates are unknown or `pes` is 0, adds only a remark to the trace's metadata.
+/// Adds the modelled run of the machine to a trace, from time 0 on: a track for the machine's phases and a track for
+/// each of `pes` selected PEs (host/report/trace_file.hpp). The phases are broadcast, trace, rotations (or bus
+/// transfers) and sums or comparisons, supersampling, gather. In the tracing phases each PE waits for the busiest PE.
+/// Counters: live rays (one for each PE that traces) and the imbalance u of the phase. The times are those of
+/// modelled_time() (host/model/time_model.hpp) and end at its total. Each phase is shown as a whole, even if a PE's
+/// memory holds only a block of its share, and each side of the neighbourhood shows a quarter of the cycles of
+/// filtering or comparing. If the machine's rates are unknown or `pes` is 0, adds only a remark to the metadata.
 void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes);
 
 }  // namespace raya

@@ -12,7 +12,7 @@
 namespace raya {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "checkpoints have the byte order of memory");
+static_assert(std::endian::native == std::endian::little, "checkpoints need a little-endian host");
 
 constexpr std::size_t kHashDigits = 32;
 

@@ -91,18 +91,18 @@ class RingTimeline {
     std::vector<TracedPe> pes_;
 };
 
-// Returns, for each PE, one side's quarter of the cycles cycles_of(pixels of its share). The quarters of the four sides
-// add up to all cycles exactly.
+// Returns one side's quarter of each PE's cycles. `cycles_of` returns the cycles for a number of pixels. The quarters
+// of the four sides add up to all cycles exactly.
 Load quarter_load(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_t), std::uint32_t side) {
     std::vector<std::uint64_t> cycles;
     for (std::uint32_t pe = 0; pe < m.pes; ++pe) {
-        const std::uint64_t all = cycles_of(raya_share_size(raya_share_of(m, pe)));
-        cycles.push_back(all * (side + 1) / RAYA_SIDES - all * side / RAYA_SIDES);
+        const std::uint64_t all_cycles = cycles_of(raya_share_size(raya_share_of(m, pe)));
+        cycles.push_back(all_cycles * (side + 1) / RAYA_SIDES - all_cycles * side / RAYA_SIDES);
     }
     return load_of(std::move(cycles));
 }
 
-// Names of a move, and of the number of moves of a side.
+// `move`: name of the slice of a side's moves. `moves`: name of the slice's argument with the number of moves.
 struct MoveNames {
     const char *move, *moves;
 };

@@ -42,8 +42,8 @@ std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya
 
 std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances) {
     if (distances.empty()) return {};
-    // Downward rotations fetch the blocks at the first `down_count` distances, upward rotations the blocks at the other
-    // distances. A block at distance d arrives after d downward or P - d upward rotations. The loop tries every split.
+    // Downward rotations fetch the blocks at the first `down_count` distances, upward rotations the remaining
+    // blocks. A block at distance d arrives after d downward or P - d upward rotations. The loop tries every split.
     std::size_t down_count = 0;
     std::uint64_t min_rotations = std::numeric_limits<std::uint64_t>::max();
     for (std::size_t n = 0; n <= distances.size(); ++n) {
@@ -67,8 +67,8 @@ std::string exchange_name(ExchangeMethod method) { return kExchangeNames.at(stat
 MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool any_order) {
     MovesOfSides moves{};
     for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
-        const bool served = method == ExchangeMethod::kBroadcast && any_order && sum_of(moves) > 0;
-        if (!served) moves[side] = moves_of_side(mapping, method, side);
+        const bool already_served = method == ExchangeMethod::kBroadcast && any_order && sum_of(moves) > 0;
+        if (!already_served) moves[side] = moves_of_side(mapping, method, side);
     }
     return moves;
 }

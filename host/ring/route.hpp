@@ -17,19 +17,19 @@ enum class RingDirection { kDown, kUp };
 /// the block of PE (i + s) mod P; after s upward rotations, that of PE (i - s) mod P.
 struct Leg {
     RingDirection direction = RingDirection::kDown;
-    std::vector<std::uint32_t> stops;  // numbers of rotations after which the PEs use the blocks, ascending; 0: each
-                                       // PE uses its own block
+    // Numbers of rotations after which the PEs use the blocks, ascending. 0: each PE uses its own block.
+    std::vector<std::uint32_t> stops;
 
     std::uint32_t rotations() const { return stops.empty() ? 0 : stops.back(); }
 };
 
-/// Returns all d in 0..P-1, ascending, for which some PE i owns a pixel whose neighbour on `side`
+/// Returns all d in 0..P-1, ascending, for which at least one PE i owns a pixel whose neighbour on `side`
 /// (RAYA_LEFT..RAYA_BELOW) belongs to PE (i + d) mod P; empty if no pixel has such a neighbour. For the cyclic mapping
 /// with offset p and P = W: left P - 1, right 1, above p, below P - p (Kohata & Ito 1993).
 std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya_u32 side);
 
-/// Returns the legs, at most one in each direction and the downward one first, that bring the blocks at all `distances`
-/// with the minimum number of rotations.
+/// Returns the legs that bring the blocks at all `distances` with the minimum number of rotations: at most one leg in
+/// each direction, the downward leg first.
 std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances);
 
 /// Methods of exchanging neighbours' pixels. The ring moves data of all PEs at the same time; the bus moves data of one
@@ -46,7 +46,7 @@ std::string exchange_name(ExchangeMethod method);
 /// [side]: number of rotations, transfers or broadcasts, which take place one after another.
 using MovesOfSides = std::array<std::uint64_t, RAYA_SIDES>;
 
-/// Returns the moves that bring to every PE the whole shares that contain the neighbours of its pixels on each side.
+/// Returns the numbers of moves. The moves bring to every PE the whole shares that contain neighbours of its pixels.
 /// `any_order`: the sides may be processed in any order, so that one series of broadcasts serves all sides. The series
 /// is counted for the first side that needs a broadcast.
 MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool any_order);

@@ -37,7 +37,7 @@ std::vector<std::uint32_t> owners_of_slots(const raya_mapping& without_offset) {
     return owners;
 }
 
-/// Adds the PEs' loads with the given offset to `per_pe`. `owners`: [row][slot].
+/// Adds the PEs' loads under the cyclic mapping with `offset` to `per_pe`. `owners`: [row][slot].
 void add_loads_of_offset(const CostImage& image, const std::vector<std::uint32_t>& owners, std::uint32_t offset,
                          std::vector<std::uint64_t>& per_pe) {
     const std::uint64_t* costs = image.cycles.data();
@@ -52,17 +52,17 @@ void add_loads_of_offset(const CostImage& image, const std::vector<std::uint32_t
     }
 }
 
-/// Adds the costs of each PE's static part to `busy`. Returns a flag for each pixel of the image: true if it is in a
-/// static part. `fraction`: fraction of each PE's pixels that is in the static part.
-std::vector<bool> add_static_costs(const CostImage& image, const raya_mapping& start, double fraction,
+/// Adds the costs of each PE's static part to `busy`. Returns a flag for each pixel of the image: true if the pixel is
+/// in a static part. `fraction`: fraction of each PE's pixels that is in the static part.
+std::vector<bool> add_static_costs(const CostImage& image, const raya_mapping& static_mapping, double fraction,
                                    std::vector<std::uint64_t>& busy) {
     std::vector<bool> done(image.cycles.size());
     if (fraction == 0) return done;
-    for (std::uint32_t pe = 0; pe < start.pes; ++pe) {
-        const raya_share share = raya_share_of(start, pe);
+    for (std::uint32_t pe = 0; pe < static_mapping.pes; ++pe) {
+        const raya_share share = raya_share_of(static_mapping, pe);
         const auto pixels = static_cast<std::uint32_t>(fraction * raya_share_size(share));
         for (std::uint32_t k = 0; k < pixels; ++k) {
-            const raya_pixel pixel = raya_pixel_of(start, share, k);
+            const raya_pixel pixel = raya_pixel_of(static_mapping, share, k);
             const std::size_t at = std::size_t{pixel.row} * image.width + pixel.column;
             busy[pe] += image.cycles[at];
             done[at] = true;
@@ -93,10 +93,10 @@ std::vector<std::uint64_t> chunks_of(const CostImage& image, const std::vector<b
 void assign_chunks(const std::vector<std::uint64_t>& chunks, const DynamicPlan& plan,
                    std::vector<std::uint64_t>& finish) {
     using IdleTime = std::pair<std::uint64_t, std::uint32_t>;  // time at which a PE becomes idle, PE number
-    std::vector<IdleTime> all;
-    all.reserve(finish.size());
-    for (std::uint32_t pe = 0; pe < finish.size(); ++pe) all.emplace_back(finish[pe], pe);
-    std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle(std::greater<>{}, std::move(all));
+    std::vector<IdleTime> idle_times;
+    idle_times.reserve(finish.size());
+    for (std::uint32_t pe = 0; pe < finish.size(); ++pe) idle_times.emplace_back(finish[pe], pe);
+    std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle(std::greater<>{}, std::move(idle_times));
     std::uint64_t answered = 0;  // time at which the root has answered the previous request
     for (const std::uint64_t cost : chunks) {
         const auto [time, pe] = idle.top();
@@ -146,18 +146,18 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
     return imbalances;
 }
 
-Schedule dynamic_schedule(const CostImage& image, const raya_mapping& start, const DynamicPlan& plan) {
-    check_mapping(image, start);
+Schedule dynamic_schedule(const CostImage& image, const raya_mapping& static_mapping, const DynamicPlan& plan) {
+    check_mapping(image, static_mapping);
     if (!is_valid_plan(plan))
         throw std::invalid_argument("a plan's chunk, overhead, static fraction or root cycles are out of range");
-    std::vector<std::uint64_t> finish(start.pes);
-    const auto done = add_static_costs(image, start, plan.static_fraction, finish);
+    std::vector<std::uint64_t> finish(static_mapping.pes);
+    const auto done = add_static_costs(image, static_mapping, plan.static_fraction, finish);
     const auto chunks = chunks_of(image, done, plan.chunk);
     assign_chunks(chunks, plan, finish);
     Schedule schedule{load_of(std::move(finish)), chunks.size()};
     Load& load = schedule.load;
     if (load.max > 0) load.speedup = static_cast<double>(total_cycles(image)) / static_cast<double>(load.max);
-    load.efficiency = load.speedup / start.pes;
+    load.efficiency = load.speedup / static_mapping.pes;
     return schedule;
 }
 

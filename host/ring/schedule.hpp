@@ -29,24 +29,23 @@ struct Schedule {
 };
 
 // The functions below throw std::invalid_argument if cycles.size() is not W H, if the mapping is for another image
-// size, if P is outside 1..W H, or if a plan's number, an offset or a fold is out of range.
+// size, if P is outside 1..W H, or if a member of a plan, an offset or a fold is out of range.
 
 /// Returns the load with a static mapping: a PE's load is the sum of its pixels' costs.
 Load static_load(const CostImage& image, const raya_mapping& mapping);
 
-/// Returns static_load().imbalance of the cyclic mapping with each of the offsets; `fold`: RAYA_FOLD_*. Faster than
-/// calling static_load() for each offset, because it computes the owner once per pixel instead of once per pixel and
-/// offset.
+/// Returns static_load().imbalance of the cyclic mapping for each offset. `fold`: RAYA_FOLD_*. Faster than calling
+/// static_load() for each offset, because it computes the owner once per pixel instead of once per pixel and offset.
 std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t pes, std::uint32_t fold,
                                          const std::vector<std::uint32_t>& offsets);
 
 /// Simulates list scheduling. Each PE first renders its static part: the first floor(static_fraction x n) of the n
-/// pixels that it owns under `start`. The other pixels, in scan-line order, are divided into chunks of plan.chunk
-/// pixels; the last chunk may be smaller. The PE that becomes idle first (in a tie, the one with the lowest number)
-/// takes the next chunk: it waits until the root has answered all earlier requests and its own, and then spends the
-/// overhead plus the costs of the pixels. If static_fraction is 0, only the image size and the number of PEs of `start`
-/// are used; if it is 1, the result is that of static_load(). Time: O(pixels + P + chunks log P).
-Schedule dynamic_schedule(const CostImage& image, const raya_mapping& start, const DynamicPlan& plan);
+/// pixels that it owns under `static_mapping`. The other pixels, in scan-line order, are divided into chunks of
+/// plan.chunk pixels; the last chunk may be smaller. The PE that becomes idle first (in a tie, the one with the lowest
+/// number) takes the next chunk: it waits until the root has answered all earlier requests and its own, and then spends
+/// the overhead plus the costs of the pixels. If static_fraction is 0, only the image size and the number of PEs of
+/// `static_mapping` are used; if it is 1, the result is that of static_load(). Time: O(pixels + P + chunks log P).
+Schedule dynamic_schedule(const CostImage& image, const raya_mapping& static_mapping, const DynamicPlan& plan);
 
 /// Returns the sum of all pixels' costs, without overhead.
 std::uint64_t total_cycles(const CostImage& image);

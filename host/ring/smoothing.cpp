@@ -17,16 +17,16 @@ RingFilter::RingFilter(Kernels& kernels, const ExchangeSetup& setup)
 
 void RingFilter::apply(Buffer<float>& pixels, NeighbourExchange& exchange) {
     const SpanLog::Span span = setup_.session.span("filter");
-    sum_line(pixels, exchange, "filter.sum_rows", RAYA_LEFT, RAYA_RIGHT);
-    sum_line(pixels, exchange, "filter.sum_columns", RAYA_ABOVE, RAYA_BELOW);
+    sum_two_sides(pixels, exchange, "filter.sum_rows", RAYA_LEFT, RAYA_RIGHT);
+    sum_two_sides(pixels, exchange, "filter.sum_columns", RAYA_ABOVE, RAYA_BELOW);
     setup_.session.launch("filter.take_means", take_means_, setup_.pes.count, setup_.group_size, setup_.broadcast,
                           Uint<"capacity">{setup_.capacity}, Uint<"first_pe">{setup_.pes.first}, pixels);
 }
 
 // Computes pixels = (pixels + neighbours on the first side) + neighbours on the second side. The rounded sum depends on
 // the order, so the sides are exchanged one after the other.
-void RingFilter::sum_line(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label,
-                          raya_u32 first_side, raya_u32 second_side) {
+void RingFilter::sum_two_sides(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label,
+                               raya_u32 first_side, raya_u32 second_side) {
     setup_.session.copy("filter.begin_sums", pixels, 0, sums_, 0, pixels.size());
     for (const raya_u32 side : {first_side, second_side})
         exchange.visit(pixels, {side}, [&](const Arrival& arrival) {

@@ -32,13 +32,13 @@ class RingFilter {
     /// pixels, because PoCL compiles a kernel at its first launch.
     RingFilter(Kernels& kernels, const ExchangeSetup& setup);
 
-    /// Replaces every pixel by the mean of its 3 x 3 neighbourhood. `pixels`: [PE][3][capacity]; afterwards the handle
-    /// refers to another buffer of the same shape.
+    /// Replaces every pixel by the mean of its 3 x 3 neighbourhood. `pixels`: [PE][3][capacity]; afterwards `pixels`
+    /// refers to another buffer of the same size.
     void apply(Buffer<float>& pixels, NeighbourExchange& exchange);
 
   private:
-    void sum_line(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label, raya_u32 first_side,
-                  raya_u32 second_side);
+    void sum_two_sides(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label,
+                       raya_u32 first_side, raya_u32 second_side);
     void add_neighbours(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity);
 
     ExchangeSetup setup_;

@@ -75,8 +75,8 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
         work = next_work(work, work_.max, seconds_since(start), target_s);
         if (!progress) continue;
         const double all_pixels = 1.0 * pes_.count * (range.end - range.begin),
-                     first_pixels = 1.0 * pes_.count * range.begin;
-        progress(done ? 1.0 : (static_cast<double>(state.next_pixels) - first_pixels) / all_pixels);
+                     earlier_pixels = 1.0 * pes_.count * range.begin;
+        progress(done ? 1.0 : (static_cast<double>(state.next_pixels) - earlier_pixels) / all_pixels);
     }
 }
 

@@ -26,9 +26,9 @@ struct PixelRange {
     std::uint32_t window_start = 0, begin = 0, end = 0;
 };
 
-/// Limits of the work of one lane in one launch, in tests and traversal steps of its rays: `first` for the first
-/// launch, or `with_progress` if progress is shown. The work of later launches is scaled so that a launch takes one
-/// second, or half a second if progress is shown, but is at most `max`.
+/// Limits of the work of one lane in one launch, in tests and traversal steps of the lane's rays. The first launch has
+/// the limit `first`, or `with_progress` if progress is shown. The work of later launches is scaled so that a launch
+/// takes one second, or half a second if progress is shown, but is at most `max`.
 struct LaunchWork {
     std::uint32_t first = 0, with_progress = 0, max = 0;
 };
@@ -54,11 +54,10 @@ class Tracer {
     void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                  PassCounters& counters);
 
-    /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; traces supersampling points only of
-    /// marked pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of
-    /// work, so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Calls `host_work` on
-    /// the host while the first launch runs. Throws DeviceError if the device ends loops early even in the smallest
-    /// launch.
+    /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; supersampling points only for marked
+    /// pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of work,
+    /// so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Calls `host_work` on the
+    /// host while the first launch runs. Throws DeviceError if the device ends loops early even in the smallest launch.
     void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                const ProgressCallback& progress = {}, const std::function<void()>& host_work = {});

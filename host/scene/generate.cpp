@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // values for `parts` of rounded()
+constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // values of the parameter `parts` of rounded()
 
 void check_count(const char* kind, int count) {
     if (count < 1 || count > kMaxSpheres)
@@ -37,7 +37,7 @@ void fill_box(Scene& scene, const Vec3& low_corner, const Vec3& sides, std::int6
                               static_cast<double>(cell_index / k / k)) *
                              cell;
         const double radius = max_radius * random.uniform(0.5, 0.9);
-        // In a cubic cell, the maximum distance of the centre from the cell's middle along an axis, relative to
+        // Maximum distance of the sphere's centre from the middle of a cubic cell along an axis, divided by
         // `max_radius`.
         const double max_shift = 0.98 * (1 - radius / max_radius);
         const auto random_coordinate = [&](double side) {
@@ -70,31 +70,31 @@ void add_ring(Scene& scene, const SphereRing& ring) {
 }
 
 Sphere draw_sphere(SplitMix& random, const ClusterShape& shape) {
-    const double radius = random.uniform(shape.smallest, shape.largest);
+    const double radius = random.uniform(shape.min_sphere_radius, shape.max_sphere_radius);
     const double azimuth = random.uniform(0, 2 * std::numbers::pi);
     const double distance = shape.radius * std::sqrt(random.uniform(0, 1));
     const double height = radius + random.uniform(0, shape.height);
     return {rounded({distance * std::cos(azimuth), distance * std::sin(azimuth), height}), rounded(radius), 0};
 }
 
-bool touches(const Sphere& sphere, const std::vector<Sphere>& others) {
-    return std::ranges::any_of(others, [&](const Sphere& other) {
-        return (sphere.centre - other.centre).length() < sphere.radius + other.radius;
-    });
+bool touches(const Sphere& sphere, const std::vector<Sphere>& spheres) {
+    return std::ranges::any_of(
+        spheres, [&](const Sphere& s) { return (sphere.centre - s.centre).length() < sphere.radius + s.radius; });
 }
 
 }  // namespace
 
 Scene generate_uniform(int count, std::array<int, 3> voxels) {
     check_count("uniform", count);
-    std::int64_t total = 1;
+    std::int64_t voxel_count = 1;
     for (const int axis_voxels : voxels) {
         if (axis_voxels < 1 || axis_voxels > kMaxVoxelsPerAxis)
             throw UserError(
                 fmt::format("uniform: {} voxels along an axis: must be 1..{}", axis_voxels, kMaxVoxelsPerAxis));
-        total *= axis_voxels;
+        voxel_count *= axis_voxels;
     }
-    if (total > kMaxVoxels) throw UserError(fmt::format("uniform: {} voxels: at most {}", total, kMaxVoxels));
+    if (voxel_count > kMaxVoxels)
+        throw UserError(fmt::format("uniform: {} voxels: at most {}", voxel_count, kMaxVoxels));
 
     Scene scene;
     scene.name = fmt::format("uniform{}_{}x{}x{}.nff", count, voxels[0], voxels[1], voxels[2]);
@@ -106,8 +106,8 @@ Scene generate_uniform(int count, std::array<int, 3> voxels) {
         scene.surfaces.push_back({colour, 0.9, 0, 0, 0, 1, {}});
     const Vec3 sides(2.0 / voxels[0], 2.0 / voxels[1], 2.0 / voxels[2]);
     SplitMix random(static_cast<std::uint64_t>(count));
-    for (std::int64_t voxel = 0; voxel < total; ++voxel) {
-        const std::int64_t spheres = (voxel + 1) * count / total - voxel * count / total;
+    for (std::int64_t voxel = 0; voxel < voxel_count; ++voxel) {
+        const std::int64_t spheres = (voxel + 1) * count / voxel_count - voxel * count / voxel_count;
         const Vec3 position(static_cast<double>(voxel % voxels[0]), static_cast<double>(voxel / voxels[0] % voxels[1]),
                             static_cast<double>(voxel / voxels[0] / voxels[1]));
         fill_box(scene, Vec3(-1) + position * sides, sides, spheres, random);
@@ -177,7 +177,7 @@ Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
         {{1, 1, 1}, 0.02, 0.12, 200, 0.85, 1.5, {}},
         {{1, 1, 1}, 0.1, 0.8, 200, 0, 1, {}},
         {{0.9, 0.3, 0.1}, 0.85, 0, 0, 0, 1, {}},
-        {{0.9, 0.9, 0.9}, 0.85, 0, 0, 0, 1, Checker{{0.9, 0.87, 0.8}, {0.2, 0.3, 0.34}, shape.checker}},
+        {{0.9, 0.9, 0.9}, 0.85, 0, 0, 0, 1, Checker{{0.9, 0.87, 0.8}, {0.2, 0.3, 0.34}, shape.checker_size}},
     };
     SplitMix random(seed);
     for (int i = 0; i < shape.spheres(); ++i) {
@@ -193,17 +193,18 @@ Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
 }
 
 Scene scattered(const Scene& scene, std::uint64_t seed) {
-    const Scene random = generate_random(static_cast<int>(scene.spheres.size()), seed);
+    const Scene random_scene = generate_random(static_cast<int>(scene.spheres.size()), seed);
     Scene moved = scene;
     for (std::size_t i = 0; i < moved.spheres.size(); ++i) {
         Sphere& sphere = moved.spheres[i];
         for (int axis = 0; axis < 3; ++axis)
-            sphere.centre[axis] = std::clamp(random.spheres[i].centre[axis], -1 + sphere.radius, 1 - sphere.radius);
+            sphere.centre[axis] =
+                std::clamp(random_scene.spheres[i].centre[axis], -1 + sphere.radius, 1 - sphere.radius);
     }
     return moved;
 }
 
-Scene moved_within(const Scene& scene) {
+Scene moved_into_voxels(const Scene& scene) {
     constexpr double kVoxel = 2.0 / kVoxelsPerCubeSide;  // side of a voxel
     // Upper bound of the distance by which a hit region (host/accel) exceeds its sphere.
     constexpr double kGap = kVoxel / 16;
@@ -221,12 +222,12 @@ Scene moved_within(const Scene& scene) {
 
 Scene touching_walls(Scene scene) {
     for (int axis = 0; axis < 3; ++axis)
-        for (const double side : {-1.0, 1.0}) {
-            const auto extent = [&](const Sphere& sphere) { return side * sphere.centre[axis] + sphere.radius; };
-            Sphere& outermost =
+        for (const double sign : {-1.0, 1.0}) {
+            const auto extent = [&](const Sphere& sphere) { return sign * sphere.centre[axis] + sphere.radius; };
+            Sphere& outermost_sphere =
                 *std::max_element(scene.spheres.begin(), scene.spheres.end(),
                                   [&](const Sphere& a, const Sphere& b) { return extent(a) < extent(b); });
-            outermost.centre[axis] = side * (1 - outermost.radius);
+            outermost_sphere.centre[axis] = sign * (1 - outermost_sphere.radius);
         }
     return scene;
 }

@@ -9,15 +9,15 @@
 
 namespace raya {
 
-inline constexpr int kMaxBallsLevel = 6;       // of generate_balls(): 597,871 spheres
-inline constexpr int kMaxLatticeSize = 64;     // of generate_lattice(): 274,625 spheres, 811,200 cylinders
-inline constexpr int kMaxGearsSize = 16;       // of generate_gears(): 598,017 polygons
-inline constexpr int kMaxSpheres = 1'000'000;  // of generate_uniform() and generate_random()
-inline constexpr int kMaxVoxelsPerAxis = 256;  // of generate_uniform()
-inline constexpr int kMaxVoxels = 1'048'576;   // of generate_uniform()
+inline constexpr int kMaxBallsLevel = 6;    // `level` of generate_balls(); makes 597,871 spheres
+inline constexpr int kMaxLatticeSize = 64;  // `size` of generate_lattice(); makes 274,625 spheres and 811,200 cylinders
+inline constexpr int kMaxGearsSize = 16;    // `size` of generate_gears(); makes 598,017 polygons
+inline constexpr int kMaxSpheres = 1'000'000;  // `count` of generate_uniform() and generate_random()
+inline constexpr int kMaxVoxelsPerAxis = 256;  // each of `voxels` of generate_uniform()
+inline constexpr int kMaxVoxels = 1'048'576;   // product of `voxels` of generate_uniform()
 
-/// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six). Rounding keeps files
-/// short, and makes them equal on all platforms although the last bits of sines and cosines differ between platforms.
+/// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six decimals). Rounding keeps
+/// files short, and makes them equal on all platforms although the last bits of sines and cosines differ.
 inline double rounded(double x, double parts = 1e9) { return std::round(x * parts) / parts + 0.0; }
 inline Vec3 rounded(const Vec3& v, double parts = 1e9) {
     return {rounded(v.x, parts), rounded(v.y, parts), rounded(v.z, parts)};
@@ -36,19 +36,19 @@ Scene generate_lattice(int size);
 /// size^3 gear wheels of brass, steel, glass and enamel in the cube [-1, 1]^3 above one square polygon, and five
 /// lights. The wheels form horizontal layers. Within a layer, each wheel meshes with its neighbours. A wheel consists
 /// of two outlines of 144 vertices and 144 quadrilaterals. Size 4 has as many polygons as SPD's `gears` (E. Haines):
-/// 9,345, which consist of 36,610 triangles. SPD's wheels have a different shape. Throws UserError unless 1 <= size
-/// <= 16.
+/// 9,345, which consist of 36,610 triangles. SPD's wheels have a different shape. Throws UserError unless
+/// 1 <= size <= 16.
 Scene generate_gears(int size);
 
-/// `count` matt spheres in the cube [-1, 1]^3, distributed evenly over v = x * y * z voxels: every voxel contains
-/// floor(count / v) or ceil(count / v) spheres. Each sphere lies inside its voxel, and no two spheres touch. One light.
-/// Throws UserError unless 1 <= count <= 1,000,000, 1 <= voxels along each axis <= 256 and there are at most 1,048,576
-/// voxels.
+/// `count` matt spheres in the cube [-1, 1]^3, distributed evenly over v = voxels[0] * voxels[1] * voxels[2] voxels:
+/// every voxel contains floor(count / v) or ceil(count / v) spheres. Each sphere lies inside its voxel, and no two
+/// spheres touch. The scene has one light. Throws UserError unless 1 <= count <= 1,000,000, 1 <= voxels[axis] <= 256
+/// and v <= 1,048,576.
 Scene generate_uniform(int count, std::array<int, 3> voxels);
 
 /// `count` spheres with uniformly random centres in the cube [-1, 1]^3. Radii are 0.5 to 1.5 times r, and at most 0.6;
-/// r is the radius with which `count` equal spheres have a twentieth of the cube's volume. Spheres may overlap. Twelve
-/// surfaces: matt, glossy and mirroring. Throws UserError unless 1 <= count <= 1,000,000.
+/// r is the radius with which `count` equal spheres have a twentieth of the cube's volume. Spheres may overlap. Their
+/// twelve surfaces are matt, glossy or mirroring. Throws UserError unless 1 <= count <= 1,000,000.
 Scene generate_random(int count, std::uint64_t seed);
 
 /// The project's main scene, an example of the worst case for a static distribution of pixels over PEs (Kohata & Ito,
@@ -61,19 +61,19 @@ struct ClusterShape {
     int glass = 3, mirrors = 1, matt = 3;  // numbers of spheres of each material
     double radius = 1.6;                   // radius of the cylinder around the z axis that contains all centres
     double height = 2.1;                   // maximum distance between a sphere and the floor
-    double smallest = 0.4, largest = 0.7;  // minimum and maximum radius of a sphere
-    double checker = 2.35;                 // side of the floor's squares
-    double angle_degrees = 20;             // vertical angle of the view
+    double min_sphere_radius = 0.4, max_sphere_radius = 0.7;
+    double checker_size = 2.35;  // side of the floor's squares
+    double angle_degrees = 20;   // vertical angle of the view
     int spheres() const { return glass + mirrors + matt; }
 };
 
 /// A cluster of random spheres above a checkered floor, with one light. A sphere that touches another sphere is drawn
-/// again, up to a maximum number of times. Averaged over many seeds, load and imbalance match Kohata & Ito's figures.
-/// 256 x 256 pixels.
+/// again, up to a maximum number of times. The means of load and imbalance over many seeds match Kohata & Ito's
+/// figures. 256 x 256 pixels.
 Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape = {});
 
-inline constexpr std::uint32_t kVoxelsPerCubeSide =
-    4;  // number of voxels along each axis of the cube in moved_within()
+/// Number of voxels along each axis of the cube in moved_into_voxels().
+inline constexpr std::uint32_t kVoxelsPerCubeSide = 4;
 
 /// Returns a copy of `scene`, which lies in the cube [-1, 1]^3, in which each sphere has a random centre, clamped so
 /// that the sphere stays inside the cube. Radii and surfaces do not change.
@@ -83,7 +83,7 @@ Scene scattered(const Scene& scene, std::uint64_t seed);
 /// centre, at least 1/16 of a voxel's side away from the voxel's faces. A sphere that is too large for this is centred
 /// in the voxel. Along each axis, a sphere moves by at most its radius plus 1/16 of a voxel's side. Radii must be less
 /// than half a voxel's side.
-Scene moved_within(const Scene& scene);
+Scene moved_into_voxels(const Scene& scene);
 
 /// For each face of the cube [-1, 1]^3, moves the sphere nearest to the face until the sphere touches the face, so that
 /// the cube becomes the bounding box of the scene.

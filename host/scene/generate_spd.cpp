@@ -52,13 +52,12 @@ constexpr int kTeeth = 24;
 
 /// A corner of the outline of a tooth.
 struct Corner {
-    double turn;    // angle from the tooth's centre line, in pitches (1 / kTeeth of a turn)
-    double radius;  // as a multiple of the radius of the pitch circle
+    double turn;    // angle from the tooth's centre line, in pitches; a pitch is 1 / kTeeth of a turn
+    double radius;  // distance from the wheel's axis, as a multiple of the radius of the pitch circle
 };
 
-/// The outline of a tooth, counter-clockwise: foot, flank, tip, tip, flank, foot. Meshing wheels do not touch, because
-/// at the pitch circle a tooth is narrower than half a pitch, and because a tooth is shorter than the gap that it
-/// enters.
+/// The outline of a tooth, counter-clockwise: foot, flank, tip, tip, flank, foot. A tooth is narrower than half a pitch
+/// at the pitch circle, and shorter than the gap that it enters, so that meshing wheels do not touch.
 constexpr std::array<Corner, 6> kTooth{
     {{-0.32, 0.9}, {-0.235, 1}, {-0.12, 1.075}, {0.12, 1.075}, {0.235, 1}, {0.32, 0.9}}};
 
@@ -119,12 +118,13 @@ View view_of_lattice(int size) {
     return {rounded({x, 1, z}), rounded({x, -1, z - 2}), {0.2, 1, 0}, 60, 0, 512, 512};
 }
 
-void add_node(Scene& scene, int size, const std::array<int, 3>& node) {
+// Adds a sphere and the cylinders from it to its neighbours in the directions +x, +y and +z.
+void add_sphere_and_cylinders(Scene& scene, int size, const std::array<int, 3>& position) {
     const double distance = 1.0 / size;
-    const Vec3 centre(node[0] * distance, node[1] * distance, node[2] * distance);
+    const Vec3 centre(position[0] * distance, position[1] * distance, position[2] * distance);
     scene.spheres.push_back({rounded(centre), rounded(kSphereRadius * distance), 0});
     for (int axis = 0; axis < 3; ++axis) {
-        if (node[static_cast<std::size_t>(axis)] == size) continue;
+        if (position[static_cast<std::size_t>(axis)] == size) continue;
         Vec3 base = centre, apex = centre;
         base[axis] += kCylinderStart * distance;
         apex[axis] += (1 - kCylinderStart) * distance;
@@ -192,7 +192,7 @@ Scene generate_lattice(int size) {
         scene.surfaces.push_back({colour, 0.99, 0, 100000, 0, 0, {}});
     for (int x = 0; x <= size; ++x)
         for (int y = 0; y <= size; ++y)
-            for (int z = 0; z <= size; ++z) add_node(scene, size, {x, y, z});
+            for (int z = 0; z <= size; ++z) add_sphere_and_cylinders(scene, size, {x, y, z});
     merge_equal_surfaces(scene);
     return scene;
 }

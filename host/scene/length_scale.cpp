@@ -12,8 +12,8 @@ namespace raya {
 namespace {
 
 // Margins as exponents of two. kMinMargin: minimum margin between the lengths of an unscaled scene and the format's
-// lower limits. kPlaneMargin: margin between the largest length of a scaled scene with planes and the format's upper
-// limit, because planes extend to the horizon.
+// lower limits. kPlaneMargin: margin between the largest length of a scaled scene and the format's upper limit, if the
+// scene has planes, which extend to the horizon.
 constexpr double kMinMargin = 2, kPlaneMargin = 6;
 
 /// Calls visit(length) for each length that must not be flushed to 0, because the job stores the square of the length
@@ -44,9 +44,9 @@ struct ScaleMargins {
 
 ScaleMargins margins_of(const LengthScale& scale, const NumberFormat& format) {
     const double smallest_of_format = smallest_number(format);
-    return {std::log2(farthest_hit(format) / (4 * scale.largest)),
-            std::min(std::log2(scale.smallest / std::sqrt(smallest_of_format)),
-                     std::log2(std::ldexp(scale.largest, -format.fraction_bits - 1) / smallest_of_format))};
+    return {std::log2(farthest_hit(format) / (4 * scale.largest_length)),
+            std::min(std::log2(scale.smallest_length / std::sqrt(smallest_of_format)),
+                     std::log2(std::ldexp(scale.largest_length, -format.fraction_bits - 1) / smallest_of_format))};
 }
 
 int exponent_for(const ScaleMargins& margins, bool has_planes) {
@@ -60,25 +60,25 @@ int exponent_for(const ScaleMargins& margins, bool has_planes) {
         fmt::format("{}: the range of its lengths, {:.3g} to {:.3g}, is too wide for {}: scaled to the largest length, "
                     "all objects are below the smallest visible length, {:.3g}; remedy: --format fp32, or move distant "
                     "objects closer",
-                    scene.name, scale.smallest, scale.largest, format_name(format), scale.min_visible));
+                    scene.name, scale.smallest_length, scale.largest_length, format_name(format), scale.min_visible));
 }
 
 }  // namespace
 
 LengthScale length_scale(const Scene& scene, const NumberFormat& format) {
     LengthScale scale;
-    scale.largest = scale.smallest = largest_length(scene);
-    if (scale.largest == 0) return scale;  // only planes through the origin, with the eye at the origin
+    scale.largest_length = scale.smallest_length = largest_length(scene);
+    if (scale.largest_length == 0) return scale;  // only planes through the origin, with the eye at the origin
     std::uint64_t lengths = 0;
     for_each_small_length(scene, [&](double length) {
-        scale.smallest = std::min(scale.smallest, length);
+        scale.smallest_length = std::min(scale.smallest_length, length);
         ++lengths;
     });
     scale.exponent = exponent_for(margins_of(scale, format), !scene.planes.empty());
     scale.min_visible = std::ldexp(std::sqrt(smallest_number(format)), -scale.exponent);
-    for_each_small_length(scene, [&](double length) { scale.vanishing += length < scale.min_visible; });
+    for_each_small_length(scene, [&](double length) { scale.vanishing_count += length < scale.min_visible; });
     const bool has_flat_objects = !scene.polygons.empty() || !scene.planes.empty();
-    if (scale.vanishing == lengths && lengths > 0 && !has_flat_objects) refuse(scene, scale, format);
+    if (scale.vanishing_count == lengths && lengths > 0 && !has_flat_objects) refuse(scene, scale, format);
     return scale;
 }
 

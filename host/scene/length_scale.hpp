@@ -11,14 +11,14 @@ namespace raya {
 struct LengthScale {
     int exponent = 0;  // lengths are multiplied by 2^exponent when the scene is packed
     // Maximum magnitude of the coordinates of eye, lights and finite objects, and of planes' distances; scene units.
-    double largest = 0;
-    double smallest = 0;          // scene units; minimum of radii, heights of cones, and sides of checkers' squares
-    double min_visible = 0;       // scene units; smallest length that is visible at this scale
-    std::uint64_t vanishing = 0;  // number of spheres, cones and checkers smaller than min_visible
+    double largest_length = 0;
+    double smallest_length = 0;  // scene units; minimum of radii, heights of cones, and sides of checkers' squares
+    double min_visible = 0;      // scene units; smallest length that is visible at this scale
+    std::uint64_t vanishing_count = 0;  // number of spheres, cones and checkers smaller than min_visible
 };
 
-/// Chooses the scale of a scene. Let L be LengthScale::largest, S LengthScale::smallest (equal to L if the scene
-/// has no radius, cone or checker), F the maximum distance of a hit in the number format, N the format's smallest
+/// Chooses the scale of a scene. L is LengthScale::largest_length. S is LengthScale::smallest_length, or L if the scene
+/// has no radius, cone or checker. F is the maximum distance of a hit in the number format, N the format's smallest
 /// positive number, and u = 2^-(Y+1) its relative rounding error. The scaled lengths should satisfy three conditions:
 ///   - 4 L <= F: distances within the scene are at most 2 sqrt(3) L, so every hit is found.
 ///   - S >= sqrt(N): the squares of radii are representable.

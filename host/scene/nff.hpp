@@ -1,7 +1,7 @@
 // Scenes in NFF, the Neutral File Format, as the SPD programs write it (E. Haines, "A Proposal for Standard Graphics
 // Environments", IEEE CG&A 7(11), 1987; SPD 3.9).
 //
-//     v / from x y z / at x y z / up x y z / angle degrees / hither distance / resolution width height
+//     v from x y z at x y z up x y z angle degrees hither distance resolution width height        view
 //     b r g b                               background; black by default
 //     l x y z [r g b]                       light
 //     f r g b Kd Ks Shine T ior             surface of the objects that follow; by default white with Kd = 1
@@ -28,7 +28,7 @@ namespace raya {
 
 /// A remark on a part of a file that the reader has left out or changed. Equal remarks are stored once and counted.
 struct NffRemark {
-    std::string what;         // "polygon without area, left out"
+    std::string what;         // description: "polygon without area, left out"
     std::uint64_t count = 0;  // number of equal remarks
     int line = 0;             // line of the first occurrence
 };
@@ -39,14 +39,14 @@ void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int li
 /// Returns the remark as text: "FILE:LINE: polygon without area, left out (3 in all)".
 std::string remark_text(const std::string& file, const NffRemark& remark);
 
-/// Parses NFF. Equal surfaces of the returned scene are merged (merge_equal_surfaces()) and its
-/// normals have length 1. Its name is `name` without folder. Throws UserError "NAME:LINE: reason" if the text is not
-/// NFF or the scene cannot be traced.
+/// Parses NFF. In the returned scene, equal surfaces are merged (merge_equal_surfaces()), and normals have length 1.
+/// The scene's name is `name` without folder. Throws UserError "NAME:LINE: reason" if the text is not NFF or the scene
+/// cannot be traced.
 ///
 /// If `remarks` is not null, parse_nff() tolerates the following deviations and adds a remark for each: it leaves out
 /// objects without size and polygons without area, cuts polygons that are not flat into triangles, converts patches
 /// with a normal of 0 into polygons, and skips entities of other NFF dialects (la, lf, tt, ...) and a mail header.
-/// Prose remains an error, and so does a file without view or objects.
+/// Prose, a missing view and a file without objects remain errors.
 Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks = nullptr);
 
 /// Reads and parses a file; "-" reads from stdin, which is named "stdin" in messages. Throws UserError as parse_nff()

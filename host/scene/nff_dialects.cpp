@@ -22,8 +22,8 @@ bool reads_as_keyword(std::string_view token) {
                        [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-/// Returns true if a dot or slash occurs before the last character, as in `wood.ppm`. A dot at the end may end a
-/// sentence.
+/// Returns true if a dot or slash occurs before the last character, as in `wood.ppm`. A token that ends with a dot may
+/// be the last word of a sentence.
 bool reads_as_file(std::string_view token) {
     return token.substr(0, token.size() - 1).find_first_of("./") != token.npos;
 }
@@ -62,17 +62,17 @@ std::string_view foreign_format(std::string_view text) {
                                        "plane",  "box",          "union",           "object",     "mesh",
                                        "mesh2",  "sky_sphere"};
     constexpr std::array kObjKeywords = {"mtllib", "usemtl", "o", "g", "vn", "vt"};
-    const auto is_any = [](const auto& words, std::string_view word) { return std::ranges::count(words, word) > 0; };
+    const auto contains = [](const auto& list, std::string_view token) { return std::ranges::count(list, token) > 0; };
     while (!text.empty()) {
         const std::string_view line = text.substr(0, text.find_first_of(kLineEnds));
-        const std::string_view word = line.substr(0, line.find_first_of(" \t\v\f{"));
-        const std::string_view rest = line.substr(std::min(line.size(), word.size() + 1));
-        if (word == "ply") return "a PLY";
+        const std::string_view token = line.substr(0, line.find_first_of(" \t\v\f{"));
+        const std::string_view rest = line.substr(std::min(line.size(), token.size() + 1));
+        if (token == "ply") return "a PLY";
         if (line.starts_with("glTF")) return "a glTF";
         if (line.starts_with('{') || line.starts_with('['))
             return text.find("\"asset\"") != text.npos && text.find("\"scenes\"") != text.npos ? "a glTF" : "a JSON";
-        if (is_any(kPovDirectives, word) || is_any(kPovBlocks, word)) return "a POV-Ray";
-        if (is_any(kObjKeywords, word) || (word == "v" && reads_as_number(rest))) return "an OBJ";
+        if (contains(kPovDirectives, token) || contains(kPovBlocks, token)) return "a POV-Ray";
+        if (contains(kObjKeywords, token) || (token == "v" && reads_as_number(rest))) return "an OBJ";
         if (!line.empty() && line[0] != '#') return {};
         text.remove_prefix(std::min(text.size(), line.size() + 1));
     }

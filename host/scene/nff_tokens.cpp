@@ -70,8 +70,8 @@ void NffTokens::skip_blanks_and_comments() {
         const char c = text_[position_];
         if (is_binary(c)) refuse(line_, "a control character: is this a binary file? NFF is plain text");
         if (c == '\n' || c == '\r') {
-            const bool first_of_two = c == '\r' && text_.substr(position_ + 1).starts_with('\n');
-            line_ += first_of_two ? 0 : 1;
+            const bool is_cr_of_crlf = c == '\r' && text_.substr(position_ + 1).starts_with('\n');
+            line_ += is_cr_of_crlf ? 0 : 1;
             at_line_start_ = true;
             comment = false;
         } else if (c == '#' && !comment) {

@@ -41,19 +41,19 @@ OutlineCheck clean_outline(Polygon& polygon) {
     const std::vector<Vec3>& vertices = polygon.vertices;
     if (vertices.size() < 3) return {OutlineFault::kNoArea, "has fewer than three different vertices"};
 
-    double size = 0, largest = 0;  // longest side of the bounding box; largest coordinate
+    double size = 0, largest_coordinate = 0;  // size: longest side of the bounding box
     Vec3 mean(0);
     for (const Vec3& v : vertices) {
         for (int axis = 0; axis < 3; ++axis) {
             size = std::max(size, std::abs(v[axis] - vertices[0][axis]));
-            largest = std::max(largest, std::abs(v[axis]));
+            largest_coordinate = std::max(largest_coordinate, std::abs(v[axis]));
         }
         mean += (v - vertices[0]) / static_cast<double>(vertices.size());
     }
     if (size < kMinSceneLength) return {OutlineFault::kNoArea, fmt::format("is smaller than {}", kMinSceneLength)};
 
     // Upper bound of the doubled area that collinear vertices can have because of rounding errors.
-    const double max_error = 1e-12 * size * size + 8 * kEpsilon * largest * size;
+    const double max_error = 1e-12 * size * size + 8 * kEpsilon * largest_coordinate * size;
     const Vec3 normal = newell_normal(vertices);
     for (std::size_t i = 2; normal.length() <= max_error && i < vertices.size(); ++i)
         if ((vertices[i - 1] - vertices[0]).cross(vertices[i] - vertices[0]).length() > max_error)

@@ -11,8 +11,8 @@ namespace raya {
 inline constexpr double kMinSceneLength = 1e-30;
 
 /// Maximum distance of a vertex from the plane of its polygon, relative to the polygon's size (the longest side of its
-/// bounding box). The limit 1e-3 is one pixel of a polygon that spans 1,000 pixels. If vertices are
-/// rounded to six digits, this distance is only about 1e-5.
+/// bounding box). In a polygon that spans 1,000 pixels, the limit 1e-3 is one pixel. Vertices that are rounded to six
+/// digits are only about 1e-5 off the plane.
 inline constexpr double kFlatness = 1e-3;
 
 enum class OutlineFault { kNone, kNoArea, kCrosses, kNotFlat };

@@ -70,7 +70,7 @@ std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& vertices, c
     };
     std::vector<std::array<int, 3>> triangles;
     while (remaining.size() >= 3) {
-        std::size_t ear = 1;  // default, also if there is no ear: triangle (0, 1, 2)
+        std::size_t ear = 1;  // if there is no ear, triangle (0, 1, 2) is cut off
         if (remaining.size() > 3)
             for (std::size_t i = 0; i < remaining.size(); ++i)
                 if (is_ear(flat, remaining, corner(i))) {

@@ -13,7 +13,7 @@ namespace raya {
 Vec3 newell_normal(const std::vector<Vec3>& vertices);
 
 /// Returns the axis (0 = x, 1 = y, 2 = z) along which a plane with this normal is projected to two dimensions: the axis
-/// of the normal's component of largest magnitude, the first such axis in a tie.
+/// of the normal's component of largest magnitude; on a tie the first.
 int dropped_axis(const Vec3& normal);
 
 /// Cuts a planar polygon into vertices.size() - 2 triangles of vertex indices (none for fewer than three vertices).

@@ -19,7 +19,7 @@ struct View {
     Vec3 at{0, 0, 1};
     Vec3 up{0, 1, 0};
     double angle_degrees = 45;  // vertical angle of the image, in (0, 180)
-    double hither = 0;          // near plane; unused, stored only for write_nff()
+    double hither = 0;          // distance of the near plane; unused, stored only for write_nff()
     int width = 256;            // pixels
     int height = 256;
     bool operator==(const View&) const = default;

@@ -10,6 +10,7 @@
 namespace raya {
 namespace {
 
+/// Cosine and sine of an angle; exact for quarter turns.
 struct Direction {
     double cosine, sine;
 };
@@ -44,12 +45,12 @@ void extend_by_disk(Imath::Box3d& box, const Vec3& centre, double radius, const 
 
 }  // namespace
 
-// Uses Rodrigues' rotation formula.
 View turned(View view, double degrees) {
     const double angle = std::fmod(degrees, 360);
     if (angle == 0) return view;
     const auto [cosine, sine] = direction_at(angle);
     const Vec3 axis = view.up.normalized(), arm = view.from - view.at;
+    // Rodrigues' rotation formula.
     view.from = view.at + arm * cosine + axis.cross(arm) * sine + axis * (axis.dot(arm) * (1 - cosine));
     return view;
 }
@@ -64,8 +65,8 @@ Scene random_view(Scene scene, std::uint64_t seed) {
     // (Archimedes).
     const double height =
         random.uniform(std::sin(radians(kMinElevationDegrees)), std::sin(radians(kMaxElevationDegrees)));
-    const double azimuth = random.uniform(0, 2 * std::numbers::pi), level = std::sqrt(1 - height * height);
-    const Vec3 direction = up * height + (east * std::cos(azimuth) + north * std::sin(azimuth)) * level;
+    const double azimuth = random.uniform(0, 2 * std::numbers::pi), horizontal = std::sqrt(1 - height * height);
+    const Vec3 direction = up * height + (east * std::cos(azimuth) + north * std::sin(azimuth)) * horizontal;
     view.from = view.at + Vec3(round_to_millionth(direction.x), round_to_millionth(direction.y),
                                round_to_millionth(direction.z)) *
                               arm.length();

@@ -13,11 +13,11 @@ namespace raya {
 /// cosines.
 View turned(View view, double degrees);
 
-inline constexpr double kMinElevationDegrees = 5,
-                        kMaxElevationDegrees = 75;  // elevations of the eye above `at`, degrees
+/// Limits of the elevation of the eye in random_view().
+inline constexpr double kMinElevationDegrees = 5, kMaxElevationDegrees = 75;
 
-/// Returns the scene with a random eye at the same distance from `at`. The eye is uniformly distributed on the zone of
-/// the sphere around `at` between the elevations kMinElevationDegrees and kMaxElevationDegrees above the plane
+/// Returns the scene with a random eye at the old eye's distance from `at`. The new eye is uniformly distributed on the
+/// zone of the sphere around `at` between the elevations kMinElevationDegrees and kMaxElevationDegrees above the plane
 /// perpendicular to `up`. The result depends only on the arguments, not on the platform: directions are rounded to six
 /// decimals.
 Scene random_view(Scene scene, std::uint64_t seed);

@@ -31,8 +31,8 @@ AsyncSimulation::AsyncSimulation(const raya_torus& torus, const History& history
     result_.links.resize(channels_.size());
 }
 
-void AsyncSimulation::schedule(double delay, EventKind kind, std::uint32_t location, std::uint32_t version) {
-    events_.push({now_ + delay, event_count_++, kind, location, version});
+void AsyncSimulation::schedule(double delay_ns, EventKind kind, std::uint32_t location, std::uint32_t version) {
+    events_.push({now_ + delay_ns, event_count_++, kind, location, version});
 }
 
 AsyncResult AsyncSimulation::run() {

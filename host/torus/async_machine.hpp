@@ -3,9 +3,9 @@
 // history of a render.
 //
 // A node has one processor and two tasks (the paper's terms):
-//   - The main task processes rays in the order of their arrival. It puts a new message for its own node into its
-//     queue, and any other new message into the port of a link. As long as the port is full, the main task is blocked.
-//     If its queue is empty, the main task generates the node's next primary ray, if one is left.
+//   - The main task processes rays in the order of their arrival. It puts a new message for the same node into the main
+//     task's queue, and any other new message into the port of a link. As long as the port is full, the main task is
+//     blocked. If the queue is empty, the main task generates the node's next primary ray, if one is left.
 //   - The communication task has one input thread and one output thread for every link and for the main task. It
 //     preempts the main task and handles one message at a time. A message of w words costs the sender's processor
 //     `message_cycles` + w `word_cycles` before its transfer over the link. After the transfer it costs the receiver's
@@ -22,12 +22,12 @@
 // The machine cannot deadlock:
 //   - Returns have separate slots, their routes form a tree, and the root accepts every return. So every return reaches
 //     the root.
-//   - A ring of the torus is formed by the nodes of one line along an axis, which the wrap-around link closes. Rays
-//     travel along the axes in a fixed order, so a ray waits only for rays on its own ring or on a ring of a later
-//     axis. A ray advances within a ring if the next port has one free slot. A ray enters a ring, from the main task or
-//     from another axis, only if the port has `entry_slots` = 2 free slots. So a ring always has a free slot. This is
-//     bubble flow control (V. Puente et al., "The Adaptive Bubble Router", J. Parallel and Distributed Computing 61,
-//     2001).
+//   - A ring of the torus is a line of nodes along an axis, which the wrap-around link closes to a circle. Rays travel
+//     along the axes in a fixed order, so a ray waits only for rays on its own ring or on a ring of a later axis. A ray
+//     advances within a ring if the next port has one free slot. A ray enters a ring, from the main task or from
+//     another axis, only if the port has `entry_slots` = 2 free slots. So a ring always has a free slot. This method is
+//     called bubble flow control (V. Puente et al., "The Adaptive Bubble Router", J. Parallel and Distributed Computing
+//     61, 2001).
 //   - The main task's queue accepts every arriving ray, even if a full port blocks the main task.
 #pragma once
 #include <cstdint>
@@ -55,7 +55,7 @@ struct AsyncMachine {
 /// Times of a node.
 struct AsyncNode {
     double compute_ms = 0, messages_ms = 0;  // processor times of the main task and of the communication task
-    double port_ms = 0;                      // time for which a full port blocked the main task
+    double port_ms = 0;                      // total time for which full ports blocked the main task
     std::uint64_t queue_max = 0;             // maximum number of rays waiting for the main task
 };
 
@@ -76,14 +76,14 @@ struct AsyncResult {
     AsynchronousTime time() const;
 };
 
-/// Simulates the history on the machine, deterministically. Throws UserError if buffer < entry_slots or
-/// entry_slots is 0, std::logic_error for an invalid history (check_history), and std::runtime_error on a deadlock,
-/// which is impossible with `entry_slots` >= 2.
+/// Simulates the history on the machine, deterministically. Throws UserError if buffer < entry_slots or entry_slots is
+/// 0, and std::logic_error for an invalid history (check_history). Throws std::runtime_error on a deadlock, which is
+/// impossible with `entry_slots` >= 2.
 AsyncResult simulate(const raya_torus& torus, const History& history, const AsyncMachine& machine = {});
 
 /// Returns SimGrid's platform file (XML). The file has a host for each node; its name is the node's number, and it
-/// executes one operation per cycle. For each wire the file has one SimGrid link per direction, and a third SimGrid
-/// link for the bandwidth that both directions share. Routes are only between neighbours, because routing is
+/// executes one operation per cycle. For each link of the torus the file has three SimGrid links: one per direction,
+/// and a "wire" for the bandwidth that both directions share. Routes are only between neighbours, because routing is
 /// store-and-forward. SimGrid's torus (<cluster topology="TORUS">) is not suitable: a message would occupy all links of
 /// its route at once, and the two directions would not share bandwidth.
 std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machine);

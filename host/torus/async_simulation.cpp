@@ -1,4 +1,4 @@
-// Processors (communication task, main task), then links (output threads, transfers, input threads).
+// Parts of AsyncSimulation: first the processors and their tasks, then the links and their threads.
 #include "host/torus/async_simulation.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ void AsyncSimulation::add_job(std::uint32_t node, const MessageJob& job) {
 
 void AsyncSimulation::preempt_main(Node& n) {
     if (n.task == kNone || !n.computing) return;
-    n.remaining -= now_ - n.remaining_since;
+    n.remaining_ns -= now_ - n.remaining_since_ns;
     n.computing = false;
     ++n.version;
 }
@@ -35,10 +35,10 @@ void AsyncSimulation::run_processor(std::uint32_t node) {
         result_.nodes[node].messages_ms += ns * kMsPerNs;
         return schedule(ns, EventKind::kMessageDone, node, 0);
     }
-    if (n.task == kNone || n.computing || n.sent != kNone) return;
+    if (n.task == kNone || n.computing || n.sent_count != kNone) return;
     n.computing = true;
-    n.remaining_since = now_;
-    schedule(std::max(0.0, n.remaining), EventKind::kTaskDone, node, ++n.version);
+    n.remaining_since_ns = now_;
+    schedule(std::max(0.0, n.remaining_ns), EventKind::kTaskDone, node, ++n.version);
 }
 
 void AsyncSimulation::finish_job(std::uint32_t node) {
@@ -64,16 +64,16 @@ void AsyncSimulation::start_next_task(std::uint32_t node) {
         n.task = n.injection_tasks.front();
         n.injection_tasks.pop_front();
     }
-    n.sent = kNone;
-    n.remaining = machine_.cycle_ns * static_cast<double>(history_.tasks[n.task].cycles);
-    result_.nodes[node].compute_ms += n.remaining * kMsPerNs;
+    n.sent_count = kNone;
+    n.remaining_ns = machine_.cycle_ns * static_cast<double>(history_.tasks[n.task].cycles);
+    result_.nodes[node].compute_ms += n.remaining_ns * kMsPerNs;
     run_processor(node);
 }
 
 void AsyncSimulation::finish_task(std::uint32_t node) {
     Node& n = nodes_[node];
     n.computing = false;
-    n.sent = 0;
+    n.sent_count = 0;
     ++finished_tasks_;
     send_outputs(node);
 }
@@ -82,20 +82,20 @@ void AsyncSimulation::finish_task(std::uint32_t node) {
 void AsyncSimulation::send_outputs(std::uint32_t node) {
     Node& n = nodes_[node];
     const std::span<const HistoryMessage> messages = history_.sent_by(n.task);
-    while (n.sent < messages.size()) {
-        const std::uint32_t message = history_.tasks[n.task].first_message + n.sent;
+    while (n.sent_count < messages.size()) {
+        const std::uint32_t message = history_.tasks[n.task].first_message + n.sent_count;
         const std::uint32_t channel_index = next_channel(node, message);
         if (channel_index == kNone) {
-            ++n.sent;
+            ++n.sent_count;
             deliver(message);
             continue;
         }
         const std::uint32_t slots = class_of(message) == 1 ? machine_.entry_slots : 1;
         if (!enqueue(channel_index, {kNone, message, slots})) {
-            n.blocked_since = now_;
+            n.blocked_since_ns = now_;
             return;
         }
-        ++n.sent;
+        ++n.sent_count;
     }
     n.task = kNone;
     start_next_task(node);
@@ -127,49 +127,49 @@ std::uint32_t AsyncSimulation::next_channel(std::uint32_t node, std::uint32_t me
 bool AsyncSimulation::enqueue(std::uint32_t channel_index, const BlockedMessage& blocked_message) {
     const std::uint32_t message_class = class_of(blocked_message.message);
     Channel& channel = channels_[channel_index];
-    if (channel.out[message_class].size() + blocked_message.slots_needed > machine_.buffer) {
+    if (channel.port[message_class].size() + blocked_message.slots_needed > machine_.buffer) {
         channel.blocked[message_class].push_back(blocked_message);
         return false;
     }
-    channel.out[message_class].push_back(blocked_message.message);
+    channel.port[message_class].push_back(blocked_message.message);
     start_sending(channel_index);
     return true;
 }
 
-// Called when a slot of a port has become free. Repeatedly puts the first blocked message for which enough slots are
-// free into the port. So a ray that stays in its ring can overtake a ray that waits to enter the ring.
+// Called when a slot of a port has become free. Repeatedly moves a message into the port: the first blocked message for
+// which enough slots are free. So a ray that stays in its ring can overtake a ray that waits to enter the ring.
 void AsyncSimulation::admit_blocked(std::uint32_t channel_index, std::uint32_t message_class) {
     Channel& channel = channels_[channel_index];
     for (;;) {
         auto& blocked = channel.blocked[message_class];
         const auto fits = [&](const BlockedMessage& b) {
-            return channel.out[message_class].size() + b.slots_needed <= machine_.buffer;
+            return channel.port[message_class].size() + b.slots_needed <= machine_.buffer;
         };
         const auto first = std::ranges::find_if(blocked, fits);
         if (first == blocked.end()) return;
         const BlockedMessage next = *first;
         blocked.erase(first);
-        channel.out[message_class].push_back(next.message);
+        channel.port[message_class].push_back(next.message);
         start_sending(channel_index);
         if (next.channel != kNone) {
             free_input(next.channel, message_class);
         } else {
             Node& n = nodes_[channel.start];
-            result_.nodes[channel.start].port_ms += (now_ - n.blocked_since) * kMsPerNs;
-            ++n.sent;
+            result_.nodes[channel.start].port_ms += (now_ - n.blocked_since_ns) * kMsPerNs;
+            ++n.sent_count;
             send_outputs(channel.start);
         }
     }
 }
 
-// Sends the first message in the port for whose class the input thread has a free slot. Returns have priority over
+// Sends the port's first message of a class for which the input thread has a free slot. Returns have priority over
 // rays, because returns are short.
 void AsyncSimulation::start_sending(std::uint32_t channel_index) {
     Channel& channel = channels_[channel_index];
     if (channel.sending) return;
     for (std::uint32_t message_class = 0; message_class < kClasses; ++message_class) {
-        if (channel.out[message_class].empty() || channel.input_occupied[message_class]) continue;
-        channel.sending = channel.out[message_class].front();
+        if (channel.port[message_class].empty() || channel.input_occupied[message_class]) continue;
+        channel.sending = channel.port[message_class].front();
         channel.sent_class = message_class;
         channel.input_occupied[message_class] = true;
         return add_job(channel.start, {channel_index, *channel.sending, false});
@@ -209,7 +209,7 @@ void AsyncSimulation::end_transfer(std::uint32_t channel_index) {
     link.words += history_.messages[message].words;
     channel.transferring = false;
     channel.sending.reset();
-    channel.out[message_class].pop_front();
+    channel.port[message_class].pop_front();
     if (channels_[channel.opposite].transferring) set_rate(channel.opposite);
     add_job(channel.end, {channel_index, message, true});
     admit_blocked(channel_index, message_class);

@@ -32,27 +32,27 @@ class AsyncSimulation {
         std::uint64_t number = 0;  // index in the order of scheduling; orders events of equal time
         EventKind kind{};
         std::uint32_t location = 0;  // node (kMessageDone, kTaskDone) or channel
-        std::uint32_t version =
-            0;  // of the node or channel at scheduling; if it has changed since, the event is obsolete
+        // Version of the node or channel at the time of scheduling. After a later change the event is obsolete.
+        std::uint32_t version = 0;
         bool operator>(const Event& other) const {
             return time != other.time ? time > other.time : number > other.number;
         }
     };
 
     // A message that waits until a port has `slots_needed` free slots. The message is in the input thread of channel
-    // `channel`. If `channel` is kNone, it is in the node's main task.
+    // `channel`. If `channel` is kNone, the message is in the node's main task.
     struct BlockedMessage {
         std::uint32_t channel = kNone, message = 0, slots_needed = 1;
     };
 
     // One direction of a link: the output thread at its start, the transfer, and the input thread at its end.
     struct Channel {
-        std::uint32_t start = 0, end = 0, opposite = 0;               // node, node, channel
-        std::array<std::deque<std::uint32_t>, kClasses> out{};        // [class]: messages in the port
+        std::uint32_t start = 0, end = 0, opposite = 0;               // nodes at both ends; channel
+        std::array<std::deque<std::uint32_t>, kClasses> port{};       // [class]: messages in the port
         std::array<std::vector<BlockedMessage>, kClasses> blocked{};  // [class]: messages that wait for the port
         std::array<bool, kClasses> input_occupied{};                  // [class]: the input thread's slot is occupied
-        std::optional<std::uint32_t>
-            sending{};  // message, from the start of the sender's job to the end of the transfer
+        // Message that is being sent, from the start of the sender's job to the end of the transfer.
+        std::optional<std::uint32_t> sending{};
         std::uint32_t sent_class = 0, version = 0;  // class of `sending`; number of set_rate() calls
         bool transferring = false;
         double words_left = 0, rate = 0, rate_since = 0, transfer_start = 0;  // words, words/ns, ns, ns
@@ -70,15 +70,15 @@ class AsyncSimulation {
         std::deque<std::uint32_t> queue{};            // messages that wait for the main task
         std::deque<std::uint32_t> injection_tasks{};  // tasks that no message causes and that have not started
         std::uint32_t task = kNone;                   // current task of the main task
-        std::uint32_t sent = 0;  // number of messages of `task` that are sent; kNone until its computation ends
+        std::uint32_t sent_count = 0;  // number of messages of `task` that are sent; kNone until its computation ends
         bool computing = false;
-        double remaining = 0,
-               remaining_since = 0;  // remaining computation time of `task` at time `remaining_since`, ns
-        double blocked_since = 0;    // time at which the main task began to wait for a port, ns
-        std::uint32_t version = 0;   // number of starts and preemptions of the computation
+        // Remaining computation time of `task` at time `remaining_since_ns`.
+        double remaining_ns = 0, remaining_since_ns = 0;
+        double blocked_since_ns = 0;  // time at which the main task began to wait for a port
+        std::uint32_t version = 0;    // number of starts and preemptions of the computation
     };
 
-    void schedule(double delay, EventKind kind, std::uint32_t location, std::uint32_t version);
+    void schedule(double delay_ns, EventKind kind, std::uint32_t location, std::uint32_t version);
     void handle(const Event& event);
 
     // The processors.
@@ -114,7 +114,7 @@ class AsyncSimulation {
     std::vector<Channel> channels_;
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
     std::uint64_t event_count_ = 0, finished_tasks_ = 0;
-    double now_ = 0;
+    double now_ = 0;  // ns
     AsyncResult result_;
 };
 

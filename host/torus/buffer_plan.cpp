@@ -15,14 +15,14 @@
 namespace raya {
 namespace {
 
-// Returns the queue length to try after `tried`. It is the longest queue that fits a node if that is longer than
-// `tried` and shorter than twice `tried`, else twice `tried`.
-std::uint32_t next_queue(std::uint32_t tried, const QueueTrial& trial) {
-    const auto fits = [&](std::uint32_t queue) { return trial.node_bytes(buffers_for(queue)) <= trial.node_memory; };
-    const std::uint32_t next = std::min(2 * tried, trial.max_queue);
-    if (!fits(tried) || fits(next)) return next;
-    const std::uint32_t longest = largest_where(tried, next, fits);
-    return longest > tried ? longest : next;
+// Returns the queue length to try after `queue`. It is the longest queue that fits a node if that is longer than
+// `queue` and shorter than twice `queue`, else twice `queue`.
+std::uint32_t next_queue(std::uint32_t queue, const QueueTrial& trial) {
+    const auto fits = [&](std::uint32_t length) { return trial.node_bytes(buffers_for(length)) <= trial.node_memory; };
+    const std::uint32_t next = std::min(2 * queue, trial.max_queue);
+    if (!fits(queue) || fits(next)) return next;
+    const std::uint32_t longest = largest_where(queue, next, fits);
+    return longest > queue ? longest : next;
 }
 
 // Maximum number of entries in the voxels' lists of a trial. A trial with so many entries takes a fraction of a second.
@@ -39,18 +39,18 @@ class PartitionTrial {
         : job_(job), format_(format), voxels_(voxels) {}
 
     std::optional<NodeTrialResult> operator()(const std::array<std::uint32_t, 3>& nodes) {
-        NodeTrialResult tried{0, voxels_};
+        NodeTrialResult result{0, voxels_};
         for (std::size_t axis = 0; axis < 3; ++axis)
-            while (tried.voxels[axis] < nodes[axis]) tried.voxels[axis] *= 2;
-        const std::uint64_t voxels = voxels_of(tried.voxels);
+            while (result.voxels[axis] < nodes[axis]) result.voxels[axis] *= 2;
+        const std::uint64_t voxels = voxels_of(result.voxels);
         if (voxels > kMaxPartitionVoxels || objects_everywhere_ * voxels > kMaxTrialEntries) return {};
         try {
-            const Partition tried_partition = partition(job_, format_, tried.voxels);
+            const Partition tried_partition = partition(job_, format_, result.voxels);
             const bool all_everywhere = tried_partition.objects.size() == tried_partition.listed_objects * voxels;
             objects_everywhere_ = all_everywhere ? tried_partition.listed_objects : 0;
             // The assignment of voxels to nodes does not depend on the links.
-            tried.words = fullest_node_words(job_, tried_partition, make_torus(nodes, Links::kTorus3d));
-            return tried;
+            result.words = fullest_node_words(job_, tried_partition, make_torus(nodes, Links::kTorus3d));
+            return result;
         } catch (const TooManyEntries&) {
             return {};
         }
@@ -69,8 +69,8 @@ class PartitionTrial {
 constexpr std::uint64_t kPacketBytes = RAYA_PACKET_WORDS * sizeof(std::uint32_t);
 constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t);
 
-// Returns the longest queue in [min_queue, max_queue] that fits `memory` bytes together with its mailboxes and `words`
-// words. The queue `min_queue` must fit.
+// Returns the longest queue in [min_queue, max_queue] with which the queue, the mailboxes and `words` words fit
+// `memory` bytes. The queue `min_queue` must fit.
 std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t min_queue,
                             std::uint32_t max_queue) {
     return largest_where(min_queue, std::uint64_t{max_queue} + 1,
@@ -139,10 +139,10 @@ std::string larger_machine(const MemoryDemand& demand, const NodeTrial& trial) {
         };
         // Smaller voxels only add copies of objects, so an even division of the present words is a lower bound.
         if (!fits(demand.memories.words.size() / count)) continue;
-        const std::optional<NodeTrialResult> tried = trial(nodes);
-        if (tried && fits(tried->words))
+        const std::optional<NodeTrialResult> result = trial(nodes);
+        if (result && fits(result->words))
             return fmt::format("--nodes {}{}", sides_text(nodes),
-                               tried->voxels == nodes ? "" : " --voxels " + sides_text(tried->voxels));
+                               result->voxels == nodes ? "" : " --voxels " + sides_text(result->voxels));
     }
     return {};
 }
@@ -213,7 +213,7 @@ std::string queue_remedy(const QueueSearchResult& found) {
             "no queue up to {} packets is long enough, and the device cannot hold longer ones; use fewer nodes",
             found.queue);
     if (found.fits) return fmt::format("--queue {} is long enough (tried)", found.queue);
-    return fmt::format("no queue that fits a node's memory is long enough, --queue {} --pe-memory {} is (tried)",
+    return fmt::format("no queue that fits a node's memory is long enough; use --queue {} --pe-memory {} (tried)",
                        found.queue, (found.bytes + 1023) / 1024 * 1024);
 }
 
@@ -238,10 +238,10 @@ NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories,
 }
 
 bool fits_device(const NodeBuffers& buffers, std::uint32_t nodes, const DeviceMemory& memory) {
-    const std::uint64_t queues = kPacketBytes * nodes * buffers.queue;
-    const std::uint64_t boxes = kPacketBytes * RAYA_LINKS * nodes * (std::uint64_t{1} + buffers.box);
-    const std::uint64_t all = queues + 2 * boxes + 2 * boxes * kReturnBytes / kPacketBytes;
-    return std::max(queues, boxes) <= memory.max_buffer && all <= memory.total;
+    const std::uint64_t queue_bytes = kPacketBytes * nodes * buffers.queue;
+    const std::uint64_t box_bytes = kPacketBytes * RAYA_LINKS * nodes * (std::uint64_t{1} + buffers.box);
+    const std::uint64_t all_bytes = queue_bytes + 2 * box_bytes + 2 * box_bytes * kReturnBytes / kPacketBytes;
+    return std::max(queue_bytes, box_bytes) <= memory.max_buffer && all_bytes <= memory.total;
 }
 
 void check_device_memory(const std::string& scene, const NodeBuffers& buffers, std::uint32_t nodes,

@@ -17,12 +17,12 @@
 
 namespace raya {
 
-/// Returns a queue of `queue` packets, and mailboxes of a quarter as many packets, but at least 1.
+/// Returns the capacities of a queue of `queue` packets and of mailboxes of max(1, queue / 4) packets.
 NodeBuffers buffers_for(std::uint32_t queue);
 
 /// Returns the memory that a node needs, in bytes: `words` scene words, the queue of rays, an outbox and an inbox of
-/// rays for each of `links` links, an inbox of returns for each link, and one outbox of returns, for the link towards
-/// the root. The returns that have reached the root are not included, because they are in the host's memory.
+/// rays for each of `links` links, an inbox of returns for each link, and one outbox of returns for the return link.
+/// The returns that have reached the root are not included, because they are in the host's memory.
 std::uint64_t node_bytes(std::uint64_t words, const NodeBuffers& buffers, std::uint32_t links);
 
 /// Returns the default capacity of a queue in packets: 8,192, or less for more than 2,048 nodes, so that all queues and
@@ -68,16 +68,16 @@ QueueSearchResult find_longer_queue(std::uint32_t queue, const QueueTrial& trial
 /// Returns the remedy for an error message: "--queue 74 is long enough (tried)".
 std::string queue_remedy(const QueueSearchResult& found);
 
-/// Result of dividing the same job among another number of nodes.
+/// Result of a NodeTrial.
 struct NodeTrialResult {
     std::uint64_t words = 0;  // number of scene words of the fullest node
     Divisions voxels{};       // numbers of voxels along x, y, z
 };
-/// Divides the job among `nodes` nodes along x, y, z.
+/// Divides a job among `nodes` nodes along x, y, z. Returns nullopt if the partition would be too large.
 using NodeTrial = std::function<std::optional<NodeTrialResult>(const std::array<std::uint32_t, 3>& nodes)>;
 
-/// Makes a trial that doubles `voxels` along each axis until every node has a voxel. The trial returns nullopt if the
-/// partition would be too large. `job` must outlive the trial.
+/// Makes a trial that divides `job` into `voxels` voxels, doubled along each axis until every node has a voxel. `job`
+/// must outlive the trial.
 NodeTrial make_node_trial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels);
 
 /// Thrown if the scene or the buffers do not fit the nodes. `needed`: bytes that the fullest node needs; `memory`:
@@ -94,14 +94,14 @@ struct NodesDoNotFit : DoesNotFit {
 /// fit `memory_bytes` (empty: no limit) together with the words of the fullest node, at most default_queue().
 /// buffers_for() determines the size of the mailboxes. Throws NodesDoNotFit if words and buffers exceed `memory_bytes`.
 /// The message states how many nodes fit, the voxels, objects and bytes of the fullest node, and a remedy: more memory
-/// or a shorter queue. If `trial` is given, the remedy may be a sufficient number of nodes; the search for it takes
+/// or a shorter queue. If `trial` is given, the remedy may be more nodes; the search for a sufficient number takes
 /// about a second. `min_queue`: maximum number of packets that the ray tree of a single primary ray needs. Throws
 /// UserError if 0 < `queue` < `min_queue`.
 NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,
                          std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t min_queue,
                          const NodeTrial& trial = {});
 
-/// `total`: memory of a device; `max_buffer`: maximum size of one buffer; bytes.
+/// Memory of a device in bytes. `max_buffer`: maximum size of one buffer.
 struct DeviceMemory {
     std::uint64_t total = 0, max_buffer = 0;
 };

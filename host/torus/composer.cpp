@@ -45,7 +45,7 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
     for (const raya_head& packet : returns) {
         if (packet.pixel >= pixels)
             throw std::logic_error(
-                fmt::format("a contribution to pixel {} of an image of {} pixels", packet.pixel, pixels));
+                fmt::format("a contribution has pixel {}, but the image has only {} pixels", packet.pixel, pixels));
         ++sorted.starts[packet.pixel + 1];
     }
     for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) sorted.starts[pixel + 1] += sorted.starts[pixel];
@@ -67,7 +67,7 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
 
 Composer::Composer(Kernels& kernels)
     : session_(kernels.session()), group_size_(kernels.options().group_size), compose_(kernels.get<ComposeKernel>()) {
-    compose({{0, 0, 0, 0}, {0, 1}});  // PoCL compiles a kernel at its first launch
+    compose({{0, 0, 0, 0}, {0, 1}});  // compiles the kernel, because PoCL does so at the first launch
 }
 
 std::vector<float> Composer::compose(const Contributions& contributions) {

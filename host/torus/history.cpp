@@ -77,15 +77,15 @@ std::span<const HistoryMessage> History::sent_by(std::size_t task) const {
 }
 
 std::vector<std::uint32_t> tasks_of_messages(const History& history) {
-    std::vector<std::uint32_t> caused(history.messages.size(), HistoryTask::kNoCause);
+    std::vector<std::uint32_t> task_of_message(history.messages.size(), HistoryTask::kNoCause);
     for (std::size_t t = 0; t < history.tasks.size(); ++t) {
         const std::uint32_t cause = history.tasks[t].cause;
         if (cause == HistoryTask::kNoCause) continue;
-        require(cause < caused.size() && caused[cause] == HistoryTask::kNoCause, t,
+        require(cause < task_of_message.size() && task_of_message[cause] == HistoryTask::kNoCause, t,
                 "invalid or repeated cause of task");
-        caused[cause] = static_cast<std::uint32_t>(t);
+        task_of_message[cause] = static_cast<std::uint32_t>(t);
     }
-    return caused;
+    return task_of_message;
 }
 
 void check_history(const History& history, std::uint32_t nodes) {
@@ -100,14 +100,15 @@ void check_history(const History& history, std::uint32_t nodes) {
         require(tasks[t].cause == HistoryTask::kNoCause || tasks[t].cause < tasks[t].first_message, t,
                 "the cause does not precede task");
     }
-    const std::vector<std::uint32_t> caused = tasks_of_messages(history);
+    const std::vector<std::uint32_t> task_of_message = tasks_of_messages(history);
     for (std::size_t m = 0; m < messages.size(); ++m) {
-        const bool is_return = messages[m].kind == RAYA_KIND_RETURN, causes = caused[m] != HistoryTask::kNoCause;
+        const bool is_return = messages[m].kind == RAYA_KIND_RETURN,
+                   causes_task = task_of_message[m] != HistoryTask::kNoCause;
         require(messages[m].destination < nodes && messages[m].words > 0, m,
                 "invalid destination or no words of message");
-        require(causes != is_return, m, is_return ? "a task is caused by return" : "no task is caused by ray");
-        require(is_return ? messages[m].destination == RAYA_ROOT : messages[m].destination == tasks[caused[m]].node, m,
-                "wrong destination of message");
+        require(causes_task != is_return, m, is_return ? "a task is caused by return" : "no task is caused by ray");
+        const std::uint32_t expected_node = is_return ? RAYA_ROOT : tasks[task_of_message[m]].node;
+        require(messages[m].destination == expected_node, m, "wrong destination of message");
     }
 }
 
@@ -140,8 +141,8 @@ void HistoryRecorder::add(const NodeWork& work) {
     add_messages(work, first_task);
 }
 
-// Adds a task for each primary ray that the node has created in this superstep. The node has also processed the ray, or
-// the ray is still in the queue slot in which it was created.
+// Adds a task for each primary ray that the node has created in this superstep. If the node has also processed the ray,
+// it is in work.processed; otherwise it is still in the queue slot in which the node created it.
 void HistoryRecorder::add_injection_tasks(const NodeWork& work) {
     std::vector<SentMessage> sent_messages;
     for (std::size_t slot = 0; slot < work.processed.size(); ++slot) {
@@ -181,7 +182,8 @@ void HistoryRecorder::add_processing_tasks(const NodeWork& work) {
 }
 
 // Adds the packets that the tasks from `first_task` on created or changed. These packets have RAYA_STATE_FRESH. A
-// packet of an earlier superstep that waits for a link also has it, but the last task of its ray precedes `first_task`.
+// packet of an earlier superstep that waits for a link also has this flag. It is skipped, because its ray's last task
+// precedes `first_task`.
 void HistoryRecorder::add_messages(const NodeWork& work, std::size_t first_task) {
     std::vector<SentMessage> sent_messages;
     for (const raya_packet& p : work.queue) {

@@ -17,7 +17,7 @@ namespace raya {
 struct RayId {
     std::uint32_t pixel = 0;  // row W + column, where W is the width of the image
     /// Number of the ray in the tree, as in a binary heap: 1 for the primary ray, 2 n for the reflected and 2 n + 1 for
-    /// the refracted ray of ray n. At level l the number has l + 1 bits, so 31 bounces fit.
+    /// the refracted ray of ray number n. At level l the number has l + 1 bits, so 31 bounces fit.
     std::uint32_t tree_index = 1;
     std::uint32_t light = 0;  // index of a shadow ray's light + 1, at most 65,535; 0 for other rays
 
@@ -53,8 +53,8 @@ class RayNumbers {
     std::uint64_t next_number_ = 0;
 };
 
-/// A computation of one node. Either the node processes one packet; then the task starts when the packet has arrived.
-/// Or it generates one primary ray.
+/// A computation of one node, which either processes one packet or generates one primary ray. A task that processes a
+/// packet starts when the packet has arrived.
 struct HistoryTask {
     static constexpr std::uint32_t kNoCause = UINT32_MAX;
 
@@ -65,7 +65,7 @@ struct HistoryTask {
 };
 
 /// A packet that a task created or changed. The task sends a ray to the node that processes the ray next, which may be
-/// the same node, and a return to the root.
+/// the task's own node. It sends a return to the root.
 struct HistoryMessage {
     std::uint32_t task = 0;         // task that sends the message at the end of its computation
     std::uint32_t destination = 0;  // node

@@ -28,8 +28,8 @@ std::uint32_t max_corners(const raya_objects& objects, std::span<const std::uint
     return corners;
 }
 
-// Returns the work to generate all primary rays of a node: the number of rows plus the number of batches of their
-// pixels (kernels/torus/pixel_rows.clh).
+// Returns the work that the generation of all primary rays of a node takes: the number of rows plus the number of
+// batches of their pixels (kernels/torus/pixel_rows.clh).
 std::uint64_t inject_work_of(const raya_node& header, bool root_injects, std::uint64_t batch) {
     const std::uint64_t width = header.job.mapping.width, height = header.job.mapping.height;
     const auto work = [&](std::uint64_t rows, std::uint64_t columns) { return rows * (1 + divide_up(columns, batch)); };
@@ -136,7 +136,7 @@ LaunchBudget LaunchPlan::trace_voxel() const {
                   total_work);
 }
 
-constexpr double kIterationsOfMove = 8;  // number of loop iterations to move one batch of packets
+constexpr double kIterationsOfMove = 8;  // number of loop iterations that one batch of packets takes
 
 LaunchBudget LaunchPlan::route() const {
     const std::uint64_t batches = divide_up(buffers_.queue, group_size_);

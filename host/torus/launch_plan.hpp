@@ -14,7 +14,7 @@ namespace raya {
 /// Budget of a launch. The host repeats the launch until no node has work left.
 struct LaunchBudget {
     std::uint32_t work = 0;      // maximum work of a node in one launch, in units that the kernel defines
-    bool single_launch = false;  // true: one launch certainly completes the work, so the host need not read the status
+    bool single_launch = false;  // true: one launch certainly completes the work; the host need not read the status
 
     bool operator==(const LaunchBudget&) const = default;
 };
@@ -62,7 +62,7 @@ class LaunchPlan {
 
     const NodeDistribution& distribution_;
     const NodeBuffers buffers_;
-    std::uint32_t lanes_, group_size_, lights_ = 0, max_corners_ = 0;  // max_corners_: of a polygon
+    std::uint32_t lanes_, group_size_, lights_ = 0, max_corners_ = 0;  // max_corners_: maximum over all polygons
     std::uint32_t max_loop_iterations_, work_per_launch_;
     bool rounds_correctly_;    // the device rounds quotients and square roots correctly, without refinement loops
     std::vector<Node> nodes_;  // [slot]

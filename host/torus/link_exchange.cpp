@@ -30,21 +30,21 @@ LinkExchange::LinkExchange(Session& session, const NodeDistribution& distributio
       class_(packet_class),
       outboxes_(session.buffer<std::uint32_t>("outboxes", outbox_at(RAYA_LINKS, 0))),
       inboxes_(session.buffer<std::uint32_t>("inboxes", inbox_at(RAYA_LINKS, 0))),
-      sent_(session.buffer<std::uint32_t>("sent flags", std::size_t{RAYA_LINKS} * distribution.inboxes())),
+      flag_buffer_(session.buffer<std::uint32_t>("sent flags", std::size_t{RAYA_LINKS} * distribution.inboxes())),
       rank_links_(find_rank_links()) {}
 
 void LinkExchange::clear() {
     const std::size_t outboxes = std::size_t{RAYA_LINKS} * nodes_;
     sent_flags_.assign(outboxes, 0);
     device_flags_ = sent_flags_;
-    session_.fill("clear mailboxes", sent_, 0);
+    session_.fill("clear mailboxes", flag_buffer_, 0);
     // Clears only the packet counts, because mailboxes are large and most of their memory pages are never used.
     const Session::Blocks zeros{.pitch = 1}, boxes{.pitch = box_words(capacity_)};
-    session_.copy_blocks("clear mailboxes", sent_, zeros, inboxes_, boxes, 1, sent_.size());
-    session_.copy_blocks("clear mailboxes", sent_, zeros, outboxes_, boxes, 1, outboxes);
+    session_.copy_blocks("clear mailboxes", flag_buffer_, zeros, inboxes_, boxes, 1, flag_buffer_.size());
+    session_.copy_blocks("clear mailboxes", flag_buffer_, zeros, outboxes_, boxes, 1, outboxes);
     visited_.assign(outboxes, 0);
     packets_.assign(std::size_t{RAYA_LINKS} * raya_nodes(torus_), 0);
-    moved_ = 0;
+    moved_packets_ = 0;
 }
 
 void LinkExchange::use_kernel(const ExchangeKernel& kernel, std::uint32_t group_size, Buffer<std::uint32_t>& status) {
@@ -81,7 +81,7 @@ void LinkExchange::count_transfers(const NodeStatus& status, std::uint32_t link,
         const std::uint64_t messages = class_.charged_status ? status.at(node, *class_.charged_status) : packets;
         packets_[std::size_t{node} * RAYA_LINKS + link] += messages;
         words[std::size_t{node} * RAYA_LINKS + link] += messages * class_.charged_words;
-        moved_ += packets;
+        moved_packets_ += packets;
     }
 }
 
@@ -101,13 +101,13 @@ void LinkExchange::launch_kernel() {
                     kernel_->end_slots, Uint<"nodes">{nodes_}, Uint<"inboxes_of_link">{distribution_.inboxes()},
                     Uint<"capacity">{capacity_}, Uint<"packet_words">{class_.packet_words},
                     Uint<"outbox_status">{class_.outbox_status}, Uint<"inbox_status">{class_.inbox_status}, outboxes_,
-                    inboxes_, sent_, kernel_->status);
+                    inboxes_, flag_buffer_, kernel_->status);
     device_flags_ = sent_flags_;
 }
 
 void LinkExchange::write_sent_flags() {
     if (sent_flags_ == device_flags_) return;
-    session_.write(class_.label, sent_, sent_flags_);
+    session_.write(class_.label, flag_buffer_, sent_flags_);
     device_flags_ = sent_flags_;
 }
 

@@ -28,12 +28,12 @@ class LinkExchange {
   public:
     /// Class of packets that one LinkExchange transfers, and number of words that the model charges for them.
     struct PacketClass {
-        std::string label;           // prefix of command labels
-        std::uint32_t packet_words;  // number of words in a packet
-        std::uint32_t outbox_status,
-            inbox_status;  // first of RAYA_LINKS status words with the mailboxes' packet counts
+        std::string label;            // prefix of command labels
+        std::uint32_t packet_words;   // number of words in a packet
+        std::uint32_t outbox_status;  // first of RAYA_LINKS status words: numbers of packets in the outboxes
+        std::uint32_t inbox_status;   // first of RAYA_LINKS status words: numbers of packets in the inboxes
         std::uint32_t charged_words = packet_words;        // number of words charged for each message
-        std::optional<std::uint32_t> charged_status = {};  // status word with the number of charged packets; empty: all
+        std::optional<std::uint32_t> charged_status = {};  // status word: number of charged packets; empty: all packets
         int tag = 0;                                       // tag of messages between ranks
     };
 
@@ -54,7 +54,7 @@ class LinkExchange {
     /// for each link direction, labelled "LABEL +x", "LABEL -x", ... A direction takes several commands if some of its
     /// inboxes are not empty, or if the lengths of the outboxes differ so much that one command with the maximum length
     /// would take longer. Adds the number of words charged for each link to `words`, [node][link]. `status`, `words`,
-    /// packets() and moved() cover all nodes of all ranks.
+    /// packets() and moved_packets() cover all nodes of all ranks.
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
     /// Transfers between ranks, in the same superstep as an exchange(). begin_transfers() appends the messages to `out`
@@ -66,13 +66,14 @@ class LinkExchange {
 
     Buffer<std::uint32_t>& outboxes() { return outboxes_; }
     Buffer<std::uint32_t>& inboxes() { return inboxes_; }
-    const Buffer<std::uint32_t>& sent_flags() const { return sent_; }  // [link][slot]: 1 if the outbox was transferred
+    /// [link][slot]: 1 if the outbox was transferred.
+    const Buffer<std::uint32_t>& sent_flags() const { return flag_buffer_; }
 
     /// [node][link]: number of messages (charged packets) sent since clear().
     const std::vector<std::uint64_t>& packets() const { return packets_; }
 
     /// Number of packets sent over all links since clear(), including packets that are not charged.
-    std::uint64_t moved() const { return moved_; }
+    std::uint64_t moved_packets() const { return moved_packets_; }
 
     /// Calls `visit`, unless it is empty, with the node and the head of every packet that was put into an outbox of
     /// this rank since the last call of visit_new_packets().
@@ -100,12 +101,12 @@ class LinkExchange {
         std::uint32_t link, sender, rank;  // direction; node at the start of the link; the other rank
     };
 
-    /// Message between this rank and another rank: the packets of one link direction, and their numbers.
+    /// Message between this rank and another rank. It contains the outboxes of one link direction.
     struct LinkMessage {
         std::uint32_t rank = 0, link = 0;    // the other rank; direction
         std::vector<std::uint32_t> senders;  // nodes whose outboxes are in the message, ascending
-        std::vector<std::uint32_t> packets;  // [index in `senders`]: number of packets
-        std::size_t words = 0;               // length of the message
+        std::vector<std::uint32_t> packets;  // [index in `senders`]: number of packets in the outbox
+        std::size_t words = 0;               // number of words in the message
     };
     std::vector<RankLink> find_rank_links() const;
     LinkMessage& message_for(std::vector<LinkMessage>& messages, std::uint32_t rank, std::uint32_t link) const;
@@ -116,7 +117,7 @@ class LinkExchange {
     const raya_torus torus_;
     std::uint32_t nodes_, capacity_;  // number of nodes of this rank; capacity of a mailbox, packets
     PacketClass class_;
-    Buffer<std::uint32_t> outboxes_, inboxes_, sent_;
+    Buffer<std::uint32_t> outboxes_, inboxes_, flag_buffer_;
     struct KernelTransfer {
         ExchangeKernel kernel;
         std::uint32_t group_size;
@@ -124,11 +125,11 @@ class LinkExchange {
         Buffer<std::uint32_t> end_slots;  // [link][slot]: slot of the node at the end of the link, or RAYA_NO_SLOT
     };
     std::optional<KernelTransfer> kernel_;
-    std::vector<std::uint32_t> sent_flags_;    // next contents of sent_
-    std::vector<std::uint32_t> device_flags_;  // present contents of sent_
+    std::vector<std::uint32_t> sent_flags_;    // next contents of flag_buffer_
+    std::vector<std::uint32_t> device_flags_;  // present contents of flag_buffer_
     std::vector<std::uint32_t> visited_;       // [link][slot]: number of packets in the outbox already visited
     std::vector<std::uint64_t> packets_;
-    std::uint64_t moved_ = 0;
+    std::uint64_t moved_packets_ = 0;
     const std::vector<RankLink> rank_links_;  // sorted by link, then by sender
     std::vector<LinkMessage> outgoing_, incoming_;
     std::optional<Readback<std::uint32_t>> outgoing_words_;  // words of the messages outgoing_, concatenated

@@ -268,8 +268,8 @@ void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns
     session_.read("gather", returns_, 0, returns_readback_, 0, returns_pending_);
 }
 
-// Called in the superstep after the one that started the readback. The readback is complete, because read_status() has
-// waited for the command queue since the readback started.
+// Called one superstep after the start of the readback. In between, read_status() has waited for the command queue, so
+// the readback is complete.
 void NodeArray::gather_remaining(std::vector<raya_head>& returns) {
     if (returns_pending_ == 0) return;
     session_.wait("gather", returns_readback_);

@@ -83,13 +83,13 @@ class NodeArray {
     /// Sets the pixels of the following images; the default is TorusSettings::pixels.
     void set_pixels(const PixelSubset& pixels);
 
-    /// A range of slots.
+    /// A range of slots. inner(): nodes without links to other ranks; border(): the remaining nodes.
     struct Slots {
         std::uint32_t first = 0, count = 0;
     };
     Slots all() const { return {0, nodes_}; }
-    Slots inner() const { return {0, distribution_.inner()}; }  // nodes without links to other ranks
-    Slots border() const { return {distribution_.inner(), nodes_ - distribution_.inner()}; }
+    Slots inner() const { return {0, distribution_.inner_nodes()}; }
+    Slots border() const { return {distribution_.inner_nodes(), nodes_ - distribution_.inner_nodes()}; }
 
     void inject(Slots nodes);
     void trace_voxel(Slots nodes, Reserve reserve);
@@ -110,27 +110,27 @@ class NodeArray {
     /// KernelOptions::costs and a single rank.
     void report_work(const NodeStatus& injected, const NodeWorkSink& sink);
 
-    /// In rank 0, appends the returns of the readback that the previous call started to `returns`. Then starts a
-    /// readback of the returns that have reached the root since the previous call. After the last superstep,
-    /// gather_remaining() appends the returns of the last readback.
+    /// In rank 0, appends to `returns` the packets that the previous call started to read. Then starts to read the
+    /// returns that have reached the root since the previous call. After the last superstep, gather_remaining() appends
+    /// the packets that the last call started to read.
     void gather(const NodeStatus& status, std::vector<raya_head>& returns);
     void gather_remaining(std::vector<raya_head>& returns);
 
-    /// In rank 0, passes to `sink` the packets in the outboxes of all ranks that the outbox's node created or changed
-    /// and that the model charges as messages. All ranks must call record_packets() in every superstep. An empty sink
-    /// skips the superstep; it must be empty in all ranks or in none.
+    /// In rank 0, passes the new messages in the outboxes of all ranks to `sink`: packets that the outbox's node
+    /// created or changed and that the model charges as messages. All ranks must call record_packets() in every
+    /// superstep. An empty sink skips the superstep; it must be empty in all ranks or in none.
     void record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
     std::vector<std::uint64_t> read_events();  // rank 0: [node][RAYA_EVENTS] of all nodes; others: empty
-    PacketCounts read_made();                  // packets made, sum over all ranks
-    PacketCounts read_ended();                 // packets ended, sum over all ranks
+    PacketCounts read_made();                  // numbers of packets that nodes created, sums over all ranks
+    PacketCounts read_ended();  // numbers of packets that nodes processed to the end, sums over all ranks
 
-    std::vector<std::uint64_t> link_packets()
-        const;  // [node][RAYA_LINKS]: number of messages since clear(), of all ranks
+    /// Returns [node][RAYA_LINKS]: number of messages over the link since clear(), for the nodes of all ranks.
+    std::vector<std::uint64_t> link_packets() const;
     bool links_by_kernel() const { return links_by_kernel_; }          // see TorusResult
     const std::string& links_origin() const { return links_origin_; }  // see TorusResult
-    std::uint64_t moved_rays() const { return ray_links_.moved(); }
-    std::uint64_t moved_returns() const { return return_links_.moved(); }
+    std::uint64_t moved_rays() const { return ray_links_.moved_packets(); }
+    std::uint64_t moved_returns() const { return return_links_.moved_packets(); }
     const std::string& build_options() const { return build_options_; }
     bool words_local() const { return options_.words_local; }  // kernels copy a node's words to local memory
 

@@ -98,7 +98,7 @@ NodeDistribution::NodeDistribution(const raya_torus& torus, std::uint32_t ranks,
             std::vector<std::uint32_t>& nodes = nodes_of_[rank_of_[node]];
             slot_of_[node] = static_cast<std::uint32_t>(nodes.size());
             nodes.push_back(node);
-            inner_ += inner && has(node);
+            inner_nodes_ += inner && has(node);
         }
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
         for (std::uint32_t node = 0; node < rank_of_.size(); ++node)

@@ -16,10 +16,9 @@ namespace raya {
 /// nodes.
 std::vector<std::uint32_t> ranks_of_nodes(const raya_torus& torus, std::uint32_t ranks);
 
-/// Distribution of the nodes over the ranks, seen from one rank ("this rank", the constructor's `rank`). A slot is the
-/// index of a node within its rank. The first slots are those of the inner nodes, whose links all end in the same rank.
-/// The slots of the border nodes follow. Inner nodes and border nodes are each in ascending order. With one rank all
-/// nodes are inner.
+/// Distribution of the nodes over the ranks. The constructor's `rank` is "this rank". A slot is the index of a node
+/// within its rank. The first slots are those of the inner nodes, whose links all end in the same rank. The slots of
+/// the border nodes follow. Inner nodes and border nodes are each in ascending order.
 class NodeDistribution {
   public:
     explicit NodeDistribution(const raya_torus& torus, std::uint32_t ranks = 1, std::uint32_t rank = 0);
@@ -29,7 +28,7 @@ class NodeDistribution {
     /// Number of nodes of this rank.
     std::uint32_t nodes() const { return static_cast<std::uint32_t>(own_nodes().size()); }
     /// Number of inner nodes of this rank.
-    std::uint32_t inner() const { return inner_; }
+    std::uint32_t inner_nodes() const { return inner_nodes_; }
     /// Maximum number of nodes of a rank.
     std::uint32_t max_nodes_of_rank() const;
 
@@ -53,7 +52,7 @@ class NodeDistribution {
     bool is_inner(std::uint32_t node) const;
 
     raya_torus torus_;
-    std::uint32_t rank_, inner_ = 0, inboxes_ = 0;
+    std::uint32_t rank_, inner_nodes_ = 0, inboxes_ = 0;
     std::vector<std::uint32_t> rank_of_, slot_of_;
     std::vector<std::vector<std::uint32_t>> nodes_of_;
     // [link]: nodes of other ranks whose link in that direction ends in this rank, ascending

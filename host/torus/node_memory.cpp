@@ -26,7 +26,7 @@ class JobParts {
     const std::uint32_t* at(std::uint32_t word) const { return words_.data() + word; }
     std::uint32_t first_polygon() const { return header.objects.spheres + header.objects.planes; }
     std::uint32_t first_cone() const { return first_polygon() + header.objects.polygons; }
-    std::size_t surfaces() const { return surface(header.objects.spheres_at); }
+    std::size_t surfaces() const { return surface(header.objects.spheres_at); }  // spheres follow surfaces
     // Returns the number of the surface that starts at word `word` of the job.
     std::size_t surface(std::uint32_t word) const { return (word - kWordsOf<raya_job>) / RAYA_SURFACE_WORDS; }
 
@@ -68,7 +68,7 @@ VoxelLists lists_of(const JobParts& job, const Partition& partition, std::uint32
     return {{first, last}, {first, polygons}, {polygons, cones}, {cones, last}};
 }
 
-// Packs the words of one node after another.
+// Packs the words of the nodes, one node after another.
 class NodePacker {
   public:
     NodePacker(const PackedJob& job, const Partition& partition, const raya_torus& torus)
@@ -143,7 +143,7 @@ class NodePacker {
             surface_at_[job_.surface(object[RAYA_OBJECT_SURFACE_AT])];
     }
 
-    // Pads with zeros to a multiple of four words, because rows and nodes must start there.
+    // Pads with zeros to a multiple of four words, at which the next row or node must start.
     void fill_row() { words_->resize(start_ + padded_to_rows(current_offset())); }
 
     void add_surface(std::uint32_t word) {

@@ -9,7 +9,7 @@
 
 namespace raya {
 
-/// Words of the nodes' memories, and their figures.
+/// Words of the nodes' memories, and statistics of the objects.
 struct NodeMemories {
     std::vector<std::uint32_t> words;   // words of all nodes, node after node
     std::vector<std::uint32_t> starts;  // [nodes + 1]: index of each node's first word

@@ -23,8 +23,8 @@ struct Text {
 
 std::string channel_name(std::uint32_t node, std::uint32_t link) { return fmt::format("{}{}", node, link_name(link)); }
 
-// Returns the name of a link's wire. It contains the name of the wire's channel in the direction of ascending
-// coordinates.
+// Returns the name of the wire, whose bandwidth the two channels (directions) of a link share. The name contains that
+// of the channel in the direction of ascending coordinates.
 std::string wire_name(const raya_torus& torus, std::uint32_t node, std::uint32_t link) {
     return "wire " +
            (link % 2 == 0 ? channel_name(node, link) : channel_name(raya_link_end(torus, node, link), link ^ 1u));
@@ -38,7 +38,7 @@ std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machin
     Text hosts, links, routes;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
         hosts.add("    <host id=\"{}\" speed=\"{:.17g}f\"/>\n", node, 1e9 / machine.cycle_ns);
-        // Two wires connect the nodes of a side of two nodes; raya uses only the first.
+        // If a side of the torus has two nodes, two wires connect them; raya uses only the first.
         std::set<std::uint32_t> connected = {node};
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t end = raya_link_end(torus, node, link);

@@ -44,9 +44,9 @@ JobSettings job_settings(const TorusSettings& settings, const LengthScale& scale
 /// Throws UserError if there are more voxels or lights than the fields of a packet can number.
 void check_packets(const TorusSettings& settings, const Scene& scene);
 
-/// Returns the settings with the device's lanes, group size and other kernel settings filled in. Throws UserError like
-/// check_packets(), and if the kernels cannot be built with the settings. Needs neither the packed scene nor device
-/// memory.
+/// Returns the settings with the lanes, group size and other kernel settings chosen for the device. Throws UserError
+/// like check_packets(), and if the kernels cannot be built with the settings. Needs neither the packed scene nor
+/// device memory, so that raya can fail early.
 TorusSettings checked_settings(TorusSettings settings, const Scene& scene, const DeviceInfo& device);
 
 /// Returns the number of pixels to trace.
@@ -72,13 +72,13 @@ struct TorusJob {
 struct NodeNeeds {
     LengthScale scale;
     std::uint64_t words = 0;  // number of scene words
-    std::uint64_t bytes = 0;  // number of bytes of scene words and buffers
+    std::uint64_t bytes = 0;  // number of bytes of scene words and buffers together
 };
 
 /// Divides the scene as a render does, but without a device. Throws UserError like check_packets(), or NodesDoNotFit.
 NodeNeeds node_needs(const Scene& scene, const TorusSettings& settings);
 
-/// Collective: returns the minima of both members over the devices of all ranks.
+/// Collective: returns, for each member, the minimum over the devices of all ranks.
 DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks);
 
 /// Collective: returns this rank's job. Rank 0 packs the scene, divides it among the nodes and sends each rank the

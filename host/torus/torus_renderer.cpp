@@ -17,7 +17,7 @@ namespace raya {
 namespace {
 
 // Returns the progress, 0..1: the fraction of image rows whose primary rays are generated, times the mean of two
-// estimates. The first estimate is the fraction of finished packets. It is accurate as long as all nodes compute, but
+// estimates. The first estimate is the fraction of finished packets. It is accurate as long as all nodes compute. It is
 // too high at the end, when few packets take many supersteps. The second estimate is the logarithmic decrease of the
 // number of live packets. It is accurate at the end, but too low before.
 double progress_of(const MachineState& state, std::size_t returns, std::uint64_t max_live) {

@@ -20,7 +20,7 @@ class TorusRenderer {
   public:
     /// Collective: packs and divides the scene, checks that it fits the nodes, builds the kernels and allocates the
     /// device memory for the nodes of this rank. Only rank 0 reads `scene`. Throws UserError if the scene does not fit,
-    /// a setting is out of range or there are more ranks than nodes, and DeviceError.
+    /// a setting is out of range or there are more ranks than nodes, and DeviceError if the device fails.
     TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks = Ranks::single());
     ~TorusRenderer();
 
@@ -32,12 +32,12 @@ class TorusRenderer {
     /// Returns the factor by which the scene's lengths are multiplied.
     const LengthScale& scale() const;
 
-    /// Sets the pixels of the following images. With it, one renderer can render the pixel subsets of several groups of
+    /// Sets the pixels of the following images, so that one renderer can render the pixel subsets of several groups of
     /// nodes one after another.
     void set_pixels(const PixelSubset& pixels);
 
     /// Sets the capacity of the queues, in packets, for the following images. The queues may exceed a node's memory.
-    /// Throws UserError if the queues do not fit the device, and DeviceError.
+    /// Throws UserError if the queues do not fit the device, and DeviceError if the device fails.
     void set_queue(std::uint32_t queue);
 
     /// Runs the supersteps of an image without composing it. Returns false on a deadlock.

@@ -1,5 +1,5 @@
 // Results of a render on the torus: the image, counts, the work of kernels and the modelled time on T805 transputers.
-// Also the records of packets, supersteps and the work of nodes that observers receive during a render.
+// This file also declares the records that observers receive during a render.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -35,7 +35,7 @@ using PacketSink = std::function<void(const PacketRecord&)>;
 /// Work of a node in a superstep.
 struct NodeWork {
     std::uint32_t node = 0;
-    std::uint64_t injection_cycles = 0;           // of the primary rays that the node generated or discarded
+    std::uint64_t injection_cycles = 0;           // cycles for primary rays that the node generated or discarded
     std::span<const raya_processed> processed{};  // [slot of the queue before trace_voxel]: cost of the packet
     std::span<const raya_packet> queue{};         // queue after trace_voxel; RAYA_STATE_FRESH: packet new or changed
 };
@@ -56,12 +56,12 @@ struct SuperstepDetail {
 };
 using SuperstepSink = std::function<void(const SuperstepDetail&)>;
 
-/// Callbacks during a render; empty ones are not called. With several ranks, only rank 0 calls them.
+/// Callbacks during a render; an empty callback is not called. With several ranks, only rank 0 calls them.
 struct RenderObservers {
-    PacketSink packets{};             // for each packet between nodes, by superstep, then by source
-    std::uint32_t packets_every = 1;  // `packets`: only supersteps 0, packets_every, ...; reading packets takes time
-    SuperstepSink supersteps{};       // for each superstep
-    NodeWorkSink work{};              // for each node and superstep; needs TorusSettings::history and one rank
+    PacketSink packets{};             // called for each packet between nodes, by superstep, then by source
+    std::uint32_t packets_every = 1;  // `packets` is called only in supersteps 0, packets_every, ..., to save time
+    SuperstepSink supersteps{};       // called for each superstep
+    NodeWorkSink work{};              // called for each node and superstep; needs TorusSettings::history and one rank
 };
 
 /// Number of packets of each kind (RAYA_KIND_* of kernels/shared/packet.h).
@@ -73,11 +73,11 @@ struct TorusResult {
     EventCounts events{};
     Load load;  // modelled cycles of each node
     std::vector<Superstep> supersteps;
-    PacketCounts made{}, ended{};
-    std::uint64_t returns = 0;                        // number of returns charged as messages (TorusSettings::packets)
-    std::uint64_t hops = 0;                           // sum of link_packets
-    std::vector<std::uint64_t> link_words;            // [node][RAYA_LINKS]: number of words charged for the link
-    std::vector<std::uint64_t> link_packets;          // [node][RAYA_LINKS]: number of messages over the link
+    PacketCounts made{}, ended{};             // packets that nodes created, and packets that nodes processed to the end
+    std::uint64_t returns = 0;                // number of returns charged as messages (TorusSettings::packets)
+    std::uint64_t hops = 0;                   // sum of link_packets
+    std::vector<std::uint64_t> link_words;    // [node][RAYA_LINKS]: number of words charged for the link
+    std::vector<std::uint64_t> link_packets;  // [node][RAYA_LINKS]: number of messages over the link
     std::uint64_t moved_rays = 0, moved_returns = 0;  // numbers of packets transferred over links
     std::uint64_t queue_max = 0;                      // maximum number of packets in a queue
     std::uint64_t copies = 0;                         // see NodeMemories
@@ -115,7 +115,7 @@ struct TorusDeadlock : UserError {
     DeadlockFigures figures;
 };
 
-/// Returns the work of each kernel. Events are counted per node, not per kernel. Events of the generation of primary
+/// Returns the work of each kernel. Nodes count events for all kernels together. Events of the generation of primary
 /// rays count as operations of inject; all other events, including those of the entry of primary rays into the bounding
 /// box, count as operations of trace_voxel. Bytes are lower bounds:
 ///   - trace_voxel, inject, route: read the words of all nodes in each launch, if kernels copy them to local memory;
@@ -132,8 +132,8 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
 ///     of the busiest link, whichever is longer. A lower bound for a real machine.
 ///   - stepwise: the sum over supersteps of the busiest node's computation and the busiest link's transfers, at the
 ///     rate of a link with both directions in use. The processors' work for messages is not added, because it overlaps
-///     with the transfers and is shorter. For each word of the busiest link direction it takes at most 12 link
-///     directions x (2 + 19 / 6) = 62 cycles (packets of 6 words); the transfer of the word takes 83 cycles.
+///     with the transfers and is shorter. A processor works at most 12 link directions x (2 + 19 / 6) = 62 cycles
+///     for each word over the busiest link direction (packets of 6 words). The word's transfer takes 83 cycles.
 /// So overlapped <= stepwise. Throws std::invalid_argument if `result` is for another torus.
 TorusTime torus_time(const raya_torus& torus, const TorusResult& result);
 

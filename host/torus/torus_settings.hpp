@@ -19,12 +19,12 @@ struct NodeBuffers {
     std::uint32_t box = 0;    // capacity of each outbox and each inbox
 };
 
-/// Nodes that generate primary rays. kRoot: the root generates all of them; kAll: each node generates those that enter
-/// the bounding box at one of its voxels.
+/// Nodes that generate primary rays. kRoot: the root generates all primary rays. kAll: each node generates the primary
+/// rays that enter the bounding box at one of the node's voxels.
 enum class Injection { kRoot, kAll };
 
 /// The pixels with row-major indices first, first + stride, first + 2 stride, ... A machine of several groups of nodes
-/// renders one such subset on each group.
+/// renders one such subset of the pixels on each group.
 struct PixelSubset {
     std::uint32_t stride = 1, first = 0;
 };

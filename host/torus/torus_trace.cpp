@@ -45,10 +45,10 @@ Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
 // Throws std::logic_error for a packet head that only a faulty kernel can produce.
 void check_head(const PacketRecord& record) {
     const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
-    const bool root_of_tree = raya_state_level(state) == 0, has_light = raya_state_light(state) != 0;
+    const bool is_level_0 = raya_state_level(state) == 0, has_light = raya_state_light(state) != 0;
     const bool valid =
         kind == RAYA_KIND_RETURN || (has_light == (kind == RAYA_KIND_SHADOW) &&
-                                     (kind == RAYA_KIND_SHADOW || root_of_tree == (kind == RAYA_KIND_PRIMARY)));
+                                     (kind == RAYA_KIND_SHADOW || is_level_0 == (kind == RAYA_KIND_PRIMARY)));
     if (!valid) throw std::logic_error(fmt::format("packet trace: invalid packet state {:#x}", state));
 }
 
@@ -131,14 +131,14 @@ class TorusTrace::Timeline {
 
     void add_supersteps() {
         for (std::size_t step = 0; step < machine_trace_.steps_.size(); ++step) {
-            const Superstep& all = result_.supersteps[step];
+            const Superstep& superstep = result_.supersteps[step];
             begins_ms_.push_back(now_ms_);
-            const double computed_ms = now_ms_ + t805_ms(all.max_node_cycles);
+            const double computed_ms = now_ms_ + t805_ms(superstep.max_node_cycles);
             computed_ms_.push_back(computed_ms);
-            const double end = computed_ms + link_ms(all.max_link_words);
-            add_machine(step, end);
-            for (const TracedPe& n : nodes_) add_node(step, n.pe, computed_ms, end);
-            now_ms_ = end;
+            const double end_ms = computed_ms + link_ms(superstep.max_link_words);
+            add_machine(step, end_ms);
+            for (const TracedPe& n : nodes_) add_node(step, n.pe, computed_ms, end_ms);
+            now_ms_ = end_ms;
         }
     }
 
@@ -161,9 +161,9 @@ class TorusTrace::Timeline {
     }
 
   private:
-    void add_machine(std::size_t step, double end) {
+    void add_machine(std::size_t step, double end_ms) {
         const std::vector<NodeStep>& nodes = machine_trace_.steps_[step];
-        const Superstep& all = result_.supersteps[step];
+        const Superstep& superstep = result_.supersteps[step];
         std::vector<std::uint64_t> cycles;
         std::uint64_t words = 0;
         for (const NodeStep& n : nodes) {
@@ -171,34 +171,34 @@ class TorusTrace::Timeline {
             words += n.words;
         }
         const Load load = load_of(std::move(cycles));
-        const std::uint64_t at = nanoseconds(now_ms_);
-        trace_.slice(kSupersteps, fmt::format("superstep {}", step), at, nanoseconds(end),
-                     {{"live", all.live},
+        const std::uint64_t begin_ns = nanoseconds(now_ms_);
+        trace_.slice(kSupersteps, fmt::format("superstep {}", step), begin_ns, nanoseconds(end_ms),
+                     {{"live", superstep.live},
                       {"u", load.imbalance},
-                      {"busiest_cycles", all.max_node_cycles},
-                      {"busiest_link_words", all.max_link_words},
+                      {"busiest_cycles", superstep.max_node_cycles},
+                      {"busiest_link_words", superstep.max_link_words},
                       {"words", words}});
-        trace_.counter(kTraceMachine, "live rays", at, {{"packets", static_cast<double>(all.live)}});
-        trace_.counter(kTraceMachine, "u", at, {{"u", load.imbalance}});
+        trace_.counter(kTraceMachine, "live rays", begin_ns, {{"packets", static_cast<double>(superstep.live)}});
+        trace_.counter(kTraceMachine, "u", begin_ns, {{"u", load.imbalance}});
         const double links = static_cast<double>(nodes.size()) * links_of_node(machine_trace_.torus_);
-        trace_.counter(kTraceMachine, "link words", at,
-                       {{"busiest", static_cast<double>(all.max_link_words)},
+        trace_.counter(kTraceMachine, "link words", begin_ns,
+                       {{"busiest", static_cast<double>(superstep.max_link_words)},
                         {"mean", links > 0 ? static_cast<double>(words) / links : 0}});
     }
 
-    void add_node(std::size_t step, std::uint32_t node, double computed_ms, double end) {
+    void add_node(std::size_t step, std::uint32_t node, double computed_ms, double end_ms) {
         const NodeStep& n = machine_trace_.steps_[step][node];
         const TraceTrack track = track_of(node);
-        const auto slice = [&](const char* name, double begin, double finish, const Json& arguments = {}) {
-            if (nanoseconds(finish) > nanoseconds(begin))
-                trace_.slice(track, name, nanoseconds(begin), nanoseconds(finish), arguments);
+        const auto slice = [&](const char* name, double begin_ms, double finish_ms, const Json& arguments = {}) {
+            if (nanoseconds(finish_ms) > nanoseconds(begin_ms))
+                trace_.slice(track, name, nanoseconds(begin_ms), nanoseconds(finish_ms), arguments);
         };
-        trace_.slice(track, fmt::format("superstep {}", step), nanoseconds(now_ms_), nanoseconds(end));
-        const double done = now_ms_ + t805_ms(n.cycles), sent = computed_ms + link_ms(n.link_words);
-        slice("compute", now_ms_, done, {{"cycles", n.cycles}});
-        slice("wait for the busiest node", done, computed_ms);
-        slice("exchange", computed_ms, sent, {{"busiest_link_words", n.link_words}, {"words", n.words}});
-        slice("wait for the busiest link", sent, end);
+        trace_.slice(track, fmt::format("superstep {}", step), nanoseconds(now_ms_), nanoseconds(end_ms));
+        const double done_ms = now_ms_ + t805_ms(n.cycles), sent_ms = computed_ms + link_ms(n.link_words);
+        slice("compute", now_ms_, done_ms, {{"cycles", n.cycles}});
+        slice("wait for the busiest node", done_ms, computed_ms);
+        slice("exchange", computed_ms, sent_ms, {{"busiest_link_words", n.link_words}, {"words", n.words}});
+        slice("wait for the busiest link", sent_ms, end_ms);
     }
 
     const TorusTrace& machine_trace_;
@@ -224,9 +224,9 @@ void TorusTrace::add_to(TraceFile& trace, const TorusResult& result, std::size_t
         {"packets_sampled", packets_.size()},
         {"flows", flows},
         {"note",
-         "modelled time, from time 0 of the trace; every superstep waits for its busiest node and link. It is "
-         "independent of the measured times above. Packets are recorded in every 16th superstep, with --packets in "
-         "all; a flow ends at the earliest superstep in which its packet can arrive"}};
+         "modelled time, from time 0 of the trace; every superstep waits for its busiest node and link. The modelled "
+         "time is independent of the measured times above. Packets are recorded in every 16th superstep, with "
+         "--packets in every superstep; a flow ends at the earliest superstep in which its packet can arrive"}};
 }
 
 }  // namespace raya

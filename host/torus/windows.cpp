@@ -18,24 +18,25 @@ class Projection {
     Projection(const raya_job& job, const NumberFormat& format)
         : eye_(vec3(job.eye)),
           corner_(vec3(job.corner)),
-          column_(vec3(job.column_step)),
-          row_(vec3(job.row_step)),
-          normal_(column_.cross(row_)),
-          step_(std::min(column_.length(), row_.length())) {
+          column_step_(vec3(job.column_step)),
+          row_step_(vec3(job.row_step)),
+          normal_(column_step_.cross(row_step_)),
+          pixel_distance_(std::min(column_step_.length(), row_step_.length())) {
         const double width = job.mapping.width, height = job.mapping.height;
         // Bound of the rounding error of a direction, in pixels: 16 units in the last place of the sum of the lengths
-        // of the direction's terms. One pixel more, because the edge of a window is half-open.
+        // of the direction's terms. The margin is one pixel larger, because the edge of a window is half-open.
         const double unit = std::ldexp(1.0, -format.fraction_bits);
-        margin_ = 1 + 16 * unit * (corner_.length() + width * column_.length() + height * row_.length()) / step_;
+        margin_ = 1 + 16 * unit * (corner_.length() + width * column_step_.length() + height * row_step_.length()) /
+                          pixel_distance_;
         for (const double x : {-1.0, width})
             for (const double y : {-1.0, height})
-                longest_ = std::max(longest_, (corner_ + x * column_ + y * row_).length());
+                max_distance_ = std::max(max_distance_, (corner_ + x * column_step_ + y * row_step_).length());
     }
 
     const Vec3& eye() const { return eye_; }
     double margin() const { return margin_; }
-    double step() const { return step_; }        // minimum distance of adjacent pixels at depth c = 1
-    double longest() const { return longest_; }  // maximum |P - eye| of a pixel at depth c = 1
+    double pixel_distance() const { return pixel_distance_; }  // minimum distance of adjacent pixels at depth c = 1
+    double max_distance() const { return max_distance_; }      // maximum |P - eye| of a pixel at depth c = 1
 
     // Returns depth c of P.
     double depth(const Vec3& p) const { return (p - eye_).dot(normal_) / corner_.dot(normal_); }
@@ -43,13 +44,13 @@ class Projection {
     // Returns column and row of P, which must be in front of the eye.
     std::array<double, 2> pixel(const Vec3& p) const {
         const Vec3 flat = (p - eye_) / depth(p) - corner_;
-        return {flat.dot(row_.cross(normal_)) / column_.dot(row_.cross(normal_)),
-                flat.dot(column_.cross(normal_)) / row_.dot(column_.cross(normal_))};
+        return {flat.dot(row_step_.cross(normal_)) / column_step_.dot(row_step_.cross(normal_)),
+                flat.dot(column_step_.cross(normal_)) / row_step_.dot(column_step_.cross(normal_))};
     }
 
   private:
-    Vec3 eye_, corner_, column_, row_, normal_;
-    double step_, margin_, longest_ = 0;
+    Vec3 eye_, corner_, column_step_, row_step_, normal_;
+    double pixel_distance_, margin_, max_distance_ = 0;
 };
 
 // Bounds of projected points: [0] columns, [1] rows.
@@ -84,8 +85,8 @@ std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4
     return polygon;
 }
 
-// Extends the bounds by a face of the voxel at place `at`. The face lies in plane `k` of the grid's planes across
-// `axis`. `distance`: distance of this plane from the eye.
+// Extends the bounds by a face of the voxel at place `at`. The face lies in plane `k` of the grid planes perpendicular
+// to `axis`. `distance`: distance of plane `k` from the eye.
 void add_face(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, const raya_place& at,
               std::uint32_t axis, std::uint32_t k, double distance) {
     const std::uint32_t second = (axis + 1) % 3, third = (axis + 2) % 3;
@@ -96,7 +97,7 @@ void add_face(ScreenBounds& bounds, const Projection& projection, const raya_gri
         face[corner][third] = raya_voxel_plane(grid, third, at.at[third] + corner / 2);
     }
     // The clipping depth is smaller than the depth of any visible point of the face.
-    for (const Vec3& p : clipped(projection, face, distance / projection.longest() / 2)) {
+    for (const Vec3& p : clipped(projection, face, distance / projection.max_distance() / 2)) {
         const std::array<double, 2> pixel = projection.pixel(p);
         for (std::size_t i = 0; i < 2; ++i) {
             bounds.low[i] = std::min(bounds.low[i], pixel[i]);
@@ -116,11 +117,11 @@ void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_gr
         contains_eye = contains_eye && eye >= low - box.slack && eye <= high + box.slack;
         const double distance_below = box.low - eye, distance_above = eye - box.high,
                      distance = std::max(distance_below, distance_above);
-        const bool is_outer =
+        const bool faces_eye =
             distance_below > 0 ? low <= box.low + box.slack : distance_above > 0 && high >= box.high - box.slack;
-        if (!is_outer) continue;
-        // No bound is known if the eye is so close to this side that rounding may move the entry point by a pixel.
-        bounds.whole = bounds.whole || box.slack * projection.longest() > distance * projection.step();
+        if (!faces_eye) continue;
+        // No bound is known if the eye is so close to the face that rounding may move the entry point by a pixel.
+        bounds.whole = bounds.whole || box.slack * projection.max_distance() > distance * projection.pixel_distance();
         add_face(bounds, projection, grid, at, axis, at.at[axis] + (distance_above > 0 ? 1 : 0), distance);
     }
     bounds.whole = bounds.whole || contains_eye;
@@ -134,7 +135,7 @@ std::uint32_t clamped(double value, std::uint32_t max) {
 
 std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& grid, const raya_torus& torus,
                                        const NumberFormat& format) {
-    constexpr int kMinWindowBits = 10;
+    constexpr int kMinWindowBits = 10;  // with fewer fraction bits there is no error bound, so no window
     const Projection projection(job, format);
     const std::uint32_t width = job.mapping.width, height = job.mapping.height;
     std::vector<PixelWindow> windows;

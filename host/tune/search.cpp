@@ -60,7 +60,7 @@ class CoordinateDescent {
 
     SearchResult run() {
         descend();
-        while (result_.ended) {
+        while (result_.complete) {
             Candidate next = most_promising_candidate();
             if (next.empty()) next = most_promising_neighbour();
             if (next.empty()) break;
@@ -74,7 +74,7 @@ class CoordinateDescent {
     bool try_candidate(const Candidate& candidate) {
         if (costs_.contains(candidate)) return false;
         if (stop_()) {
-            result_.ended = false;
+            result_.complete = false;
             return false;
         }
         const std::optional<double> ratio = measure_(result_.best, candidate);
@@ -90,7 +90,7 @@ class CoordinateDescent {
     // Varies one parameter after another until no change helps. Begins with the parameters that have the fewest values,
     // so that the search has varied as many parameters as possible if its time ends.
     void descend() {
-        for (bool improved = true; improved && result_.ended;) {
+        for (bool improved = true; improved && result_.complete;) {
             improved = false;
             for (const std::size_t parameter : parameter_order_) improved |= try_values(parameter);
         }
@@ -106,11 +106,11 @@ class CoordinateDescent {
     bool try_direction(Candidate candidate, std::size_t parameter, int direction) {
         bool improved = false;
         const std::size_t count = space_.parameters[parameter].values.size();
-        for (std::size_t& index = candidate[parameter]; result_.ended;) {
+        for (std::size_t& index = candidate[parameter]; result_.complete;) {
             index += static_cast<std::size_t>(direction);  // wraps below 0
             if (index >= count) break;
             improved |= try_candidate(candidate);
-            if (!result_.ended || costs_[candidate] > kStopRatio * result_.cost) break;
+            if (!result_.complete || costs_[candidate] > kStopRatio * result_.cost) break;
         }
         return improved;
     }
@@ -263,9 +263,9 @@ SearchResult search_all(const Space& space, const Candidate& start, const Measur
                         const ShouldStop& stop) {
     SearchResult result{.best = start};
     for_each_candidate(space, [&](const Candidate& candidate) {
-        if (candidate == start || !result.ended) return;
+        if (candidate == start || !result.complete) return;
         if (stop()) {
-            result.ended = false;
+            result.complete = false;
             return;
         }
         const std::optional<double> ratio = measure(result.best, candidate);

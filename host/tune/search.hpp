@@ -15,17 +15,17 @@ namespace raya {
 /// A tuning parameter and its possible values, ordered so that adjacent values behave similarly. Example: `lanes` with
 /// 1, 4, 8, 16.
 struct TuningParameter {
-    std::uint32_t TunedValues::*value = nullptr;
+    std::uint32_t TunedValues::*value = nullptr;  // the member that holds the parameter's value
     std::vector<std::uint32_t> values;
 
     const char* name() const;  // name in kTunedNames
 };
 
-/// A candidate is better than the best so far if its time divided by the best's time is at most this ratio. Smaller
-/// gains may be noise.
+/// A candidate is better than the best so far if its time divided by the best candidate's time is at most this ratio.
+/// Smaller gains may be noise.
 inline constexpr double kMaxWinRatio = 0.98;
 
-/// One value for each parameter: [parameter]: index into TuningParameter::values.
+/// A combination of values: [parameter]: index into TuningParameter::values.
 using Candidate = std::vector<std::size_t>;
 
 /// The search space: all candidates.
@@ -38,15 +38,14 @@ struct Space {
     TunedValues values_of(const Candidate& candidate) const;
 };
 
-/// Calls `visit` for every candidate of the space.
 void for_each_candidate(const Space& space, const std::function<void(const Candidate&)>& visit);
 
 /// Returns the tuning parameters of these kernels on this device:
 ///   - lanes;
 ///   - group size: few work-items on a CPU, because lanes already use its vector instructions; 1 for torus nodes on
 ///     a CPU, because larger groups change the order of packets;
-///   - job words in local or global memory, without an accelerator;
-///   - the number of spheres that a batch tests, without an accelerator in fp32 on the ring;
+///   - the memory of the job's words, local or global, without an accelerator;
+///   - the number of spheres in a batch, without an accelerator in fp32 on the ring;
 ///   - the numbers of ray trees and beams that a work-item traces concurrently, with a grid;
 ///   - the link exchange (buffer copies or kernel), on the torus;
 ///   - the register limit, if the compiler has such an option.
@@ -58,8 +57,8 @@ Space space_of(const DeviceInfo& device, const TuningKey& key);
 /// "lanes 16, group 1 -> 2, batch own". "own" is value 0: the kernels' default.
 std::string change_text(const Space& space, const TunedValues& old_values, const TunedValues& new_values);
 
-/// Measures a candidate and the best so far alternately. Returns the candidate's time divided by the best's, or nullopt
-/// if the candidate fails and is dropped.
+/// Measures a candidate and the best so far alternately. Returns the candidate's time divided by that of the best, or
+/// nullopt if the candidate fails and is dropped.
 using MeasureRatio = std::function<std::optional<double>(const Candidate& best, const Candidate& candidate)>;
 
 /// Called before each candidate. Returns true to end the search.
@@ -69,7 +68,7 @@ struct SearchResult {
     Candidate best;
     double cost = 1;        // time of `best` divided by the time of the start: product of the measured ratios
     std::size_t tried = 0;  // number of measured candidates, without the start
-    bool ended = true;      // true: no promising candidate is left; false: stopped by ShouldStop
+    bool complete = true;   // true: no promising candidate is left; false: stopped by ShouldStop
 };
 
 /// Searches in three phases, and measures each candidate at most once. If phase 2 or 3 finds a new best candidate, the

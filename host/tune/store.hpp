@@ -34,7 +34,7 @@ struct TunedFile {
 /// $HOME/.cache/raya. Empty if neither is absolute.
 std::optional<std::filesystem::path> tuned_folder();
 
-/// Returns the file name of a device, made of the platform's and the device's name and the driver version.
+/// Returns the name of a device's file, made of the names of platform and device and the driver version.
 std::string tuned_file_name(const DeviceInfo& device);
 
 /// Returns the text of the device's file, which contains the names of device and driver and the version of raya.

@@ -73,8 +73,8 @@ struct Trial {
 double ratio_of(const Trial& trial);
 
 /// Returns true if the last candidate is significantly faster than the first: ratio_of() is at most kMaxWinRatio, and
-/// the last candidate is faster in at least 8 of 9 pairs of samples. If both candidates are equally fast, this happens
-/// with a probability of only 2 %.
+/// the last candidate is faster in at least 8 of 9 pairs of samples. For two equally fast candidates, the probability
+/// of such a result is only 2 %.
 bool wins_significantly(const Trial& trial);
 
 /// Returns the median of seconds[i] / reference[i], the ratios of the samples of two candidates; 1 without samples.
@@ -90,7 +90,7 @@ double mean_seconds(const std::function<double()>& render);
 ///     {"built": N}                                       the kernels of candidate N are built
 ///     {"check": TEXT, "build_s": S}                      candidate N has rendered its first image
 ///     {"samples": [[S, ...], ...]}                       seconds per image of each candidate; the trial is done
-///     {"error": TEXT, "kind": "user" or "device" or "internal"}      the last line, if an exception ends the process
+///     {"error": TEXT, "kind": "user" or "device" or "internal"}      an exception ends the process; the last line
 ///
 /// run_trial() throws the exception; its caller writes "error".
 inline constexpr const char* kTrialTask = "tune";

@@ -94,7 +94,7 @@ Trial supervise_trial(const TrialRequest& request, double limit_s, const std::st
     return trial;
 }
 
-constexpr std::uint32_t kSamples = 5, kFinalSamples = 9;
+constexpr std::uint32_t kSamples = 5, kFinalSamples = 9;  // of each candidate: in the search, in final comparisons
 constexpr double kLimitFactor = 10;  // factor of limit_s for the first trial of the defaults and for final comparisons
 
 class Tuner {
@@ -113,7 +113,7 @@ class Tuner {
             return measure(best, candidate, remaining_s());
         };
         const SearchResult found = search(result_.space, ratio, time_is_over);
-        result_.complete = found.ended;
+        result_.complete = found.complete;
         result_.seconds = elapsed_s();
         confirm(result_.space.values_of(found.best));
         if (settings_.exhaustive)
@@ -157,10 +157,11 @@ class Tuner {
     void confirm(const TunedValues& found) {
         result_.best = result_.space.defaults;
         if (found == result_.best) return;
-        const Trial last = run_trial_of({result_.best, found}, kFinalSamples, kLimitFactor * settings_.limit_s, false);
-        if (!wins_significantly(last)) return;
+        const Trial comparison =
+            run_trial_of({result_.best, found}, kFinalSamples, kLimitFactor * settings_.limit_s, false);
+        if (!wins_significantly(comparison)) return;
         result_.best = found;
-        result_.ratio = median_ratio(last.samples[1], last.samples[0]);
+        result_.ratio = median_ratio(comparison.samples[1], comparison.samples[0]);
     }
 
     // Measures every candidate, and compares the best of them with the search's result.
@@ -174,10 +175,10 @@ class Tuner {
         result_.exhaustive_tried = all.tried;
         result_.exhaustive_best = result_.space.values_of(all.best);
         if (*result_.exhaustive_best == result_.best) return;
-        const Trial last = run_trial_of({*result_.exhaustive_best, result_.best}, kFinalSamples,
-                                        kLimitFactor * settings_.limit_s, false);
-        if (last.status == TrialStatus::kCorrect)
-            result_.exhaustive_ratio = median_ratio(last.samples[1], last.samples[0]);
+        const Trial comparison = run_trial_of({*result_.exhaustive_best, result_.best}, kFinalSamples,
+                                              kLimitFactor * settings_.limit_s, false);
+        if (comparison.status == TrialStatus::kCorrect)
+            result_.exhaustive_ratio = median_ratio(comparison.samples[1], comparison.samples[0]);
     }
 
     const TuneSettings& settings_;

@@ -35,7 +35,6 @@ struct Tuning {
     double exhaustive_ratio = 1;                 // time of `best` divided by the time of `exhaustive_best`
     std::size_t exhaustive_tried = 0;            // number of candidates that the exhaustive search measured
 
-    /// Returns the number of trials with this status.
     std::size_t count(TrialStatus status) const;
     /// Returns the number of candidates that failed, rendered a wrong image, or exceeded the time limit.
     std::size_t dropped() const;

@@ -23,10 +23,8 @@ class CheckRunner {
     CheckRunner(Session& session, Program program, std::uint32_t lanes = 1)
         : session_(session), program_(std::move(program)), lanes_(lanes) {}
 
-    /// Build options of the program.
     const std::string& options() const { return program_.options(); }
 
-    /// Returns a buffer with `values`.
     template <class T>
     Buffer<T> filled(const std::string& name, const std::vector<T>& values) {
         Buffer<T> buffer = session_.buffer<T>(name, values.size());
@@ -47,7 +45,6 @@ class CheckRunner {
         return constant(name, count, kPoison);
     }
 
-    /// Returns the contents of `buffer`.
     template <class T>
     std::vector<T> read(const Buffer<T>& buffer) {
         std::vector<T> values(buffer.size());
@@ -55,7 +52,6 @@ class CheckRunner {
         return values;
     }
 
-    /// Launches a kernel with arguments of types `Args`.
     template <class... Args>
     void run(const std::string& kernel, std::size_t groups, std::size_t group_size,
              std::type_identity_t<Args>... args) {

@@ -58,10 +58,10 @@ Rays random_rays(const NumberFormat& format, double extent, std::size_t count) {
 }
 
 std::vector<std::string> hit_remedies(const std::vector<std::string>& lanes_remedies) {
-    std::vector<std::string> all = {"if checks of \"number\" fail too, start with those"};
-    all.insert(all.end(), lanes_remedies.begin(), lanes_remedies.end());
-    all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
-    return all;
+    std::vector<std::string> remedies = {"if checks of \"number\" fail too, start with those"};
+    remedies.insert(remedies.end(), lanes_remedies.begin(), lanes_remedies.end());
+    remedies.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
+    return remedies;
 }
 
 void verify_hits(Verification& v, const HitBuild& build) {
@@ -93,9 +93,10 @@ void Rays::pad() {
 }
 
 std::string Rays::text(std::size_t ray) const {
-    const float* w = &words[ray * kWords];
-    return fmt::format("origin ({:.9g}, {:.9g}, {:.9g}), direction ({:.9g}, {:.9g}, {:.9g}), limit {:.9g}", w[0], w[1],
-                       w[2], w[3], w[4], w[5], w[6]);
+    const float* ray_words = &words[ray * kWords];
+    return fmt::format("origin ({:.9g}, {:.9g}, {:.9g}), direction ({:.9g}, {:.9g}, {:.9g}), limit {:.9g}",
+                       ray_words[0], ray_words[1], ray_words[2], ray_words[3], ray_words[4], ray_words[5],
+                       ray_words[6]);
 }
 
 std::string Hits::text(std::size_t ray) const {
@@ -122,17 +123,17 @@ HitRunner::HitRunner(Session& session, const HitBuild& build)
 
 Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
                      const std::function<std::string(std::size_t)>& describe, const std::string& pass_text) {
-    std::size_t wrong = 0, first = 0;
+    std::size_t wrong_rays = 0, first_wrong = 0;
     for (std::size_t i = count; i-- > 0;) {
         if (got.objects[i] == expected.objects[i] && got.distances[i] == expected.distances[i]) continue;
-        ++wrong;
-        first = i;
+        ++wrong_rays;
+        first_wrong = i;
     }
-    if (wrong == 0) return passed(pass_text);
-    return failed(fmt::format("{} of {} rays wrong", wrong, count),
-                  {.where = fmt::format("{}\n{}", describe(first), rays.text(first)),
-                   .expected = expected.text(first),
-                   .got = got.text(first)});
+    if (wrong_rays == 0) return passed(pass_text);
+    return failed(fmt::format("{} of {} rays wrong", wrong_rays, count),
+                  {.where = fmt::format("{}\n{}", describe(first_wrong), rays.text(first_wrong)),
+                   .expected = expected.text(first_wrong),
+                   .got = got.text(first_wrong)});
 }
 
 Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {

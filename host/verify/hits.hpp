@@ -97,9 +97,9 @@ Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, st
 /// Checks that every kernel that the build contains finds the known hits.
 Verdict check_known_hits(HitRunner& runner, const KnownScene& known);
 
-/// Checks that the grid traversal finds the same hits as testing all objects on the same device, for
-/// `rays_per_scene` random rays in each scene. `scenes`: names of files in scenes/, without extension. `rays_per_scene`
-/// must be a multiple of kMaxLanes. The build must include the grid traversal.
+/// Checks, for `rays_per_scene` random rays in each scene, that the kernel with grid traversal finds the same hits as
+/// the kernel that tests all objects. `scenes`: names of files in scenes/, without extension. `rays_per_scene` must be
+/// a multiple of kMaxLanes. The build must include the grid traversal.
 Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_per_scene);
 
 }  // namespace raya

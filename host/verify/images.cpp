@@ -100,7 +100,7 @@ Rendered render_on_torus(const KernelChoice& kernels, Session& session, const Re
     s.links = r.links;
     s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // more voxels than nodes, so that some nodes have several
     s.inject = r.inject;
-    s.packets.one_return_per_ray = r.inject == Injection::kRoot;  // so that the checks cover both values
+    s.packets.one_return_per_ray = r.inject == Injection::kRoot;  // so that the checks cover true and false
     s.bounces = kReferenceBounces;
     s.format = parse_format(image.format);
     s.sampling = image.sampling;
@@ -163,20 +163,20 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
     const Rendered got = render(v.kernels(r.lanes, r.group_size), session, r);
     if (pixel_hash(got.image) == stored.hash)
         return check_counts(stored.counts.at(r.check_kind()), got.counts, stored.hash.substr(0, 8), got.options);
-    std::size_t wrong = 0, first = 0;
+    std::size_t wrong_pixels = 0, first_wrong = 0;
     const std::size_t pixels = stored.image.rgb.size() / 3;
     for (std::size_t i = pixels; i-- > 0;) {
         if (pixel_bits(got.image, i) == pixel_bits(stored.image, i)) continue;
-        ++wrong;
-        first = i;
+        ++wrong_pixels;
+        first_wrong = i;
     }
-    return failed(
-        fmt::format("{} of {} pixels wrong", wrong, pixels),
-        {.where = fmt::format("row {}, column {} (red, green, blue)", first / kReferenceSide, first % kReferenceSide),
-         .expected = colour_text(pixel_bits(stored.image, first)),
-         .got = colour_text(pixel_bits(got.image, first)),
-         .options = got.options,
-         .remedies = image_remedies(v, session, image)});
+    return failed(fmt::format("{} of {} pixels wrong", wrong_pixels, pixels),
+                  {.where = fmt::format("row {}, column {} (red, green, blue)", first_wrong / kReferenceSide,
+                                        first_wrong % kReferenceSide),
+                   .expected = colour_text(pixel_bits(stored.image, first_wrong)),
+                   .got = colour_text(pixel_bits(got.image, first_wrong)),
+                   .options = got.options,
+                   .remedies = image_remedies(v, session, image)});
 }
 
 // Returns renderings that together use every kernel and option. Building kernels takes most of a rendering's time, so

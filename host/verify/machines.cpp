@@ -45,7 +45,7 @@ std::uint32_t random_side(SplitMix& random) {
 }
 
 // Returns a random valid mapping of `kind` (RAYA_FOLD_CYCLIC..RAYA_RANDOM).
-raya_mapping random_case(SplitMix& random, std::uint32_t kind) {
+raya_mapping random_mapping_of_kind(SplitMix& random, std::uint32_t kind) {
     raya_mapping m{random_side(random), random_side(random), 1, 0, kind};
     const std::uint32_t pixels = m.width * m.height;
     const std::uint32_t pes[] = {1 + random_below(random, m.width), 1 + random_below(random, pixels), m.width, pixels};
@@ -54,9 +54,9 @@ raya_mapping random_case(SplitMix& random, std::uint32_t kind) {
     if (kind == RAYA_TILES) m.parameter = raya_pair(random_divisor(random, m.width), random_divisor(random, m.height));
     if (kind == RAYA_RANDOM) m.parameter = static_cast<std::uint32_t>(random.next());
     if (kind == RAYA_GRID) {
-        const std::uint32_t down = 1 + random_below(random, m.height), across = 1 + random_below(random, m.width);
-        m.parameter = raya_pair(down, across);
-        m.pes = down * across;
+        const std::uint32_t rows = 1 + random_below(random, m.height), columns = 1 + random_below(random, m.width);
+        m.parameter = raya_pair(rows, columns);
+        m.pes = rows * columns;
     }
     return m;
 }
@@ -68,7 +68,7 @@ std::pair<std::vector<raya_mapping>, std::vector<raya_pixel>> mapping_cases(std:
     std::vector<raya_mapping> mappings;
     std::vector<raya_pixel> pixels;
     for (std::size_t i = 0; i < count; ++i) {
-        const raya_mapping m = random_case(random, kind);
+        const raya_mapping m = random_mapping_of_kind(random, kind);
         mappings.push_back(m);
         pixels.push_back({i % 8 ? random_below(random, m.height) : m.height - 1,
                           i % 4 ? random_below(random, m.width) : m.width - 1});
@@ -99,14 +99,14 @@ Verdict compare_cases(const Words& expected, const Words& got, const std::vector
     const std::size_t stride = names.size();
     const auto differ = std::mismatch(expected.begin(), expected.end(), got.begin());
     if (differ.first == expected.end()) return passed(pass_text);
-    const auto at = static_cast<std::size_t>(differ.first - expected.begin());
-    std::size_t wrong = 0;
+    const auto first_wrong = static_cast<std::size_t>(differ.first - expected.begin());
+    std::size_t wrong_cases = 0;
     for (std::size_t i = 0; i < expected.size(); i += stride)
-        wrong += !std::equal(&expected[i], &expected[i] + stride, &got[i]);
-    return failed(fmt::format("{} of {} cases wrong", wrong, expected.size() / stride),
-                  {.where = fmt::format("{} of {}", names[at % stride], describe(at / stride)),
-                   .expected = fmt::format("{0} = 0x{0:08x}", expected[at]),
-                   .got = fmt::format("{0} = 0x{0:08x}", got[at])});
+        wrong_cases += !std::equal(&expected[i], &expected[i] + stride, &got[i]);
+    return failed(fmt::format("{} of {} cases wrong", wrong_cases, expected.size() / stride),
+                  {.where = fmt::format("{} of {}", names[first_wrong % stride], describe(first_wrong / stride)),
+                   .expected = fmt::format("{0} = 0x{0:08x}", expected[first_wrong]),
+                   .got = fmt::format("{0} = 0x{0:08x}", got[first_wrong])});
 }
 
 // Appends the expected results of kernel find_owners (kernels/checks/machine.cl) for a pixel.
@@ -127,7 +127,7 @@ CheckRunner machine_runner(Session& session, const KernelSources& sources, std::
 }
 
 // Checks mappings of `kind` (RAYA_FOLD_CYCLIC..RAYA_RANDOM): the owner of a pixel, the pixel's number in the owner's
-// share, and which neighbours the pixel has.
+// share, and flags of the neighbours that are in the image.
 Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases) {
     const auto [mappings, pixels] = mapping_cases(kind, cases);
     Words expected;

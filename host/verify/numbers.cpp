@@ -124,8 +124,8 @@ void NumberRunner::append(NumberResults& results, const NumberRows& rows, const 
     runner_.run_rows<const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&>(
         kernel, rows.count(), operand_buffer, static_cast<cl_uint>(rows.count()), result_buffer);
     const std::vector<std::uint32_t> columns = runner_.read(result_buffer);
-    for (auto at = columns.begin(); at != columns.end(); at += std::ptrdiff_t(rows.count()))
-        results.emplace_back(at, at + std::ptrdiff_t(rows.count()));
+    for (auto column = columns.begin(); column != columns.end(); column += std::ptrdiff_t(rows.count()))
+        results.emplace_back(column, column + std::ptrdiff_t(rows.count()));
 }
 
 Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNumbers>& expected) {

@@ -30,10 +30,10 @@ Json settings_json(const VerifySettings& s, const std::string& selector, std::si
 
 VerifySettings settings_of(const Json& json) {
     const std::string& depth = json.at("depth").text();
-    const auto is = [&](Depth named) { return depth == depth_name(named); };
-    return {.depth = is(Depth::kFull)    ? Depth::kFull
-                     : is(Depth::kBrief) ? Depth::kBrief
-                                         : Depth::kQuick,
+    const auto has_depth = [&](Depth named) { return depth == depth_name(named); };
+    return {.depth = has_depth(Depth::kFull)    ? Depth::kFull
+                     : has_depth(Depth::kBrief) ? Depth::kBrief
+                                                : Depth::kQuick,
             .sources = {.folder = json.at("kernel_dir").text()},
             .only = json.at("only").text(),
             .lanes = static_cast<std::uint32_t>(json.at("lanes").integer(UINT32_MAX)),
@@ -216,7 +216,7 @@ DeviceChecks supervise(const std::string& selector, std::size_t index, const Ver
     return supervision.take_checks();
 }
 
-void run_checks(int lines, const Json& request) {
+void run_checks(int pipe, const Json& request) {
     const VerifySettings settings = settings_of(request);
     const std::size_t index = request.at("index").integer();
     const SelectedDevices selected = selected_devices(request.at("device").text());
@@ -224,22 +224,22 @@ void run_checks(int lines, const Json& request) {
         for (const cl::Device& device : selected.devices) refuse_empty_selection(device, settings);
     const cl::Device& device = selected.devices.at(index);
     const DeviceInfo info = device_info(device);
-    send_line(lines, {{"devices", selected.devices.size()},
-                      {"left_out", selected.left_out},
-                      {"name", info.name},
-                      {"platform", info.platform},
-                      {"version", info.version},
-                      {"driver", info.driver}});
+    send_line(pipe, {{"devices", selected.devices.size()},
+                     {"left_out", selected.left_out},
+                     {"name", info.name},
+                     {"platform", info.platform},
+                     {"version", info.version},
+                     {"driver", info.driver}});
     verify(device, settings,
            {.started =
                 [&](const std::string& layer, const std::string& name) {
-                    send_line(lines, {{"started", {{"layer", layer}, {"name", name}}}});
+                    send_line(pipe, {{"started", {{"layer", layer}, {"name", name}}}});
                 },
             .finished =
                 [&](const Check& check) {
-                    send_line(lines, {{"check", to_json(check)}});
+                    send_line(pipe, {{"check", to_json(check)}});
                 }});
-    send_line(lines, {{"ended", true}});
+    send_line(pipe, {{"ended", true}});
 }
 
 }  // namespace raya

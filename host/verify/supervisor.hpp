@@ -45,8 +45,8 @@ DeviceChecks supervise(const std::string& selector, std::size_t index, const Ver
                        const SupervisorSink& sink, std::size_t& devices);
 
 /// Name and function of the child process's task (host/base/child_process.hpp). run_checks() writes the lines to the
-/// file descriptor `lines`, except "error": it throws the exception, and its caller writes "error".
+/// file descriptor `pipe`, except the line "error": run_checks() throws the exception, and its caller writes the line.
 inline constexpr const char* kVerifyTask = "verify";
-void run_checks(int lines, const Json& request);
+void run_checks(int pipe, const Json& request);
 
 }  // namespace raya

@@ -17,7 +17,7 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-// Returns `count` distinct words, so that a word at a wrong place is detected. As fp32 numbers they are normal.
+// Returns `count` distinct words, so that a word at a wrong place is detected. Read as fp32 numbers, they are normal.
 Words distinct_words(std::size_t count, std::uint32_t first = 0) {
     Words words(count);
     std::iota(words.begin(), words.end(), 0x3f000000u + first);
@@ -40,11 +40,12 @@ std::optional<Verdict> difference(const Words& expected, const Words& got, const
                                   std::size_t words_per_unit, const char* unit) {
     const auto differ = std::mismatch(expected.begin(), expected.end(), got.begin());
     if (differ.first == expected.end()) return {};
-    const auto at = static_cast<std::size_t>(differ.first - expected.begin());
+    const auto first_wrong = static_cast<std::size_t>(differ.first - expected.begin());
     return failed(transfer + ": words at wrong places",
-                  {.where = fmt::format("{}, {} {}, word {}", transfer, unit, at / words_per_unit, at % words_per_unit),
-                   .expected = fmt::format("0x{:08x}", expected[at]),
-                   .got = fmt::format("0x{:08x}", got[at])});
+                  {.where = fmt::format("{}, {} {}, word {}", transfer, unit, first_wrong / words_per_unit,
+                                        first_wrong % words_per_unit),
+                   .expected = fmt::format("0x{:08x}", expected[first_wrong]),
+                   .got = fmt::format("0x{:08x}", got[first_wrong])});
 }
 
 // Packets for check_links(). Every `stride`-th outbox has 1 to kCapacity packets, the others none. Each word of a
@@ -100,21 +101,22 @@ Verdict check_bus(Session& session) {
     return passed(fmt::format("{} words in each direction", words.size()));
 }
 
-// Places of the blocks in the memory of the PEs, [PE][kRows][pitch]. The block of a PE has `words` words of each row,
-// from word `offset` on. If PE i receives the block of PE (i + distance) mod P, at(w, distance) is the index of the
-// word that is received as word w of [PE][kRows][words].
+// Layout of the PEs' memory, [PE][kRows][pitch]. A PE's block consists of `words` words of each row, from word `offset`
+// of the row on.
 constexpr std::size_t kRows = 3;
 struct SourceLayout {
     std::size_t pes, words, pitch, offset;
 
-    std::size_t at(std::size_t w, std::size_t distance) const {
+    // PE i receives the block of PE (i + distance) mod P. Returns the index in the memory of the word that becomes word
+    // w of the received blocks, [PE][kRows][words].
+    std::size_t source_index(std::size_t w, std::size_t distance) const {
         const std::size_t pe = w / words / kRows, row = w / words % kRows;
         return ((pe + distance) % pes * kRows + row) * pitch + offset + w % words;
     }
     std::size_t size() const { return pes * kRows * pitch; }
 };
 
-// Each round transfers other words, so that words that remain from an earlier round are detected.
+// Each round transfers other words, so that the check detects words of an earlier round.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Bus bus(session, counted, static_cast<std::uint32_t>(pes));
@@ -131,7 +133,7 @@ Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
             to_all ? bus.broadcast_from(memory, from, blocks, to, words) : bus.send(memory, from, blocks, to, words);
         }
         Words expected(blocks.size());
-        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = memory_words[layout.at(w, distance)];
+        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = memory_words[layout.source_index(w, distance)];
         std::vector<float> got(expected.size());
         session.read("blocks", blocks, got);
         const std::string transfer = to_all ? "broadcast" : fmt::format("distance {}", distance);
@@ -157,7 +159,7 @@ Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
         const std::size_t distance = direction == RingDirection::kDown ? 1 : pes - 1;
         ring.rotate(direction);
         Words expected(pes * kRows * words);
-        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = memory_words[layout.at(w, distance)];
+        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = memory_words[layout.source_index(w, distance)];
         std::vector<float> got(expected.size());
         session.read("ring blocks", ring.blocks(), got);
         const std::string transfer = fmt::format("rotation {} of {} PEs", i + 1, pes);

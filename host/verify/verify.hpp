@@ -31,7 +31,6 @@ Check run_check(const std::string& layer, const std::string& name, const std::fu
 /// Returns remedies for errors of the compiler or driver, except those that are already in effect.
 std::vector<std::string> compiler_remedies();
 
-/// Returns the number of checks with this outcome.
 std::size_t count_of(const std::vector<Check>& checks, Outcome outcome);
 
 /// Returns a line such as "PASS  number    e6m15, 16 lanes  0.41 s  310 answers"; for a failure, indented lines with
@@ -117,7 +116,7 @@ class Verification {
     CheckSink sink_;
     bool runs_;
     std::vector<Check> checks_;
-    std::vector<std::string> names_;  // names of all selected checks, including skipped checks
+    std::vector<std::string> names_;  // of all selected checks, including skipped checks
 };
 
 // Run the checks of one layer. Each layer relies on the layers before it.

@@ -12,7 +12,7 @@
 // work-item per pixel.
 __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [case]
                           __global const raya_pixel* restrict pixels,      // [case]
-                          const uint cases,
+                          const uint cases,                                // number of cases
                           __global uint* restrict results)                 // [case][6]: owner; size of its share;
                                                                            // the pixel's index in the share; row and
                                                                            // column of the pixel with that index; sides
@@ -41,7 +41,7 @@ __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [c
 // route, and the node at the end of each link. One work-item per case.
 __kernel void find_routes(__global const raya_torus* restrict toruses,  // [case]
                           __global const uint* restrict nodes,          // [case][2]: node of the packet, destination
-                          const uint cases,
+                          const uint cases,                             // number of cases
                           __global uint* restrict results)              // [case][2 + RAYA_LINKS]: raya_next_link(),
                                                                         // raya_return_link(), raya_link_end() per link
 {

@@ -1,9 +1,9 @@
 // Checks of the number layer: applies every operation to rows of operands.
 //
 // Work-group g is one work-item, which processes the V rows from row g V on; `rows` is a multiple of V. Arrays are
-// column-major. In the array of operands, element k * rows + i is operand k of row i. In the array of results it is the
-// bits of result k of row i. Every operation is applied to every row, but the host compares only the results of the
-// operations for which the row was made (host/verify/numbers.hpp).
+// column-major: element k * rows + i is operand k of row i, or the bits of result k of row i. Every operation is
+// applied to every row, but the host compares only the results of the operations for which the row was made
+// (host/verify/numbers.hpp).
 #include "kernels/checks/rows.clh"
 #include "kernels/number/power.clh"
 

@@ -74,23 +74,23 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
     }
 }
 
-// Calls trace_trees() and returns its result. If `resumes` is 1, first restores, from `from`, the trees that the last
-// launch saved. Saves unfinished trees to `to`.
+// Calls trace_trees() and returns its result. If `resumes` is 1, first restores the trees that the last launch saved
+// (`last_state`). Saves unfinished trees to `new_state`.
 RAYA_KERNEL_BODY int trace_share(words scene, pixel_store* store, volatile __local uint* next, uint work,
-                                 save_cursor from, save_cursor to, int resumes) {
+                                 save_cursor last_state, save_cursor new_state, int resumes) {
     tree trees[RAYA_TREES];
     tree_pixels pixels[RAYA_TREES];
     index left = (index)(0);
-    if (resumes) save_index(&from, &left);
+    if (resumes) save_index(&last_state, &left);
     for (uint i = 0; i < RAYA_TREES; ++i) {
         clear_tree(&trees[i]);
         clear_pixels(&pixels[i]);
     }
-    if (mask_any(left != (index)(0))) save_trees(from, trees, pixels);
+    if (mask_any(left != (index)(0))) save_trees(last_state, trees, pixels);
     left = (index)(trace_trees(scene, store, trees, pixels, next, work));
-    save_index(&to, &left);
+    save_index(&new_state, &left);
     if (!mask_any(left != (index)(0))) return 0;
-    save_trees(to, trees, pixels);
+    save_trees(new_state, trees, pixels);
     return 1;
 }
 
@@ -145,8 +145,8 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     store.marks = marks + (size_t)group * capacity;
     store.cycles = cycles + (size_t)group * capacity;
     open_store(&store);
-    const save_cursor from = open_save_cursor(saved, 1), to = open_save_cursor(saved, 0);
-    if (trace_share(scene, &store, &mine->next, work, from, to, resumes)) atomic_inc(&mine->left);
+    const save_cursor last_state = open_save_cursor(saved, 1), new_state = open_save_cursor(saved, 0);
+    if (trace_share(scene, &store, &mine->next, work, last_state, new_state, resumes)) atomic_inc(&mine->left);
     __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
     for (uint e = 0; e < RAYA_EVENTS; ++e) counted[e] += sum_of(store.totals[e]);
     if (loops_were_cut(min(word_count, 2u))) atomic_inc(&mine->cut);

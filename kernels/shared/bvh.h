@@ -11,8 +11,8 @@
 //     one polygon        of more than four corners: one row of its data, then its corners, one in each column
 //
 // In a reduced format an object test costs ten times as much as in fp32, but a box test costs the same. So in these
-// formats a child is another node or a single object, whose number the link contains, and V rays are tested at once,
-// each against its own object. Only polygons of more than 16 corners have leaves.
+// formats a child is another node or a single object, whose number the link contains. V rays are tested at once, each
+// against its own object. Only polygons of more than 16 corners have leaves.
 //
 // Unused columns of a node hold a box that no ray meets. Unused columns of a leaf repeat its first object.
 #ifndef RAYA_SHARED_BVH_H

@@ -90,7 +90,6 @@ RAYA_SHARED_FUNCTION raya_u32 raya_slot_owner(raya_mapping m, raya_u32 row, raya
     return first + raya_floor_ratio(row, slot_pes, m.height);
 }
 
-// Returns the PE that owns a pixel.
 RAYA_SHARED_FUNCTION raya_u32 raya_owner(raya_mapping m, raya_u32 row, raya_u32 column) {
     if (raya_has_slots(m)) return raya_slot_owner(m, row, column);
     if (m.kind == RAYA_ROWS) return row % m.pes;

@@ -34,8 +34,8 @@ enum {
 
 RAYA_SHARED_FUNCTION raya_u32 raya_points(raya_u32 points) { return points == RAYA_POINTS_OWN ? 1u : RAYA_NEW_POINTS; }
 
-// Return the offset, to the right or down, of point n from the pixel's own sample point, in pixels; n <
-// raya_points(points).
+// Return the offset in pixels, to the right or down, of point n from the pixel's own sample point.
+// n < raya_points(points).
 RAYA_SHARED_FUNCTION float raya_point_right(raya_u32 points, raya_u32 n) {
     if (points == RAYA_POINTS_DIAGONALS) return n & 1u ? 0.5f : -0.5f;
     return points == RAYA_POINTS_OWN || n > 1u ? 0.0f : n == 1u ? 0.5f : -0.5f;

@@ -78,8 +78,8 @@ enum {  // kinds of packets; 0: the slot holds no packet
 // This node has made or changed the packet and not sent it yet. A trace of the traffic reports such a packet as a new
 // message.
 #define RAYA_STATE_FRESH 0x20u
-// Of a return: the model charges it as a message. Of a shadow ray: the last shadow ray of a ray. When it ends, it makes
-// the only return of that ray that is charged (raya_run.one_return_per_ray).
+// Of a return: the model charges the return as a message. Of a shadow ray: this is the last shadow ray of the ray that
+// made it, and at its end makes that ray's only charged return (raya_run.one_return_per_ray).
 #define RAYA_STATE_CHARGED 0x40u
 #define RAYA_STATE_LEVEL_SHIFT 8u
 #define RAYA_STATE_LIGHT_SHIFT 16u

@@ -71,7 +71,6 @@ RAYA_SHARED_FUNCTION raya_place raya_node_place(raya_torus t, raya_u32 node) {
     return n;
 }
 
-// Returns the node that holds a voxel.
 RAYA_SHARED_FUNCTION raya_u32 raya_node_of_voxel(raya_torus t, raya_grid g, raya_u32 voxel) {
     const raya_place v = raya_place_of(voxel, g.divisions[0], g.divisions[1]);
     return raya_node_of(t, v.at[0] % t.nodes[0], v.at[1] % t.nodes[1], v.at[2] % t.nodes[2]);

@@ -15,8 +15,8 @@ typedef struct {
 } raya_trace_progress;
 RAYA_SHARED_SIZE(raya_trace_progress, 4 * 3);
 
-// Default number of ray trees that a lane traces concurrently. With a grid a lane traces several, because rays visit
-// different numbers of voxels and lanes with one tree each would wait for one another.
+// Default number of ray trees that a lane traces concurrently. With a grid a lane traces several trees, because rays
+// visit different numbers of voxels and lanes with one tree would wait for one another.
 #define RAYA_DEFAULT_TREES(accel, lanes) ((accel) == RAYA_ACCEL_GRID && (lanes) > 1 ? 4 : 1)
 
 // Returns the maximum number of words that a work-item saves for each lane (kernels/ring/saved_trees.clh): one word

@@ -53,8 +53,8 @@ typedef struct {
     raya_u32 host;            // maximum number of returns that wait for the host
     raya_u32 stride, offset;  // primary rays are made for pixels offset, offset + stride, ..., counted row by row
     raya_u32 root_injects;    // 1: the root makes all primary rays, or it is the only node; 0: every node makes its own
-    raya_u32 one_return_per_ray;    // 1: only one return of each ray is charged as a message, made when its shadow rays are
-                              // done; 0: all returns are charged
+    // 1: only one return of each ray is charged as a message, made when its shadow rays are done; 0: all are charged
+    raya_u32 one_return_per_ray;
 } raya_run;
 RAYA_SHARED_SIZE(raya_run, 4 * 9);
 

@@ -1,4 +1,4 @@
-// inject: nodes make the packets of primary rays, up to the limit described below.
+// inject: nodes make the packets of primary rays.
 //
 // One work-group is one node. If the root makes all primary rays, it processes all pixels and the remaining nodes do
 // nothing. If all nodes make primary rays, a ray that enters the box belongs to the node that holds the ray's first
@@ -79,8 +79,8 @@ static inline uint put_primaries(const primaries* p, const injection* to, uint a
     return first_waiting;
 }
 
-// Returns how many of the lanes' rays belong to other nodes. Counts only rays of pixels before `next`, because the rays
-// of later pixels will be made again.
+// Returns how many of the lanes' rays belong to other nodes. Counts only rays of pixels before `next`, because the node
+// will make the rays of later pixels again.
 static inline uint number_of_discarded(const primaries* p, uint first, uint next) {
     lanes_index own_rays;
     own_rays.truth = p->own_rays;

@@ -20,7 +20,7 @@ static inline uint goal_of(const node* n, const raya_head* packet) {
     if (kind == RAYA_KIND_RETURN) return RAYA_TO_ROOT;
     if (packet->voxel == RAYA_NO_VOXEL) return RAYA_STAYS;
     const raya_place voxel = raya_unpack_place(packet->voxel);
-    if (is_own(n, voxel)) return RAYA_STAYS;
+    if (holds_voxel(n, voxel)) return RAYA_STAYS;
     const raya_place to = holder_of(n, voxel);
     return raya_next_link(n->torus, n->number, raya_node_of(n->torus, to.at[0], to.at[1], to.at[2]));
 }

@@ -10,8 +10,8 @@
 //         a ray is done if its nearest hit lies before its exit from the voxel, or if it leaves the box. With a hit it
 //             turns into a return packet and the packets of its secondary rays (torus/shade_packets.clh). Without a
 //             hit it turns into a return packet with the background
-//         a shadow ray ends at any hit; at its light it turns into a return packet. If raya_run.one_return_per_ray is 1, the
-//             last shadow ray of a ray always turns into a return packet
+//         a shadow ray ends at any hit; at its light it turns into a return packet. If raya_run.one_return_per_ray is
+//             1, the last shadow ray of a ray always turns into a return packet
 //         all remaining rays move to the next voxel                                           (grid/traversal.clh)
 //
 // Wide rays (is_wide() in kernels/grid/traversal.clh) must be tested against all objects. They visit all voxels in the
@@ -30,7 +30,7 @@
 
 // Reserves slots for the packets that the packets of the lanes m may turn into. Returns the lanes for which there were
 // enough free slots. Sets `reserved` to the number of slots reserved. Shadow rays need no slots.
-static inline mask reserve(const node* n, const packet_batch* f, mask m, uint* reserved) {
+static inline mask reserve_slots(const node* n, const packet_batch* f, mask m, uint* reserved) {
     lanes_index chosen, level;
     chosen.truth = m & mask_not(is_shadow(f));
     level.all = levels_of(f);
@@ -79,10 +79,10 @@ static inline void move_packets(packet_batch* f, mask m, index place) {
 
 // Processes the packets of the lanes m. Their rays are in the voxel `place` of this node, or outside the box if `place`
 // is RAYA_NO_VOXEL.
-static inline void process(const node* n, packet_batch* f, mask m, uint place) {
+static inline void process_packets(const node* n, packet_batch* f, mask m, uint place) {
     const uint before = f->appended;
     uint reserved;
-    m = reserve(n, f, m, &reserved);
+    m = reserve_slots(n, f, m, &reserved);
     if (!mask_any(m)) return;
 #if RAYA_COSTS
     f->processed.truth |= m;
@@ -136,7 +136,7 @@ RAYA_KERNEL_BODY void process_slots(const node* n, packet_batch* f, uint first, 
         const uint place = f->voxel.lane[lane];
         const mask in_voxel = waiting.truth & (f->voxel.all == (index)(place));
         waiting.truth &= mask_not(in_voxel);
-        if (place == RAYA_NO_VOXEL || is_own(n, raya_unpack_place(place))) process(n, f, in_voxel, place);
+        if (place == RAYA_NO_VOXEL || holds_voxel(n, raya_unpack_place(place))) process_packets(n, f, in_voxel, place);
     }
 }
 

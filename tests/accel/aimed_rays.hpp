@@ -100,8 +100,8 @@ inline Aim aim_at(SplitMix& random, const Scene& scene, std::size_t number) {
     return aim_at(random, scene.cones[number - scene.polygons.size()]);
 }
 
-/// Returns the distance from a point along `direction` to the surface of the cube of allowed origins, whose coordinates
-/// do not exceed `reach` in absolute value.
+/// Returns the distance from a point along `direction` to the surface of the cube of allowed origins. The cube contains
+/// the points whose coordinates do not exceed `reach` in absolute value.
 inline double distance_within_reach(const RayBounds& bounds, const Vec3& point, const Vec3& direction) {
     double distance = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
@@ -131,8 +131,8 @@ inline Vec3 random_origin(SplitMix& random, const RayBounds& bounds, const Aim& 
     }
 }
 
-/// Returns a ray towards the aim, whose direction has an error of a few units in the last place and a length of 1 or
-/// any other length that RAYA_STRETCH allows.
+/// Returns a ray towards the aim. Its direction has an error of a few units in the last place. The direction's length
+/// is 1 or another length that RAYA_STRETCH allows.
 inline reference::Ray random_aimed_ray(SplitMix& random, const RayBounds& bounds, Aim aim) {
     if (below(random, 2) == 0) aim.point = bounds.rounded(aim.point);
     const double stretch = bounds.format.is_fp32() ? 0x1p-18 : 16 * bounds.unit();  // RAYA_STRETCH

@@ -4,8 +4,8 @@
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void shadow_hits_with_accel(__global const uint* restrict job,
                             __global const float* restrict rays,
-                            __global uint* restrict objects,    // [ray]: number of one of the objects hit;
-                                                                // RAYA_NO_OBJECT without a hit
+                            __global uint* restrict objects,    // [ray]: number of an object that the ray hits;
+                                                                // RAYA_NO_OBJECT if there is none
                             __global uint* restrict distances)  // [ray]: bits of t of that hit; without a hit, bits of
                                                                 // the ray's limit
 {

@@ -6,7 +6,7 @@
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void single_object_hits(__global const uint* restrict job,
                  __global const float* restrict rays,
-                 __global const uint* restrict objects,      // [ray / 16]: object number in the job, not of a plane
+                 __global const uint* restrict objects,      // [ray / 16]: number in the job of an object other than a plane
                  __global float* restrict distances) // [ray]: t; without a hit the ray's limit
 {
     const uint first = first_ray();

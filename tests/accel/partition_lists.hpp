@@ -38,9 +38,9 @@ inline Partition partition_of(const Scene& scene, const std::string& format, con
     return partition(job_in(scene, parse_format(format)), parse_format(format), divisions);
 }
 
-/// Returns half of the traversal error, in scene units, for which the partition has a margin if the ray's origin is at
-/// `reach`. test_traversal.cpp checks that the error is at most a quarter of the margin.
-inline double traversal_error(const raya_grid& grid) {
+/// Returns at most half of the traversal error, in scene units, that host/accel/partition.cpp allows for rays from the
+/// reach. test_traversal.cpp checks that the error is at most a quarter of the allowed error.
+inline double half_traversal_error(const raya_grid& grid) {
     double max_coordinate = grid.reach;
     for (std::uint32_t axis = 0; axis < 3; ++axis)
         max_coordinate = std::max({max_coordinate, std::abs(double{grid.low[axis]})});

@@ -66,7 +66,6 @@ inline Vec3 random_place(SplitMix& random, const raya_grid& grid) {
     return grid_point(grid, planes);
 }
 
-/// Returns a random corner of a voxel.
 inline Vec3 random_corner(SplitMix& random, const raya_grid& grid) {
     Vec3 planes;
     for (std::uint32_t axis = 0; axis < 3; ++axis)

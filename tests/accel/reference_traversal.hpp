@@ -55,8 +55,8 @@ inline Passage passage(const raya_grid& g, const VoxelBlock& block, const refere
     return p;
 }
 
-/// Adds the voxels of the block that the ray crosses at a distance of more than `slack` from their planes, in no
-/// particular order.
+/// Adds, in no particular order, the voxels of the block that the ray still crosses if their planes are moved inward by
+/// `slack`.
 inline void add_crossed(const raya_grid& g, const VoxelBlock& block, const reference::Ray& ray, double slack,
                         std::vector<std::uint32_t>& voxels) {
     if (passage(g, block, ray, -slack).empty()) return;

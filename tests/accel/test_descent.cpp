@@ -59,7 +59,7 @@ Rays rays_at(SplitMix& random, const Scene& scene, const RayBounds& bounds, int 
     return rays;
 }
 
-/// Numbers of rays: with a wrong result, with a hit, and in total.
+/// Numbers of rays with a wrong result, of rays with a hit, and of all rays.
 struct Tally {
     std::size_t wrong = 0, hits = 0, rays = 0;
 };

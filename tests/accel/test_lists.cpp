@@ -39,7 +39,6 @@ std::vector<std::uint32_t> objects_in_list(const PackedJob& job, std::uint32_t w
     return numbers;
 }
 
-/// Checks that each voxel's list is that of the partition.
 void check_lists(const PackedJob& job, const Partition& p) {
     const raya_grid_words grid = grid_of(job);
     CHECK(grid.rows_at % 4 == 0);
@@ -63,7 +62,7 @@ Scene overlapping_objects(std::size_t spheres, std::size_t others) {
 
 }  // namespace
 
-TEST_CASE("a grid's words hold the lists of the partition, and the job's words do not change") {
+TEST_CASE("a grid's words hold the lists of the partition, and appending them changes no other word except accel_at") {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         SplitMix random(seed);
         const NumberFormat format = parse_format(kFormats[seed % kFormats.size()]);
@@ -93,7 +92,7 @@ TEST_CASE("a grid's words hold the lists of the partition, and the job's words d
     }
 }
 
-TEST_CASE("lists of every length are complete, across several voxel words and links to other objects") {
+TEST_CASE("lists of every length are complete, even if they take several voxel words and link to other objects") {
     for (const std::size_t spheres : {0u, 1u, 30u, 31u, 32u, 61u, 62u, 63u, 93u, 94u, 200u})
         for (const std::size_t others : {0u, 1u, 2u, 40u}) {
             PackedJob job = job_in(overlapping_objects(spheres, others), {});

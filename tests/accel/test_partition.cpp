@@ -110,12 +110,12 @@ TEST_CASE("spheres are registered in the voxels of their surfaces and in few oth
         for (int i = 0; i < 10; ++i) scene.spheres.push_back({random_point(random, 0.5), random.uniform(0.01, 0.5), 0});
         const Partition p = partition_of(scene, "fp32", {12, 12, 12});
         const Partition coarse = partition_of(scene, "e6m15", {12, 12, 12});
-        std::size_t exact = 0;
-        for (const Sphere& s : scene.spheres) exact += touched_voxels(p.grid, s);
-        CAPTURE(seed, exact);
-        CHECK(p.objects.size() >= exact);
-        CHECK(double(p.objects.size()) <= 1.01 * double(exact));
-        CHECK(double(coarse.objects.size()) <= 1.5 * double(exact));
+        std::size_t touched = 0;
+        for (const Sphere& s : scene.spheres) touched += touched_voxels(p.grid, s);
+        CAPTURE(seed, touched);
+        CHECK(p.objects.size() >= touched);
+        CHECK(double(p.objects.size()) <= 1.01 * double(touched));
+        CHECK(double(coarse.objects.size()) <= 1.5 * double(touched));
     }
 }
 
@@ -128,7 +128,7 @@ TEST_CASE("an object that ends just before a plane is registered on both sides o
         scene.spheres.push_back({random_point(random, 0.3), 0.125, 0});
         const PackedJob before = job_in(scene, {});
         const raya_grid grid = partition(before, {}, {2, 2, 2}).grid;
-        const double slack = traversal_error(grid), plane = raya_voxel_plane(grid, 0, 1);
+        const double slack = half_traversal_error(grid), plane = raya_voxel_plane(grid, 0, 1);
         const Box box = HitRegions(before, {}).region(2).box;
         scene.spheres[2].centre.x += plane - slack - box.max.x;
         const Partition p = partition_of(scene, "fp32", {2, 2, 2});
@@ -171,8 +171,8 @@ TEST_CASE("the box contains all finite objects, and its sides are never 0") {
             REQUIRE(low < high);
             for (std::size_t i = 0; i < regions.size() && regions.all_bounded(); ++i) {
                 const Box box = regions.region(i).box;
-                REQUIRE(low + traversal_error(grid) < box.min[static_cast<int>(axis)]);
-                REQUIRE(high - traversal_error(grid) > box.max[static_cast<int>(axis)]);
+                REQUIRE(low + half_traversal_error(grid) < box.min[static_cast<int>(axis)]);
+                REQUIRE(high - half_traversal_error(grid) > box.max[static_cast<int>(axis)]);
             }
         }
     }
@@ -228,11 +228,11 @@ TEST_CASE("the reach is twice the scene's extent; with planes it is as large as 
     for (const std::string format : {"fp32", "e6m15", "e8m12"}) {
         CAPTURE(format);
         const double extent = job_in(scene, parse_format(format)).header().extent;
-        const double far = partition_of(scene, format, {2, 2, 2}).grid.reach / extent;
-        CHECK(far == std::exp2(std::round(std::log2(far))));
-        CHECK(far >= (format == "fp32" ? 4 : 2));
-        CHECK(far <= 1024);
-        CHECK(partition_of(scene, format, {200, 200, 200}).grid.reach / extent <= far);
+        const double reach_ratio = partition_of(scene, format, {2, 2, 2}).grid.reach / extent;
+        CHECK(reach_ratio == std::exp2(std::round(std::log2(reach_ratio))));
+        CHECK(reach_ratio >= (format == "fp32" ? 4 : 2));
+        CHECK(reach_ratio <= 1024);
+        CHECK(partition_of(scene, format, {200, 200, 200}).grid.reach / extent <= reach_ratio);
     }
     CHECK(partition_of(scene, "e6m15", {2, 2, 2}).grid.reach < partition_of(scene, "fp32", {2, 2, 2}).grid.reach);
     scene.planes.clear();
@@ -262,13 +262,13 @@ TEST_CASE("an acceleration grid has about the requested number of voxels, which 
         for (int axis = 0; axis < 3; ++axis) scene.spheres[1].centre[axis] = -1 + std::exp2(random.uniform(-6, 6));
         const NumberFormat format{};
         const PackedJob job = job_in(scene, format);
-        const double wanted = std::exp2(random.uniform(0, 24));
-        const Divisions d = divisions_for(job, format, static_cast<std::uint64_t>(wanted));
+        const double requested = std::exp2(random.uniform(0, 24));
+        const Divisions d = divisions_for(job, format, static_cast<std::uint64_t>(requested));
         const raya_grid grid = partition(job, format, d).grid;
-        CAPTURE(seed, wanted, d, grid.cell);
+        CAPTURE(seed, requested, d, grid.cell);
         const double voxels = double(d[0]) * d[1] * d[2];
-        REQUIRE(voxels <= wanted * 1.0001);
-        REQUIRE(voxels >= wanted / 3);
+        REQUIRE(voxels <= requested * 1.0001);
+        REQUIRE(voxels >= requested / 3);
         for (std::size_t a = 0; a < 3; ++a)
             for (std::size_t b = 0; b < 3; ++b)
                 if (d[a] > 1 && d[b] > 1) REQUIRE(grid.cell[a] < 2.5F * grid.cell[b]);

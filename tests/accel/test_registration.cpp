@@ -1,6 +1,6 @@
 // Every hit that a kernel computes, in any format, lies in its object's hit region (host/accel/hit_regions.hpp) and in
-// voxels that list the object. The environment variable RAYA_REGISTRATION_CASES sets the number of scenes of each kind
-// and format.
+// voxels that list the object. The environment variable RAYA_REGISTRATION_CASES sets the number of random scenes per
+// kind of object and format.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -42,7 +42,7 @@ std::size_t check_hits(KernelRunner& runner, SplitMix& random, const Scene& scen
                        int rounds) {
     const PackedJob job = job_in(scene, format);
     const Partition p = partition(job, format, random_divisions(random));
-    const double error = traversal_error(p.grid), extent = job.header().extent;
+    const double error = half_traversal_error(p.grid), extent = job.header().extent;
     const RayBounds bounds{format, std::min(2 * extent, double{p.grid.reach})};
     const std::vector<FoundHit> hits = single_object_hits(runner, job, aim_at_all(random, scene, bounds, rounds));
     const HitRegions regions(job, format);
@@ -55,7 +55,8 @@ std::size_t check_hits(KernelRunner& runner, SplitMix& random, const Scene& scen
         if (in_region && is_listed_near(p, point, error, hit.object)) continue;
         CAPTURE(scene.name, format_name(format), p.grid.divisions, hit.object, hit.ray.origin, hit.ray.direction, hit.t,
                 point);
-        FAIL((in_region ? "a hit in a voxel that does not list its object" : "a hit outside its object's region"));
+        FAIL((in_region ? "a hit lies in a voxel that does not list its object"
+                        : "a hit lies outside its object's region"));
     }
     return hits.size();
 }
@@ -88,7 +89,7 @@ TEST_CASE("every hit lies in voxels that list its object") {
 
 // The ray is nearly parallel to a cylinder, at a distance of half a unit. In the quadratic, b is 0 and a c is so small
 // that it is flushed to 0.
-TEST_CASE("a discriminant that is flushed to 0 is not a hit of a cone") {
+TEST_CASE("a ray does not hit a cone if rounding flushes the discriminant to 0") {
     const NumberFormat format = parse_format("e6m15");
     KernelRunner runner("tests/accel/hits_probe.cl", {4, true, format});
     Scene scene = empty_scene();

@@ -47,10 +47,11 @@ SteppedVoxels stepped_traversal(KernelRunner& runner, const raya_grid& grid, con
 /// Returns the number of voxels that stepper.clh must visit, given the voxels that traversal.clh visits. stepper.clh
 /// skips the last voxels if the ray's path through them has length 0, for example if the ray leaves the box through an
 /// edge.
-std::size_t voxels_until_end(const SteppedVoxels& w, std::size_t ray, std::uint32_t max_count) {
+std::size_t voxels_until_end(const SteppedVoxels& plain, std::size_t ray, std::uint32_t max_count) {
     std::size_t count = 0;
-    while (count < max_count && w.voxels[ray * max_count + count] != RAYA_NO_VOXEL) ++count;
-    while (count > 1 && w.t_exits[ray * max_count + count - 2] == w.t_exits[ray * max_count + count - 1]) --count;
+    while (count < max_count && plain.voxels[ray * max_count + count] != RAYA_NO_VOXEL) ++count;
+    while (count > 1 && plain.t_exits[ray * max_count + count - 2] == plain.t_exits[ray * max_count + count - 1])
+        --count;
     return count;
 }
 

@@ -17,11 +17,11 @@ namespace {
 constexpr std::size_t kTraversedGrids = 50, kTraversedRays = 2048;  // kTraversedRays: number of rays per grid
 
 struct Traversals {
-    std::vector<std::uint32_t> wide;         // [ray]: 1 if the ray is wide, else 0
-    std::vector<std::uint32_t> voxels;       // [ray][max_count]: voxel numbers, then RAYA_NO_VOXEL
-    std::vector<float> t_exits;              // [ray][max_count]: t at which the ray leaves each voxel
-    std::vector<float> resumed_t_exits;      // [ray][max_count]: as `t_exits`, if the traversal is resumed in the voxel
-    std::vector<std::uint32_t> next_voxels;  // [ray][max_count]: voxel after each voxel, if resumed in it
+    std::vector<std::uint32_t> wide;     // [ray]: 1 if the ray is wide, else 0
+    std::vector<std::uint32_t> voxels;   // [ray][max_count]: voxel numbers, then RAYA_NO_VOXEL
+    std::vector<float> t_exits;          // [ray][max_count]: t at which the ray leaves each voxel
+    std::vector<float> resumed_t_exits;  // [ray][max_count]: as `t_exits`, from a traversal that starts in the voxel
+    std::vector<std::uint32_t> next_voxels;  // [ray][max_count]: the voxel that this traversal visits next
 };
 
 Traversals traverse(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
@@ -59,9 +59,9 @@ Path path_of(const Traversals& traversals, std::size_t ray, std::uint32_t max_co
     return path;
 }
 
-/// Returns the maximum allowed distance of a ray from the traversal's voxel: a quarter of the error for which
-/// host/accel/partition.cpp has a margin.
-double traversal_error(const raya_grid& grid, const reference::Ray& ray) {
+/// Returns the maximum distance of a ray from the traversal's voxel: a quarter of the traversal error that
+/// host/accel/partition.cpp allows.
+double max_traversal_error(const raya_grid& grid, const reference::Ray& ray) {
     double box = 0, origin = 0;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         for (const std::uint32_t k : {0u, grid.divisions[axis]})
@@ -98,8 +98,8 @@ bool stays_near_ray(const raya_grid& grid, const reference::Ray& ray, const Path
     return true;
 }
 
-/// Returns true if the path contains all voxels that the ray crosses at a distance of more than `error` from their
-/// planes.
+/// Returns true if the path contains all voxels that the ray still crosses if their planes are moved inward by
+/// `error`.
 bool misses_none(const raya_grid& grid, const reference::Ray& ray, const Path& path, double error) {
     std::vector<std::uint32_t> crossed;
     add_crossed(grid, all_voxels(grid), ray, error, crossed);
@@ -107,8 +107,8 @@ bool misses_none(const raya_grid& grid, const reference::Ray& ray, const Path& p
     return std::all_of(crossed.begin(), crossed.end(), [&](std::uint32_t v) { return visited.count(v) == 1; });
 }
 
-/// Requirement on a ray. kMust: the ray certainly crosses the box before its limit, so it must enter the grid. kMay:
-/// the ray comes near the box before its limit. kMustNot: all other rays.
+/// Rule for a ray's entry into the grid. kMust: the ray certainly crosses the box before its limit. kMay: the ray comes
+/// near the box before its limit. kMustNot: all other rays.
 enum class Entry { kMust, kMay, kMustNot };
 
 Entry required_entry(const raya_grid& grid, const reference::Ray& ray, double limit, double error) {
@@ -147,7 +147,7 @@ struct TraversalCase {
 };
 
 void check_grid_traversal(const raya_grid& grid, const reference::Ray& ray, double limit, const Path& path) {
-    const double error = traversal_error(grid, ray);
+    const double error = max_traversal_error(grid, ray);
     const Entry expected = required_entry(grid, ray, limit, error);
     CAPTURE(ray.origin, ray.direction, limit, path.voxels, path.t_exits, error);
     if (expected == Entry::kMust) REQUIRE(!path.voxels.empty());
@@ -177,7 +177,7 @@ TEST_CASE("a traversal visits the voxels that the ray crosses, in order") {
     CHECK(visits > kTraversedGrids * kTraversedRays * 10);
 }
 
-TEST_CASE("a traversal that is resumed in any of its voxels continues in the same way") {
+TEST_CASE("a traversal that is resumed in any of its voxels visits the same voxels as before") {
     KernelRunner runner("tests/accel/traversal_probe.cl", {16, true, {}});
     for (std::size_t seed = 0; seed < kTraversedGrids / 2; ++seed) {
         const TraversalCase c(seed);
@@ -209,7 +209,7 @@ TEST_CASE("traversals have the same bits for all numbers of lanes") {
     }
 }
 
-TEST_CASE("a ray is wide only if it starts beyond the reach or its direction is not of length 1") {
+TEST_CASE("a ray is wide if it starts beyond the reach or its direction's length is too far from 1, and only then") {
     KernelRunner runner("tests/accel/traversal_probe.cl", {16, true, {}});
     constexpr float kAboveReach = 0x1.000002p3F, kLong = 1 + 0x1.8p-20F, kTooLong = 1 + 0x1.4p-19F,
                     kTooShort = 1 - 0x1.4p-19F;

@@ -16,12 +16,12 @@ BvhItem item_at(SplitMix& random, std::uint32_t number, double size, int layout)
                                                     RAYA_LINK_OBJECT};
     BvhItem item{{}, number, kinds[number % kinds.size()]};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double at = layout == 0   ? random.uniform(-1, 1)
-                          : layout == 1 ? 0.25                                               // all items in one place
-                          : layout == 2 ? std::pow(2.0, -double(number % 60)) * (axis == 0)  // ever closer together
-                                        : number % 7;                                        // in few places
-        item.box.low[axis] = static_cast<float>(at - size);
-        item.box.high[axis] = static_cast<float>(at + size * random.uniform(0.5, 2));
+        const double centre = layout == 0   ? random.uniform(-1, 1)
+                              : layout == 1 ? 0.25  // all items in one place
+                              : layout == 2 ? std::pow(2.0, -double(number % 60)) * (axis == 0)  // ever closer together
+                                            : number % 7;                                        // in few places
+        item.box.low[axis] = static_cast<float>(centre - size);
+        item.box.high[axis] = static_cast<float>(centre + size * random.uniform(0.5, 2));
     }
     return item;
 }

@@ -57,8 +57,8 @@ void resumes(__global const raya_grid* restrict grid,
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void made_directions(__global const raya_grid* restrict grid,
                      __global const float* restrict arms,  // [ray][6]: a direction and a normal, not normalised
-                     __global uint* restrict wide)         // [ray][2]: 1 if wide, else 0, of the ray and of the
-                                                           // reflected ray
+                     __global uint* restrict wide)         // [ray][2]: 1 if the ray [0] or its reflected ray [1]
+                                                           // is wide, else 0
 {
     const uint first = first_ray();
     const vec zero = {num_all(0.0f), num_all(0.0f), num_all(0.0f)};

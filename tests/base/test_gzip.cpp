@@ -33,7 +33,7 @@ TEST_CASE("gzip unpacks the appended text, however it was divided into pieces", 
             text += part;
         }
         const std::string bytes = file.finish();
-        const bool same = gunzip(bytes) == text;  // a bool, because texts have up to megabytes
+        const bool same = gunzip(bytes) == text;  // a bool, so that a failure does not print megabytes
         CHECK(same);
         CHECK(bytes.size() < text.size() + text.size() / 100 + 100);
         if (!noise && text.size() > 100'000) CHECK(bytes.size() < text.size() / 100);

@@ -49,7 +49,7 @@ ChildEnd in_child_process(const Work& work) {
     return end;
 }
 
-/// Calls `interrupt` when a file of this process reaches `bytes` bytes: during a write, and always at the same byte.
+/// Calls `interrupt` when a file of this process reaches `bytes` bytes, during a write.
 void interrupt_at_size(rlim_t bytes, void (*interrupt)(int)) {
     std::signal(SIGXFSZ, interrupt);
     const rlimit limit{bytes, RLIM_INFINITY};
@@ -76,7 +76,7 @@ TEST_CASE("an interruption in the middle of a file removes its written part", "[
     }
 }
 
-TEST_CASE("without the handler the partly written file remains: the test above can fail", "[interruption]") {
+TEST_CASE("without the handler, an interruption leaves the written part of a file", "[interruption]") {
     const ScratchFolder folder;
     const ChildEnd end = in_child_process([&] {
         interrupt_at_size(50'000, [](int) { ::raise(SIGINT); });

@@ -26,7 +26,7 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// While an object exists, limits the size of this process's files to `bytes`, to simulate a full disk.
+/// For its lifetime, limits the size of this process's files to `bytes`, to simulate a full disk.
 class FileSizeLimit {
   public:
     explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -46,8 +46,8 @@ class FileSizeLimit {
     void (*handler_)(int);
 };
 
-/// While an object exists, gives up root's privileges by becoming `nobody`, so that permissions apply. Does nothing for
-/// other users.
+/// For its lifetime, changes the user root to `nobody`, so that permissions apply. Does nothing for users other than
+/// root.
 class WithoutRoot {
   public:
     WithoutRoot() : changed_(::geteuid() == 0 && ::seteuid(kNobodyUid) == 0) {}

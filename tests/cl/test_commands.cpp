@@ -39,20 +39,20 @@ TEST_CASE("copies rotate the blocks of a ring exactly", "[cl]") {
     Session session(choose_device(""));
     constexpr std::size_t kPes = 7, kBlock = 13;  // odd sizes, so that blocks are not aligned
     const std::vector<cl_uint> before = consecutive_numbers(kPes * kBlock, 1000);
-    Buffer<cl_uint> from = session.buffer<cl_uint>("from", before.size());
-    Buffer<cl_uint> to = session.buffer<cl_uint>("to", before.size());
-    session.write("load", from, before);
+    Buffer<cl_uint> source = session.buffer<cl_uint>("source", before.size());
+    Buffer<cl_uint> target = session.buffer<cl_uint>("target", before.size());
+    session.write("load", source, before);
     for (std::size_t turn = 0; turn < kPes; ++turn) {  // moves every block to the next PE
-        session.copy("rotate", from, 0, to, kBlock, (kPes - 1) * kBlock);
-        session.copy("rotate", from, (kPes - 1) * kBlock, to, 0, kBlock);
-        std::swap(from, to);
+        session.copy("rotate", source, 0, target, kBlock, (kPes - 1) * kBlock);
+        session.copy("rotate", source, (kPes - 1) * kBlock, target, 0, kBlock);
+        std::swap(source, target);
         if (turn == 0) {
             std::vector<cl_uint> expected = before;
             std::rotate(expected.begin(), expected.end() - kBlock, expected.end());
-            CHECK(contents(session, from) == expected);
+            CHECK(contents(session, source) == expected);
         }
     }
-    CHECK(contents(session, from) == before);
+    CHECK(contents(session, source) == before);
 }
 
 TEST_CASE("block copies move their elements and change no others", "[cl]") {
@@ -82,8 +82,8 @@ TEST_CASE("block copies move their elements and change no others", "[cl]") {
 TEST_CASE("block copies beyond a block or a buffer are refused before any command", "[cl]") {
     Session session(choose_device(""));
     Buffer<cl_uint> a = session.buffer<cl_uint>("a", 12), b = session.buffer<cl_uint>("b", 20);
-    const auto copy = [&](Session::Blocks from, Session::Blocks to, std::size_t count, std::size_t blocks) {
-        session.copy_blocks("c", a, from, b, to, count, blocks);
+    const auto copy = [&](Session::Blocks source, Session::Blocks target, std::size_t count, std::size_t blocks) {
+        session.copy_blocks("c", a, source, b, target, count, blocks);
     };
     CHECK_THROWS_AS(copy({1, 4}, {0, 5}, 4, 3), std::out_of_range);  // reaches into the source's next block
     CHECK_THROWS_AS(copy({0, 4}, {2, 5}, 4, 3), std::out_of_range);  // reaches into the target's next block
@@ -227,7 +227,7 @@ TEST_CASE("transfers of any size through pinned memory move the same bytes", "[c
     session.fill("clear", buffer, 0);
     std::vector<cl_uint> expected(buffer.size());
     for (int i = 0; i < 200; ++i) {
-        // Some sizes differ from a multiple of half the staging memory by at most 1.
+        // Some counts differ by at most 1 from a multiple of kHalf, the number of elements in half the staging memory.
         const std::size_t max_count = i % 8 ? 1000 : 3 * kHalf,
                           edge = i % 16 ? 0 : kHalf * (random.next() % 4) + random.next() % 3;
         const std::size_t count = edge ? edge - 1 : random.next() % (max_count + 1),

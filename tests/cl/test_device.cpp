@@ -64,7 +64,7 @@ TEST_CASE("there is an OpenCL device, and every device has valid properties", "[
     }
 }
 
-TEST_CASE("a real device is found by number and by any part of its name, ignoring case", "[cl]") {
+TEST_CASE("an installed device is found by number and by any part of its name, ignoring case", "[cl]") {
     const std::vector<cl::Device> devices = all_devices();
     REQUIRE_FALSE(devices.empty());
     CHECK(choose_device("0")() == devices[0]());

@@ -38,12 +38,12 @@ TEST_CASE("a kernel receives buffers and values", "[cl]") {
     auto scale = program.kernel<const Buffer<float>&, cl_float, Buffer<float>&>("scale");
     std::vector<float> numbers(96);
     for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = float(i) - 40.0F;
-    Buffer<float> from = session.buffer<float>("from", numbers.size());
-    Buffer<float> to = session.buffer<float>("to", numbers.size());
-    session.write("numbers", from, numbers);
-    session.launch("scale", scale, 12, 8, from, 3.0F, to);
+    Buffer<float> input = session.buffer<float>("input", numbers.size());
+    Buffer<float> output = session.buffer<float>("output", numbers.size());
+    session.write("numbers", input, numbers);
+    session.launch("scale", scale, 12, 8, input, 3.0F, output);
     std::vector<float> result(numbers.size());
-    session.read("result", to, result);
+    session.read("result", output, result);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         CAPTURE(i);
         CHECK(result[i] == 3.0F * numbers[i] + 0.5F);  // exact: small multiples of one half
@@ -112,14 +112,14 @@ long cached_programs() {
     return cached;
 }
 
-// A kernel cache that is kept between runs must not hide that a kernel no longer builds.
+// The kernel cache stays between runs. It must not hide that a kernel no longer builds.
 TEST_CASE("a failed build is not cached, and fails again", "[cl]") {
     const auto build = [](const std::string& value) {
         const Session session(choose_device(""));
         session.build("test", "kernel void f(global long* a) { a[0] = " + value + "; }", {});
     };
     const long before = cached_programs();
-    for (int times = 0; times < 2; ++times) CHECK_THROWS_AS(build("undeclared_name"), DeviceError);
+    for (int attempt = 0; attempt < 2; ++attempt) CHECK_THROWS_AS(build("undeclared_name"), DeviceError);
     CHECK(cached_programs() == before);
     build(std::to_string(Clock::now().time_since_epoch().count()));  // new in each run
     if (Session(choose_device("")).device().platform == "Portable Computing Language")

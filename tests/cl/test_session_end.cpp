@@ -8,8 +8,8 @@
 using namespace raya;
 
 TEST_CASE("a session that an exception ends waits for the device's running commands", "[cl]") {
-    // PoCL compiles the kernel at this launch. Then the kernel runs millions of iterations. Only the session's
-    // destructor waits for them.
+    // PoCL compiles this kernel at its launch. Then the kernel runs millions of iterations, and only the session's
+    // destructor waits for its end.
     const std::string source =
         "kernel void slow(global uint* a, const uint turns) {\n"
         "    uint x = a[0];\n"

@@ -1,5 +1,5 @@
-// Finds the module that contains a return address. Preloaded libraries use it to inject faults only into calls by
-// raya's own code.
+// Finds the module that contains a return address, so that preloaded libraries inject faults only into calls by raya's
+// own code.
 #pragma once
 #include <dlfcn.h>
 #include <link.h>

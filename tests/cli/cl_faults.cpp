@@ -1,9 +1,9 @@
 // Fault injection into OpenCL: a library that is preloaded into raya (LD_PRELOAD) and changes one kind of call.
 //   RAYA_FAULT="clCreateBuffer 3 -4"          the third clCreateBuffer and all later ones return -4 and do nothing
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 lost"   every third clEnqueueCopyBuffer completes without copying;
-//                                             also for clEnqueueCopyBufferRect
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third copy is misdirected into the memory of another PE: to its
-//                                             target offset plus its size (at the end of the buffer: minus its size)
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 lost"   every third clEnqueueCopyBuffer completes without copying.
+//                                             `lost` and `astray` also work for clEnqueueCopyBufferRect.
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third copy goes into the memory of another PE: to its target
+//                                             offset plus its size (at the end of the buffer: minus its size)
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third call raises SIGSEGV
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 overflow"   the third call overflows the stack of its thread
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 overflows"  the third call starts two threads that overflow their stacks
@@ -31,9 +31,9 @@ namespace {
 
 struct Fault {
     std::string call;
-    int threshold = 0;   // number of the first faulty call, from 1; or the query; or, for `new`, the minimum bytes
+    int threshold = 0;   // number of the first failing call, from 1; or the query; or, for `new`, the minimum bytes
     std::string action;  // "lost", "astray", "crash", "overflow", "overflows", "exit", "slow" or empty
-    cl_int error = CL_SUCCESS;
+    cl_int error = CL_SUCCESS;  // returned by the failing call; or the answer to the query
 
     Fault() {
         const char* text = std::getenv("RAYA_FAULT");
@@ -131,7 +131,7 @@ cl_int command_without_copy(cl_command_queue queue, cl_mem from, cl_uint waits, 
 
 }  // namespace
 
-// Left out with the address sanitizer, which replaces operator new itself.
+// The address sanitizer has its own operator new.
 #ifndef __SANITIZE_ADDRESS__
 void* operator new(std::size_t bytes) {
     constexpr std::size_t kMinFailingBytes = 1000;  // excludes the allocations of `Fault` itself

@@ -1,4 +1,4 @@
-// Runs of raya with an injected fault of the OpenCL device.
+// Options of a run of raya with an injected OpenCL fault.
 #pragma once
 #include <string>
 
@@ -13,7 +13,7 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
-/// Returns the options of a run with this injected fault: a value of RAYA_FAULT (cl_faults.cpp).
+/// Returns the options of a run with an injected fault. `fault`: value of RAYA_FAULT (cl_faults.cpp).
 inline RunOptions device_with_fault(const std::string& fault) {
     return {.variables = {{"LD_PRELOAD", RAYA_CL_FAULTS},
                           {"RAYA_FAULT", fault},

@@ -1,13 +1,13 @@
 // Fault injection into file writes: a library that is preloaded into raya (LD_PRELOAD).
 //   RAYA_FULL_DISK="1000000 /folder"    the files in this folder have space for 1,000,000 bytes in total. The write()
-//                                       that exceeds it writes what fits; later ones fail with ENOSPC.
+//                                       that exceeds this space writes the bytes that fit; later ones fail with ENOSPC.
 //   RAYA_FULL_DISK="write /folder"      a write() to a file in this folder writes half of its bytes, then blocks
 //   RAYA_FULL_DISK="rename /folder"     a rename() to a file in this folder blocks
 //   RAYA_WRITE_FAULT="17 28"            the 17th of raya's writing calls (below) fails with errno 28 (ENOSPC)
 //   RAYA_WRITE_FAULT="17 short"         the 17th of raya's writing calls writes half its bytes
 //   RAYA_WRITE_CALLS=FILE               appends a line to FILE for each writing call: its name, and "fails" if it fails
 // Writing calls: calls of the functions at the end of this file by raya or the C++ library, not by drivers.
-// The library simulates a full disk, because mounting a small file system needs root, which not every container has.
+// The library simulates a full disk, because only root can mount a small file system.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -121,7 +121,7 @@ bool fails(const char* call, const void* caller, bool can_be_short, bool can_be_
     return is_call_by_raya(caller) && next_call_fails(call, can_be_short, can_be_interrupted);
 }
 
-/// Returns true if the descriptor is a regular file, but not the file to which stderr is redirected.
+/// Returns true if the descriptor refers to a regular file other than the one to which stderr is redirected.
 bool is_file(int descriptor) {
     struct stat status {
     }, messages{};
@@ -152,7 +152,7 @@ ssize_t write_within_limits(int descriptor, const void* bytes, std::size_t count
     return written;
 }
 
-/// The write function of stdout (fopencookie). The write function of the C library would bypass the preloaded write().
+/// Write function of stdout (fopencookie). The C library's own write function would bypass the preloaded write().
 ssize_t write_stdout(void*, const char* bytes, std::size_t count) {
     static auto* const next = library_function("write", &::write);
     if (is_file(STDOUT_FILENO) && next_call_fails("stdout", false, true)) return 0;
@@ -217,7 +217,7 @@ int open64(const char* path, int flags, ...) {
 int close(int descriptor) {
     const bool must_fail = is_open_for_writing(descriptor) && fails("close", CALLER, false, true);
     const int error = errno;
-    const int result = library_function("close", &::close)(descriptor);  // closes it even if it fails
+    const int result = library_function("close", &::close)(descriptor);  // also if the call must fail
     if (!must_fail) return result;
     errno = error;
     return -1;

@@ -1,7 +1,7 @@
 // Fault injection into allocations: a library that is preloaded into raya (LD_PRELOAD) and makes one allocation fail.
-//   RAYA_MEMORY_SITES=FILE      writes, when the process exits, a line for each allocation site: its number, the
-//                               number of allocations, the return addresses; and a line "elsewhere" with the number
-//                               of allocations by other libraries
+//   RAYA_MEMORY_SITES=FILE      when the process exits, writes a line for each allocation site: number of the site,
+//                               number of allocations, return addresses. The last line, "elsewhere", has the number
+//                               of allocations by other libraries.
 //   RAYA_MEMORY_FAULT=1f2e      the first allocation at the site with number 1f2e fails
 //   RAYA_MEMORY_FAULT==17       the 17th allocation by raya fails
 //   RAYA_MEMORY_FAULT=+17       the 17th allocation by other libraries fails
@@ -31,14 +31,14 @@ void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 
 namespace {
 
-constexpr std::size_t kDepth = 3;        // return addresses per site; 1 would not distinguish callers of a template
+constexpr std::size_t kDepth = 3;        // return addresses per site; one would not distinguish callers of a template
 constexpr std::size_t kSlots = 1 << 16;  // maximum number of sites
 
 using Site = std::array<std::uintptr_t, kDepth>;
 
 struct Slot {
-    std::atomic<std::uint64_t> number{0};  // 0: the slot is free
-    std::atomic<std::uint64_t> count{0};
+    std::atomic<std::uint64_t> number{0};  // of the site; 0: the slot is free
+    std::atomic<std::uint64_t> count{0};   // number of allocations
     Site site{};
 };
 
@@ -89,7 +89,7 @@ void count_allocation(std::uint64_t number, const Site& site) {
     }
 }
 
-/// Returns true at its first call, and then sets errno.
+/// The first call sets errno and returns true. Later calls return false.
 bool fail_once() {
     if (has_failed.exchange(true)) return false;
     if (const char* file = std::getenv("RAYA_MEMORY_FAILED")) ::close(::open(file, O_CREAT | O_WRONLY, 0666));
@@ -100,7 +100,7 @@ bool fail_once() {
 /// The value of RAYA_MEMORY_FAULT.
 struct Fault {
     char kind = '\0';          // '=': allocation by raya, '+': by other libraries, ' ': site, 0: no fault
-    std::uint64_t number = 0;  // of the allocation (from 1) or of the site
+    std::uint64_t number = 0;  // number of the allocation (from 1) or of the site
 
     Fault() {
         const char* text = std::getenv("RAYA_MEMORY_FAULT");

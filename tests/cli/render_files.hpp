@@ -15,8 +15,8 @@ inline constexpr int kTestWidth = 20, kTestHeight = 12;  // default --size, in p
 
 class RenderFiles {
   public:
-    /// Renders the scene. If the render fails, the test case ends. Defaults: 20 x 12 pixels, 20 PEs, and 4 lanes, the
-    /// same in all tests so that few kernels are compiled.
+    /// Renders the scene. If the render fails, the test case ends. Defaults: 20 x 12 pixels, 20 PEs, 4 lanes. All tests
+    /// use these defaults, so that few kernels are compiled.
     explicit RenderFiles(const std::string& scene, std::vector<std::string> options = {},
                          const std::string& extension = ".pfm", const std::string& cost_extension = ".pfm")
         : image_(folder_ / ("image" + extension)),

@@ -7,8 +7,8 @@
 
 namespace raya {
 
-/// Adds "PATH TYPE" to `keys` for every value in `json`. TYPE is "count" for an unsigned integer, else a JSON type. All
-/// elements of an array have the same path.
+/// Adds "PATH TYPE" to `keys` for every value in `json`. TYPE is "count" for an unsigned integer, else the name
+/// of the JSON type. All elements of an array have the same path.
 inline void list_keys(const Document& json, const std::string& path, std::set<std::string>& keys) {
     if (!json.is_structured()) {
         const bool is_count = json.is_number_unsigned();

@@ -45,14 +45,14 @@ struct RunOutcome {
 /// Environment, limits and redirections of a run.
 struct RunOptions {
     std::vector<std::pair<std::string, std::string>> variables{};  // [name, value], added to the test's environment
-    bool as_nobody = false;       // if root runs the test: run as user nobody, so that permissions apply
+    bool as_nobody = false;       // run as user nobody if root runs the test, so that permissions apply
     rlim_t max_file_bytes = 0;    // RLIMIT_FSIZE in bytes, 0: no limit; a longer write fails with EFBIG
     rlim_t max_memory_bytes = 0;  // RLIMIT_AS in bytes, 0: no limit
     std::string error_file{};     // file that stderr is written to; empty: RunOutcome::err
     std::string program = RAYA_PROGRAM;
     int signal = 0;                       // signal number, sent to the program unless it has ended; 0: none
-    int signal_after_ms = 0;              // delay after the program has a handler and `signal_when` returned true
-    std::function<bool()> signal_when{};  // polled; empty: always true
+    int signal_after_ms = 0;              // delay after the program has set a handler and signal_when is true
+    std::function<bool()> signal_when{};  // condition for the signal, polled; empty: always true
     int signal_count = 1;                 // number of times that the signal is sent; timeout(1) sends it twice
     std::string out_file{};               // file that stdout is written to; empty: RunOutcome::out
 };
@@ -88,7 +88,7 @@ inline std::vector<std::string> environment(const RunOptions& options) {
     for (char** variable = environ; *variable != nullptr; ++variable) {
         const std::string_view text = *variable;
         bool replaced = false;
-        // Preloaded libraries count writes. RAYA_KERNEL_LOG is omitted with them, because it would add writes.
+        // RAYA_KERNEL_LOG is removed if a library is preloaded, because it adds writes, which the library counts.
         for (const auto& [name, value] : options.variables)
             replaced = replaced || text.starts_with(name + "=") ||
                        (name == "LD_PRELOAD" && text.starts_with("RAYA_KERNEL_LOG="));
@@ -113,7 +113,7 @@ inline void become_nobody() {
 
 inline void limit_files(rlim_t bytes) {
     if (bytes == 0) return;
-    std::signal(SIGXFSZ, SIG_IGN);  // inherited by the program: its writes beyond the limit fail with EFBIG
+    std::signal(SIGXFSZ, SIG_IGN);  // raya inherits this setting: its writes beyond the limit fail with EFBIG
     const rlimit limit{bytes, bytes};
     if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
 }
@@ -123,8 +123,8 @@ inline void limit_memory(rlim_t bytes) {
     if (bytes != 0 && ::setrlimit(RLIMIT_AS, &limit) != 0) ::_exit(126);
 }
 
-/// Returns true if the child runs raya and has a handler for the signal (SigCgt in proc(5)). Before its exec of raya
-/// the child has the handlers of this process, which do not count.
+/// Returns true if the child runs raya and has a handler for the signal (SigCgt in proc(5)). Returns false before the
+/// child executes raya: until then it has the handlers of this process.
 inline bool has_handler(pid_t child, int signal) {
     const std::string folder = "/proc/" + std::to_string(child);
     std::error_code ended;
@@ -173,7 +173,7 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const RunOptions&
     std::vector<std::string> variables = detail::environment(options);
     const std::vector<char*> argv = detail::pointers(arguments), envp = detail::pointers(variables);
     const detail::File input = detail::temporary_file(), out = detail::temporary_file(), err = detail::temporary_file();
-    // Opened before the fork and run by its descriptor: user nobody may have no access to the build folder.
+    // Opens the program before the fork, because user nobody may have no access to the build folder.
     const int program = ::open(options.program.c_str(), O_RDONLY | O_CLOEXEC);
     const pid_t child = program < 0 ? -1 : ::fork();
     if (child == 0) {

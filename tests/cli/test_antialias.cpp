@@ -34,8 +34,8 @@ std::uint64_t launches_of(const Document& report, const std::string& label) {
     return launches;
 }
 
-/// Checks that each rotation is two copies: one moves all blocks except the last by one PE, the other moves the last
-/// block to the other end.
+/// Checks that each rotation consists of two copies: one copy moves all blocks except the last by one PE, and one moves
+/// the last block to the opposite end of the array.
 void check_rotations(const Document& report) {
     const Document& ring = report["communication"];
     const std::uint64_t rotations = ring["rotations"], pes = report["machine"]["pes"],
@@ -45,7 +45,7 @@ void check_rotations(const Document& report) {
     CHECK(launches_of(report, "ring.rotate_up") + launches_of(report, "ring.rotate_down") == 2 * rotations);
 }
 
-TEST_CASE("render --antialias: the report has the keys of its method", "[cli]") {
+TEST_CASE("render --antialias: the report has the keys of the method", "[cli]") {
     std::set<std::string> keys = fixed_keys();
     keys.insert({"antialias.band_pixels count", "antialias.exchange string"});
     CHECK(keys_of(RenderFiles("planes", {"--antialias", "filter"}).report()) == keys);
@@ -55,7 +55,7 @@ TEST_CASE("render --antialias: the report has the keys of its method", "[cli]") 
     CHECK(keys_of(RenderFiles("planes", supersample_options()).report()) == keys);
 }
 
-TEST_CASE("render --antialias none: the report names no method, and the image is that of the default", "[cli]") {
+TEST_CASE("render --antialias none: the report has no rotations, and the image is that of the default", "[cli]") {
     const RenderFiles files("planes", {"--antialias", "none"});
     const Document report = files.report();
     CHECK(report["antialias"] == Document{{"method", "none"}});
@@ -69,26 +69,25 @@ TEST_CASE("render --antialias filter: the counts of the report are consistent", 
     const RenderFiles files("planes", {"--antialias", "filter", "--offset", "3"});
     const Document report = files.report(), plain_report = RenderFiles("planes", {"--offset", "3"}).report();
     CHECK(report["antialias"] == Document{{"method", "filter"}, {"exchange", "ring"}, {"band_pixels", kTestHeight}});
-    CHECK(report["communication"]["rotations"] ==
-          2 + 2 * 3);  // one column per PE, offset 3: neighbours are 1 PE left and right, 3 PEs up and down
+    CHECK(report["communication"]["rotations"] == 2 + 2 * 3);  // neighbours: 1 PE (left, right), 3 PEs (up, down)
     check_rotations(report);
     for (const char* part : {"rays", "tests", "shading", "load"}) CHECK(report[part] == plain_report[part]);
     CHECK(report["image"]["hash"] != plain_report["image"]["hash"]);
     CHECK(report["machine"]["pe_memory_used_bytes"] == plain_report["machine"]["pe_memory_used_bytes"].get<int>() +
-                                                           2 * 12 * kTestHeight);  // the sums and a block in transit
+                                                           2 * 12 * kTestHeight);  // sums, and a block in transit
     for (const char* label : {"filter.sum_rows", "filter.sum_columns"}) CHECK(launches_of(report, label) == 2);
     CHECK(launches_of(report, "filter.take_means") == 1);
     CHECK_THAT(files.run().out, Catch::Contains("ring    8 rotations, " + std::to_string(8 * 20 * 3 * 12) + " words"));
 }
 
-TEST_CASE("render --exchange bus: the report has the number and the time of the transfers; image as with the ring",
+TEST_CASE("render --exchange bus: the report has number and time of the transfers; the image is that of the ring",
           "[cli]") {
     const auto options = [](const std::string& exchange) {
         return Arguments{"--antialias", "supersample", "--offset", "3", "--exchange", exchange};
     };
     const Document ring = RenderFiles("planes", options("ring")).report();
     const RenderFiles bus("planes", options("bus")), broadcast("planes", options("bus-broadcast"));
-    constexpr std::uint64_t kBlock = 3 * kTestHeight;  // number of words for the pixels of a PE, one column
+    constexpr std::uint64_t kBlock = 3 * kTestHeight;  // number of words of a PE's pixels, one column
     for (const RenderFiles* files : {&bus, &broadcast}) {
         const Document report = files->report();
         const Document& communication = report["communication"];
@@ -97,7 +96,7 @@ TEST_CASE("render --exchange bus: the report has the number and the time of the 
         CHECK(report["load"] == ring["load"]);
         CHECK(communication["rotations"] == 0);
         CHECK(communication["transfers"] ==
-              (by_transfers ? 4 * kTestWidth : 0));  // one per PE and neighbour; one broadcast reaches all
+              (by_transfers ? 4 * kTestWidth : 0));  // one transfer per PE and neighbour; a broadcast reaches all PEs
         CHECK(communication["pe_broadcasts"] == (by_transfers ? 0 : kTestWidth));
         const std::uint64_t moves = by_transfers ? communication["transfers"] : communication["pe_broadcasts"];
         CHECK(communication[by_transfers ? "transfer_words" : "pe_broadcast_words"] == moves * kBlock);
@@ -134,7 +133,7 @@ TEST_CASE("render --antialias supersample: the counts of the report are consiste
                Catch::Contains("super   " + std::to_string(recomputed) + " pixels (") && Catch::Contains("super u = "));
 }
 
-TEST_CASE("render --threshold, --points: change the supersampled pixels and the sample points", "[cli]") {
+TEST_CASE("render: --threshold selects the supersampled pixels, --points the sample points", "[cli]") {
     const Document all = RenderFiles("planes", supersample_options({"--threshold", "0"})).report();
     CHECK(all["antialias"]["threshold"] == 0.0);
     CHECK(all["antialias"]["recomputed_pixels"] == kPixels);
@@ -159,18 +158,18 @@ TEST_CASE("render --mask: white where pixels were supersampled, black elsewhere"
     CHECK(folder.entries() == 1);
     REQUIRE(mask.width == kTestWidth);
     REQUIRE(mask.height == kTestHeight);
-    std::uint64_t white_pixels = 0, other_pixels = 0;  // other: neither white nor black
+    std::uint64_t white_pixels = 0, invalid_pixels = 0;  // invalid: neither white nor black
     for (std::size_t i = 0; i < mask.rgb.size(); i += 3) {
         const std::array<float, 3> pixel = {mask.rgb[i], mask.rgb[i + 1], mask.rgb[i + 2]};
         white_pixels += pixel == std::array<float, 3>{1, 1, 1};
-        other_pixels += pixel != std::array<float, 3>{1, 1, 1} && pixel != std::array<float, 3>{0, 0, 0};
+        invalid_pixels += pixel != std::array<float, 3>{1, 1, 1} && pixel != std::array<float, 3>{0, 0, 0};
     }
-    CHECK(other_pixels == 0);
+    CHECK(invalid_pixels == 0);
     CHECK(white_pixels == antialias["recomputed_pixels"]);
     CHECK(double(white_pixels) / double(kPixels) == antialias["recomputed_share"]);
 }
 
-TEST_CASE("render: refuses options of supersampling out of range and without --antialias supersample", "[cli]") {
+TEST_CASE("render: refuses options of supersampling out of range, or without --antialias supersample", "[cli]") {
     const ScratchFolder outputs;
     const auto refused = [&](const Arguments& options, const Arguments& message) {
         check_refused(outputs, render_into(outputs, scene_file("planes"), options), 2, message);
@@ -211,7 +210,7 @@ TEST_CASE("render --antialias: refuses a PE memory that is too small, with the n
     const auto refused = [&](const Arguments& options, const Arguments& message) {
         check_refused(outputs, render_into(outputs, scene_file("planes"), options), 2, message);
     };
-    // The PE's memory holds 24 bytes per pixel for the filter, 13 for supersampling, and the broadcast scene.
+    // A PE's memory holds the broadcast scene, and per pixel 24 bytes for the filter or 13 bytes for supersampling.
     refused({"--antialias", "filter", "--size", "256", "--pes", "1"},
             {"planes.nff with --antialias filter", "needs 153", " KB in every PE", "the SPA has 32 KB", "more PEs",
              "--machine grande"});

@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-/// Returns the arguments of a bench with one small row, which takes less than a second.
+/// Returns the arguments of a run of raya bench that measures one row in less than a second.
 Arguments small_bench(const Arguments& extra_options) {
     Arguments arguments = {"bench", "--size",   "32",   "--pes",     "32", "--lanes",
                            "4",     "--format", "fp32", "--samples", "3"};
@@ -79,7 +79,7 @@ TEST_CASE("bench --report, --compare: a later run is compared with the rows of t
                                                         "--tolerance", "50", "--report", folder / "now.json"}));
     INFO(slower_run.describe());
     CHECK(slower_run.code == 4);
-    // -99.9 %; printed as -100.0 % if other programs slowed the run down.
+    // The rate falls by 99.9 %, or by 100.0 % (rounded) if other programs slowed the run down.
     CHECK_THAT(slower_run.out, Catch::Contains("SLOWER") && (Catch::Contains("-99.") || Catch::Contains("-100.0 %")));
     CHECK_THAT(slower_run.err,
                Catch::Contains("fast.json: 1 of 1 row slower by more than 50 %, 0 with a different image"));
@@ -112,8 +112,7 @@ TEST_CASE("bench: refuses invalid baselines, reports and tolerances", "[cli]") {
                       {"--tolerance"});
 }
 
-TEST_CASE("bench --variants: times renders with and without a grid and on the torus, with the same image",
-          "[cli][slow]") {
+TEST_CASE("bench --variants: times each variant, and all variants render the same image", "[cli][slow]") {
     const ScratchFolder folder;
     const std::string base = folder / "variants.json";
     const RunOutcome run =

@@ -17,7 +17,7 @@ Arguments render_arguments(const ScratchFolder& folder, const Arguments& extra_o
     return arguments;
 }
 
-TEST_CASE("render --checkpoint: a resumed render writes the same file", "[cli][checkpoint]") {
+TEST_CASE("render --checkpoint: a resumed render writes the same image file as a single run", "[cli][checkpoint]") {
     const ScratchFolder folder;
     REQUIRE(run_raya(render_arguments(folder)).code == 0);
     const std::string image_bytes = file_contents(folder / "x.pfm");
@@ -78,7 +78,7 @@ TEST_CASE("render --checkpoint: refuses a file that is not a checkpoint, and lea
         CHECK(run.code == 2);
         CHECK_THAT(run.err, Catch::Contains("--checkpoint " + file) && Catch::Contains(message));
         CHECK_THAT(run.err,
-                   !Catch::Contains("remove"));  // the file may be a scene, so raya must not advise to remove it
+                   !Catch::Contains("remove"));  // the file may be a scene, so raya must not advise removing it
         CHECK(file_contents(file) == before);
         CHECK(folder.entries() == 1);
     };

@@ -20,12 +20,12 @@ RunOutcome run_successfully(const Arguments& arguments) {
     return run;
 }
 
-std::vector<Arguments> lines_that_start_with(const std::string& text, const std::string& word) {
+std::vector<Arguments> lines_that_start_with(const std::string& text, const std::string& token) {
     std::istringstream lines(text);
     std::vector<Arguments> found;
     for (std::string line; std::getline(lines, line);) {
         const Arguments arguments = tokens_of(line);
-        if (!arguments.empty() && arguments[0] == word) found.push_back(arguments);
+        if (!arguments.empty() && arguments[0] == token) found.push_back(arguments);
     }
     return found;
 }
@@ -49,7 +49,7 @@ TEST_CASE("raya --help: names every command and the exit codes", "[cli]") {
 TEST_CASE("COMMAND --help, --help-all: give unit, default and range of every option", "[cli]") {
     struct Row {
         Arguments command;
-        Arguments texts;  // in the help of the command
+        Arguments texts;  // expected in the help of the command
     };
     const Arguments shared_texts = {"--machine NAME spa: 256 PEs",
                                     "256 PEs of 32 KB",
@@ -99,7 +99,7 @@ TEST_CASE("COMMAND --help, --help-all: give unit, default and range of every opt
     }
 }
 
-TEST_CASE("devices: lists each device with its default lanes", "[cli]") {
+TEST_CASE("devices: lists each device with its default number of lanes", "[cli]") {
     const std::string out = run_successfully({"devices"}).out;
     INFO(out);
     for (const char* column : {"device", "platform", "lanes", "local KB", "div/sqrt exact", "profiling"})
@@ -170,7 +170,7 @@ TEST_CASE("generate --seed: the same seed makes the same bytes, another seed oth
     CHECK(file_contents(folder / "a") != file_contents(folder / "c"));
 }
 
-TEST_CASE("bench: prints a row per format and number of lanes, one image hash per format, and the operations",
+TEST_CASE("bench: prints a row per format and number of lanes, one image hash per format, and rates of operations",
           "[cli][slow]") {
     const std::string out = run_successfully({"bench", "--samples", "1", "--size", "64"}).out;
     INFO(out);
@@ -184,7 +184,7 @@ TEST_CASE("bench: prints a row per format and number of lanes, one image hash pe
         CHECK(rows[i][2] == lanes[i % lanes.size()]);
         CHECK(std::stod(rows[i][4]) > 0);                                 // Mrays/s of the best sample
         CHECK(rows[i][4] == rows[i][5]);                                  // with one sample, best and median are equal
-        CHECK((rows[i].back() == rows[0].back()) == (i < lanes.size()));  // same image hash as in row 0
+        CHECK((rows[i].back() == rows[0].back()) == (i < lanes.size()));  // rows of one format have one image hash
     }
     CHECK(lines_that_start_with(out, "Gop/s").size() == 1);
     CHECK(lines_that_start_with(

@@ -1,5 +1,5 @@
-// Damaged JSON files: every reader refuses them or warns, in one line with file name and line number, and never ends
-// with an internal error.
+// Damaged JSON files: every reader refuses them or prints a warning, in one line with file name and line number. No
+// reader ends with an internal error.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -23,7 +23,7 @@ struct Damage {
     std::string text, reason;
 };
 
-// Returns texts that the JSON parser refuses, and therefore every reader.
+// Returns texts that the JSON parser, and therefore every reader, refuses.
 std::vector<Damage> malformed_texts() {
     const auto nested_lists = [](std::size_t levels) { return std::string(levels, '['); };
     return {

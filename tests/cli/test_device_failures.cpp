@@ -15,7 +15,7 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-TEST_CASE("render: for a kernel that does not compile, the error names device, options and build log", "[cli]") {
+TEST_CASE("render: for a kernel that does not compile, the error has device, options and build log", "[cli]") {
     const ScratchFolder kernels, outputs;
     const SourcePatch mistake{"geometry/sphere.clh", "#include \"kernels/geometry/ray.clh\"", "no_such_type broken;"};
     const std::string broken = write_kernels(kernels / "kernels", {mistake}), planes = scene_file("planes");
@@ -27,7 +27,7 @@ TEST_CASE("render: for a kernel that does not compile, the error names device, o
                    "no_such_type"});
 }
 
-TEST_CASE("render: a device that ends a loop early is detected by its pixel count, and no file is written", "[cli]") {
+TEST_CASE("render: detects by the pixel count that the device ended a loop early, and writes no file", "[cli]") {
     const ScratchFolder kernels, outputs;
     const SourcePatch early_end{"ring/trace.cl", "store.points = points;",
                                 "store.points = points; store.end -= group == 3 && store.end > 0;"};
@@ -41,8 +41,7 @@ TEST_CASE("render: a device that ends a loop early is detected by its pixel coun
     }
 }
 
-TEST_CASE("RAYA_BUILD_OPTIONS: is used in every build and shown in the report and in the message of a failed build",
-          "[cli]") {
+TEST_CASE("RAYA_BUILD_OPTIONS: every build uses it, and the report and the error of a failed build show it", "[cli]") {
     const ScratchFolder outputs;
     const RunOutcome run =
         run_raya(render_into(outputs, scene_file("planes"), {"--size", "16", "--quiet", "--lanes", "4"}),
@@ -94,7 +93,7 @@ TEST_CASE("RAYA_TUNED: refuses values other than off", "[cli]") {
     check_refused(outputs, {"bench", "--size", "8"}, 2, {"RAYA_TUNED=maybe"}, {.variables = {{"RAYA_TUNED", "maybe"}}});
 }
 
-TEST_CASE("devices: lists a driver with two ICD entries once, and numbers equal devices separately", "[cli]") {
+TEST_CASE("devices: lists a driver with two ICD entries once, and numbers equal devices one by one", "[cli]") {
     const ScratchFolder vendors;
     const fs::path entry = "/etc/OpenCL/vendors/pocl.icd";
     if (!fs::exists(entry)) return;
@@ -223,7 +222,7 @@ TEST_CASE("render: ends if memory runs out during a build, although the driver s
                   {"out of memory on the host"}, run_options);
 }
 
-TEST_CASE("render: the error names an unwritable PoCL cache first; if none is set, raya uses another folder", "[cli]") {
+TEST_CASE("render: the error names an unwritable POCL_CACHE_DIR first; without it raya uses another folder", "[cli]") {
     const ScratchFolder home, outputs;
     ::chmod(outputs.path().c_str(), 0777);
     ::chmod(home.path().c_str(), 0555);
@@ -242,7 +241,7 @@ TEST_CASE("render: the error names an unwritable PoCL cache first; if none is se
     CHECK_THAT(run.err, Catch::Contains("raya: warning: ") && Catch::Contains("PoCL keeps its kernels in"));
 }
 
-/// Mounts a file system of `bytes` at `folder` for the object's lifetime, if the process has the permission.
+/// If the process has the permission, mounts a file system of `bytes` bytes at `folder` for the object's lifetime.
 class SmallFileSystem {
   public:
     SmallFileSystem(const fs::path& folder, int bytes)
@@ -260,7 +259,7 @@ class SmallFileSystem {
     bool is_mounted_;
 };
 
-TEST_CASE("render: names a full kernel cache, whether PoCL or LLVM reports it", "[cli]") {
+TEST_CASE("render: the error names a full kernel cache, whether PoCL or LLVM detects it", "[cli]") {
     if (kSanitized) return;
     for (const int bytes : {4 << 10, 300 << 10}) {
         CAPTURE(bytes);

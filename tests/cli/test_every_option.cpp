@@ -121,7 +121,7 @@ TEST_CASE("render: refuses odd values before it opens a device", "[cli][every]")
         std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.path == Arguments{"render"}; });
     for (const OptionText& option : render->text.options) {
         const std::string& name = option.names.back();
-        const bool is_file = contains(option.value, "FILE") || contains(option.value, "IMAGE");
+        const bool is_file = contains(option.placeholder, "FILE") || contains(option.placeholder, "IMAGE");
         if (option.is_flag() || is_file || accept_any_text.count(name) > 0) continue;
         for (const std::string& value : kOddValues)
             if (value != "-1" || accept_negative.count(name) == 0)

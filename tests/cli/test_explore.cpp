@@ -75,7 +75,7 @@ TEST_CASE("explore: refuses more pixels than a page holds, before rendering", "[
     CHECK(folder.entries() == 0);
 }
 
-TEST_CASE("explore: refuses a page that is too large to send", "[cli][.][long]") {
+TEST_CASE("explore: refuses a page of more than 1,000,000 bytes", "[cli][.][long]") {
     const ScratchFolder folder;
     const RunOutcome run =
         run_raya({"explore", scene_file("centre"), "-o", folder / "page.html", "--size", "1400", "--pes", "4",

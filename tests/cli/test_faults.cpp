@@ -1,4 +1,4 @@
-// Faults during a render: message, exit code, and no output file, neither complete nor partial.
+// Faults during a render: raya ends with a message and an exit code, and leaves no output file or part of one.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ TEST_CASE("render: if the device runs out of memory, the error names buffer, Ope
     check_refused(outputs, small_render(outputs), 3,
                   {"CL_MEM_OBJECT_ALLOCATION_FAILURE", "trace", "remedy: the device has too little memory"},
                   device_with_fault("clEnqueueNDRangeKernel 1 -4"));
-    // A buffer larger than the device allows: raya refuses it before it calls the driver.
+    // raya refuses a buffer that is larger than the device allows, before it calls the driver.
     check_refused(
         outputs,
         render_into(outputs, scene_file("planes"), {"--size", "16384", "--machine", "grande", "--antialias", "filter"}),
@@ -92,12 +92,12 @@ TEST_CASE("render: if the host runs out of memory, the error contains the remedy
                       device_with_fault("new 1000000 0"));
 }
 
-TEST_CASE("render: a failed allocation anywhere in raya ends with a message", "[cli]") {
+TEST_CASE("render: a failed allocation anywhere in raya ends the run with a message", "[cli]") {
     if (kSanitized) {
         WARN("skipped: the sanitizer has an allocator of its own");
         return;
     }
-    const auto outputs_of = [](const std::string& number) {
+    const auto count_outputs = [](const std::string& number) {
         const ScratchFolder outputs;
         const RunOutcome run =
             run_raya(small_render(outputs),
@@ -108,7 +108,7 @@ TEST_CASE("render: a failed allocation anywhere in raya ends with a message", "[
         return outputs.entries();
     };
     // These allocations happen before main(), while options are declared, while they are parsed, and in the render.
-    for (const char* number : {"1", "100", "1000", "10000", "20000"}) CHECK(outputs_of(number) == 0);
+    for (const char* number : {"1", "100", "1000", "10000", "20000"}) CHECK(count_outputs(number) == 0);
 }
 
 TEST_CASE("render: the error names a memory limit that is too small for a library", "[cli]") {
@@ -136,7 +136,7 @@ TEST_CASE("render: succeeds with a fault that is never reached (control)", "[cli
     CHECK(outputs.entries() == 3);
 }
 
-TEST_CASE("render --device: the error for a device that has gone lists the available devices", "[cli]") {
+TEST_CASE("render --device: the error for a device that is no longer there lists the available devices", "[cli]") {
     const ScratchFolder outputs;
     const Arguments arguments = small_render(outputs, {"--device", "basic"});
     const RunOutcome run = run_raya(arguments, {.variables = {{"POCL_DEVICES", "basic"}}});
@@ -147,7 +147,7 @@ TEST_CASE("render --device: the error for a device that has gone lists the avail
                   {.variables = {{"POCL_DEVICES", "pthread"}}});
 }
 
-// Returns the arguments of a render to an image file of 3 MB. Kernel and report files are far smaller.
+// Returns the arguments of a render that writes an image file of 3 MB. Kernel and report files are far smaller.
 Arguments large_render(const std::string& image) {
     return {"render", scene_file("planes"), "-o", image, "--size", "512", "--lanes", "4", "--quiet"};
 }

@@ -1,6 +1,6 @@
 // No output of a command overwrites its input or another output, even under another name of the same file. Tests all
-// pairs of file options of all commands. The parser runs in this process and refuses before any command's callback
-// runs.
+// pairs of file options of all commands. The parser runs in this process. It refuses the arguments before it
+// calls a command's callback.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -68,7 +68,7 @@ Arguments arguments_for(CLI::App& command, const Path& path, const Arguments& tw
 
 void check_refused_by_parser(const Arguments& arguments, const Arguments& options) {
     CAPTURE(arguments);
-    std::string message = "nothing";
+    std::string message = "accepted";
     try {
         make_full_parser()->parse(
             Arguments(arguments.rbegin(), arguments.rend()));  // CLI11 expects the arguments in reverse

@@ -1,4 +1,4 @@
-// Security: raya loads no module and no kernel cache in which other users can write.
+// Security: raya loads no module, and uses no kernel cache, that other users can write.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -67,7 +67,7 @@ TEST_CASE("raya loads modules only from its own folder, or from ../lib/raya if i
     const ScratchFolder folder;
     CHECK(Installation(folder / "flat", ".", ".").run().code == 0);
     CHECK(Installation(folder / "prefix", "bin", "lib/raya").run().code == 0);
-    // Modules in folders that earlier versions searched, where another user may put files, are not loaded.
+    // Earlier versions searched these folders, in which another user may put files. raya loads no module from them.
     for (const auto& [program, modules] : {std::pair{"sub", "."}, {"sub", "lib/raya"}, {"bin", "bin"}, {"bin", "."}}) {
         CAPTURE(program, modules);
         const ScratchFolder scratch;
@@ -124,7 +124,7 @@ TEST_CASE("modules: group write permission is accepted if the owner is the group
     flat.check_refused("(mode 0775)");
 }
 
-TEST_CASE("modules: those of the program's owner and of root are loaded, those of other users refused",
+TEST_CASE("modules: raya loads those of the program's owner and of root, and refuses those of other users",
           "[cli][module]") {
     if (::geteuid() != 0) return;
     const ScratchFolder folder;
@@ -256,8 +256,8 @@ TEST_CASE("kernel cache: without a safe folder, the error names the folders that
     };
     check_none(CacheRun(0777));  // without sticky bit: others can replace its files
     const CacheRun occupied;
-    for (const char* end : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
-        std::ofstream(occupied.private_folder(end)) << "x";
+    for (const char* suffix : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
+        std::ofstream(occupied.private_folder(suffix)) << "x";
     check_none(occupied);
 }
 

@@ -93,7 +93,7 @@ TEST_CASE("--camera-path: each line is a camera; a wrong line is refused with it
         CHECK_THROWS_WITH(read_camera_path(path, view), Catch::Contains(message));
     }
     CHECK_THROWS_WITH(read_camera_path(folder / "none.txt", view), Catch::Contains("--camera-path"));
-    // A byte 0xbf alone is not valid UTF-8.
+    // Messages about long texts are short. A single byte 0xbf is not valid UTF-8.
     for (const char* name : {"", "from ", "angle ", "from 1,2,", "up \xbf"}) {
         write_whole_file(path, name + std::string(5'000'000, name[0] == 'u' ? '\xbf' : '1') + "x\n");
         try {
@@ -212,7 +212,7 @@ TEST_CASE("render --frames: an interrupted sequence resumes with the missing fra
     const Sequence complete;
     const Arguments frames = {"--frames", "1:60"};
     REQUIRE(complete.rendered_frames(frames) == 60);
-    // Interrupts the render, each time after a longer delay, until some frames exist.
+    // Interrupts the render, each time after a longer delay, until a frame exists.
     std::optional<Sequence> stopped;
     int missing_frames = 60;
     for (int ms = 60; missing_frames == 60 && ms <= 5000; ms += ms / 2) {
@@ -269,18 +269,18 @@ TEST_CASE("FrameRecord: contains the frames of all processes that write it concu
     CHECK(folder.entries() == 1);  // no lock file is left
 }
 
-TEST_CASE("FrameRecord: adds the frames that others wrote meanwhile; of two entries for a frame, the later counts",
+TEST_CASE("FrameRecord: keeps frames that other processes wrote meanwhile, and the later of two entries for a frame",
           "[cli][frames]") {
     const ScratchFolder folder;
     FrameRecord first_record(folder / "t-frames.json"), second_record(folder / "t-frames.json");
-    first_record.add({1, "one", "pixels", 1, 1, {}}, {});
-    first_record.add({2, "one", "pixels", 1, 1, {}}, {});
+    first_record.add({1, "settings 1", "pixels", 1, 1, {}}, {});
+    first_record.add({2, "settings 1", "pixels", 1, 1, {}}, {});
     first_record.write();
-    second_record.add({2, "other", "pixels", 1, 1, {}}, {});
+    second_record.add({2, "settings 2", "pixels", 1, 1, {}}, {});
     second_record.write();
     for (const FrameRecord& record : {second_record, FrameRecord(folder / "t-frames.json")}) {
-        CHECK(record.find(1, "one", {}) != nullptr);
-        CHECK(record.find(2, "other", {}) != nullptr);  // the entry that was written last
+        CHECK(record.find(1, "settings 1", {}) != nullptr);
+        CHECK(record.find(2, "settings 2", {}) != nullptr);  // the entry that was written last
     }
 }
 

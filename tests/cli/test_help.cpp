@@ -119,21 +119,21 @@ TEST_CASE("help: commands with more than 25 options have a short help of at most
         CAPTURE(path);
         CHECK((command.options.size() > 25) == !command.short_help.empty());
         if (command.short_help.empty()) return;
-        Arguments command_words = tokens_of(path);
-        command_words.erase(command_words.begin());  // removes "raya"
-        Arguments arguments_for_all = command_words;
-        command_words.emplace_back("--help");
-        arguments_for_all.emplace_back("--help-all");
-        const std::string text = help_of(command_words);
+        Arguments short_arguments = tokens_of(path);
+        short_arguments.erase(short_arguments.begin());  // removes "raya"
+        Arguments long_arguments = short_arguments;
+        short_arguments.emplace_back("--help");
+        long_arguments.emplace_back("--help-all");
+        const std::string text = help_of(short_arguments);
         CHECK(lines_of(text).size() <= 80);
         CHECK(longest_line(text) <= 80);
         CHECK_THAT(text, Catch::Contains(path + " --help-all prints all "));
         CHECK(text == help_text(short_form(command, path), path, 80));
-        CHECK(help_of(arguments_for_all) == help_text(command, path, 80));
+        CHECK(help_of(long_arguments) == help_text(command, path, 80));
     });
 }
 
-TEST_CASE("help render: common options first, in the order of use", "[cli][help]") {
+TEST_CASE("help render: lists the common options first, in the order of use", "[cli][help]") {
     const CommandText program = text_of_all_commands();
     const auto& render = *std::find_if(program.commands.begin(), program.commands.end(),
                                        [](const CommandText& command) { return command.name == "render"; });
@@ -144,7 +144,7 @@ TEST_CASE("help render: common options first, in the order of use", "[cli][help]
                                     "--accel", "--antialias", "--device", "--report"});
 }
 
-TEST_CASE("help render: the groups of options and their order", "[cli][help]") {
+TEST_CASE("help render: has the groups of options in this order", "[cli][help]") {
     const CommandText program = text_of_all_commands();
     const auto& render = *std::find_if(program.commands.begin(), program.commands.end(),
                                        [](const CommandText& command) { return command.name == "render"; });

@@ -12,7 +12,7 @@ namespace {
 OptionText make_option(std::vector<std::string> names, std::string value, std::string help, std::string group) {
     OptionText text;
     text.names = std::move(names);
-    text.value = std::move(value);
+    text.placeholder = std::move(value);
     text.help = std::move(help);
     text.group = std::move(group);
     return text;

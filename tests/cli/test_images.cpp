@@ -61,8 +61,8 @@ TEST_CASE("render: no file contains a date, host or program name", "[cli]") {
     const RenderFiles files("centre", {}, extension, extension == ".pfm" ? extension : ".exr");
     for (const std::string& path : {files.image(), files.cost()}) {
         const std::string bytes = file_contents(path);
-        for (const std::string word : {"DateTime", "capDate", "tIME", "HostComputer", "Software", "owner"})
-            CHECK_FALSE(contains(bytes, word));
+        for (const std::string key : {"DateTime", "capDate", "tIME", "HostComputer", "Software", "owner"})
+            CHECK_FALSE(contains(bytes, key));
         const std::string name = host.data();
         if (name.size() >= 6) CHECK_FALSE(contains(bytes, name));  // pixels may contain a shorter name by chance
     }
@@ -133,7 +133,7 @@ TEST_CASE("render: warns of objects that the format cannot represent, and refuse
     CHECK(render("s 9 9 9 1e-5\n", "fp32").code == 0);
 }
 
-TEST_CASE("render: warns of and reports foreign lines of a scene; --strict refuses them", "[cli]") {
+TEST_CASE("render: warns of lines of other NFF dialects, also in the report; --strict refuses them", "[cli]") {
     const ScratchFolder folder;
     const std::string scene = folder / "t.nff";
     write_whole_file(scene,
@@ -164,7 +164,7 @@ TEST_CASE("render: warns of and reports foreign lines of a scene; --strict refus
     CHECK(folder.entries() == 3);
 }
 
-TEST_CASE("render: refuses two names of one file", "[cli]") {
+TEST_CASE("render: refuses an output file that is another output or the scene under another name", "[cli]") {
     const ScratchFolder folder;
     std::filesystem::create_directory(folder / "d");
     std::filesystem::create_symlink("x.pfm", folder / "link.pfm");

@@ -24,14 +24,14 @@ Document info_of(const std::string& scene, Arguments options = {}) {
 const Document& machine_of(const Document& info, const std::string& name) {
     for (const Document& machine : info["machines"])
         if (machine["name"] == name) return machine;
-    FAIL(name);
+    FAIL("no machine " + name);
     return info;
 }
 
 const Document& need_of(const Document& machine, const std::string& accel) {
     for (const Document& need : machine["needs"])
         if (need["accel"] == accel) return need;
-    FAIL(accel);
+    FAIL("no accelerator " + accel);
     return machine;
 }
 
@@ -148,7 +148,7 @@ TEST_CASE("info: names the accelerator that a render uses by default", "[cli]") 
     }
 }
 
-TEST_CASE("info: counts the objects that were read, and lists skipped lines", "[cli]") {
+TEST_CASE("info: counts the objects of the scene, and lists skipped lines", "[cli]") {
     const ScratchFolder folder;
     for (const char* name : {"polygons", "cones", "planes"}) {
         const Scene scene = read_nff(scene_file(name));
@@ -180,7 +180,7 @@ TEST_CASE("info: counts the objects that were read, and lists skipped lines", "[
     CHECK(info["extent"]["cube_half_side"] == 1e6);
 }
 
-TEST_CASE("info: shows a scene that does not fit a format, with the render's message", "[cli]") {
+TEST_CASE("info: shows that a scene does not fit a format, with the message of a render", "[cli]") {
     const ScratchFolder folder;
     const std::string file = folder / "far.nff";
     write_whole_file(file, "v\nfrom 0 -1e6 0\nat 0 0 0\nup 0 0 1\nangle 1\nhither 1\nresolution 64 64\ns 9 9 9 1e-5\n");

@@ -13,7 +13,7 @@ int code_of(const std::string& arguments, const std::string& redirections) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-TEST_CASE("stdout: a lost line is exit code 2", "[cli]") {
+TEST_CASE("stdout: a lost line causes exit code 2", "[cli]") {
     for (const char* arguments : {"--version", "--help", "devices", "verify --only 'machine bus' --lanes 4"}) {
         CAPTURE(arguments);
         CHECK(code_of(arguments, ">/dev/null 2>/dev/null") == 0);
@@ -26,7 +26,7 @@ TEST_CASE("stdout: a lost line is exit code 2", "[cli]") {
     CHECK(file_contents(errors).starts_with("raya: cannot write to stdout: No space left on device"));
 }
 
-TEST_CASE("stderr: closed or full, it does not change the exit code", "[cli]") {
+TEST_CASE("stderr: if it is closed or full, the exit code is the same", "[cli]") {
     for (const char* redirection : {"2>/dev/full", "2>&-"}) {
         CAPTURE(redirection);
         CHECK(code_of("rendr", redirection) == 2);

@@ -12,7 +12,7 @@ using Kind = ValueCompletion::Kind;
 OptionText option(std::vector<std::string> names, std::string value, std::string help = "Says so") {
     OptionText text;
     text.names = std::move(names);
-    text.value = std::move(value);
+    text.placeholder = std::move(value);
     text.help = std::move(help);
     text.group = "Options";
     return text;
@@ -34,7 +34,7 @@ CommandText small_program() {
     return program;
 }
 
-TEST_CASE("value_of: the kind of a value follows from its placeholder in help", "[manual]") {
+TEST_CASE("value_completion: the kind of a value follows from its placeholder in help", "[manual]") {
     const auto value = [](const std::string& placeholder) { return value_completion(option({"--x"}, placeholder)); };
     CHECK(value("ring|bus-broadcast").choices == std::vector<std::string>{"ring", "bus-broadcast"});
     CHECK(value("none|bvh|grid[:AxBxC]").choices == std::vector<std::string>{"none", "bvh", "grid"});
@@ -45,8 +45,8 @@ TEST_CASE("value_of: the kind of a value follows from its placeholder in help", 
     for (const char* file : {"SCENE.nff", "IMAGE", "FILE.html", "FILE"}) CHECK(value(file).kind == Kind::kFile);
     CHECK(value("IMAGE").extension.empty());
     CHECK(value("DIR").kind == Kind::kFolder);
-    for (const char* other : {"N|WxH", "p", "ALPHA,BETA", "1,2,...", "NAME,...", "BYTES", ""})
-        CHECK(value(other).kind == Kind::kOther);
+    for (const char* text : {"N|WxH", "p", "ALPHA,BETA", "1,2,...", "NAME,...", "BYTES", ""})
+        CHECK(value(text).kind == Kind::kOther);
     OptionText named = option({"--x"}, "NAME");
     named.choices = {"a", "b"};
     CHECK(value_completion(named).kind == Kind::kChoice);

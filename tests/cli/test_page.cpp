@@ -127,7 +127,7 @@ TEST_CASE("page: refuses files that are not reports with the reason, and writes 
          "a report of an older raya"},
         {write_changed_report("other.json", [](Document& r) { r["kind"] = "raya ping"; }), page,
          "not a report of raya render"},
-        {write_changed_report("said.json", [](Document& r) { r["warnings"] = {1}; }), page, "warnings"}};
+        {write_changed_report("warnings.json", [](Document& r) { r["warnings"] = {1}; }), page, "warnings"}};
     for (const Row& row : rows) {
         const RunOutcome run = page_of_file(row.report, row.page);
         INFO(run.describe());

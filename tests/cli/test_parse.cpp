@@ -31,7 +31,7 @@ std::string refusal_of_value(Value& value, const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("parse_links, parse_antialias, parse_points, parse_sampling: read their names and refuse others", "[parse]") {
+TEST_CASE("parse_links, parse_antialias, parse_points, parse_sampling: accept only the names of values", "[parse]") {
     for (const Links links : {Links::kTorus3d, Links::kTorus2d}) CHECK(parse_links(links_name(links)) == links);
     for (const AntialiasMethod method :
          {AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample})
@@ -86,10 +86,10 @@ TEST_CASE("add_value: the type of the variable decides what a value may be, not 
     CHECK(optional_real == -1.5);
     CHECK_THAT(refusal_of_value(optional_real, "1.5x"), Contains("--it 1.5x: not a number"));
     CHECK_THAT(refusal_of_value(optional_real, "1e999"), Contains("--it 1e999: out of range"));
-    std::string word;
-    CHECK(refusal_of_value(word, "x").empty());
-    CHECK(word == "x");
+    std::string string;
+    CHECK(refusal_of_value(string, "x").empty());
+    CHECK(string == "x");
     CHECK_THAT(refusal_of_value(optional_count, ""), Contains("must not be empty"));
-    CHECK_THAT(refusal_of_value(word, ""), Contains("must not be empty"));
+    CHECK_THAT(refusal_of_value(string, ""), Contains("must not be empty"));
     CHECK_THAT(refusal_of_value(optional_real, ""), Contains("must not be empty"));
 }

@@ -48,7 +48,7 @@ TEST_CASE("parse_mapping: inverts mapping_text", "[parse]") {
     }
 }
 
-TEST_CASE("parse_mapping: refuses other texts with the expected form", "[parse]") {
+TEST_CASE("parse_mapping: refuses other texts with the valid form", "[parse]") {
     const auto refuses = [](const std::string& text, const std::string& form) {
         CAPTURE(text);
         CHECK_THROWS_AS(parse_mapping(text), UserError);
@@ -73,7 +73,7 @@ TEST_CASE("parse_mapping: refuses other texts with the expected form", "[parse]"
     CHECK_THROWS_AS(parse_fold(""), UserError);
 }
 
-TEST_CASE("parse_dynamic: reads dynamic and hybrid, and refuses other texts with the form", "[parse]") {
+TEST_CASE("parse_dynamic: reads dynamic and hybrid, and refuses other texts with the valid form", "[parse]") {
     CHECK(parse_dynamic("dynamic:4") == DynamicPlan{4, 0, 0});
     CHECK(parse_dynamic("dynamic:1,2000") == DynamicPlan{1, 2'000, 0});
     CHECK(parse_dynamic("dynamic:268435456,1000000000") == DynamicPlan{268'435'456, 1'000'000'000, 0});
@@ -88,9 +88,9 @@ TEST_CASE("parse_dynamic: reads dynamic and hybrid, and refuses other texts with
     constexpr std::uint64_t kSeed = 7;
     SplitMix random(kSeed);
     for (int i = 0; i < 500; ++i) {
-        const double shares[] = {0, 0.5, 1, random.uniform(0, 1)};
+        const double static_fractions[] = {0, 0.5, 1, random.uniform(0, 1)};
         const DynamicPlan plan{1 + random_below(random, kMaxChunk >> random.next() % 28),
-                               random.next() % 2 * random_below(random, kMaxOverhead + 1), shares[i % 4],
+                               random.next() % 2 * random_below(random, kMaxOverhead + 1), static_fractions[i % 4],
                                random.next() % 2 * random_below(random, kMaxOverhead + 1)};
         CAPTURE(kSeed, i, plan.chunk, plan.overhead, plan.static_fraction, plan.root_cycles, dynamic_text(plan));
         CHECK(parse_dynamic(dynamic_text(plan)) == plan);

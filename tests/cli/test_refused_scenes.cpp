@@ -15,12 +15,12 @@ TEST_CASE("render: refuses an invalid scene with file, line and reason", "[cli]"
         std::string text;
         std::string message;  // "LINE: reason"
     };
-    const std::string with_size = kView.substr(0, kView.find("8 8"));
+    const std::string view_before_size = kView.substr(0, kView.find("8 8"));
     const std::vector<Row> rows = {
         {"nff\nversion 2.0\n", "1: this is Sense8's NFF"},
         {kSphere, "2: no 'v'"},
         {kView + "f 1 1 1 1 0 0 0 1\n", "9: no object"},
-        {with_size + "100000 100000\n" + kSphere,
+        {view_before_size + "100000 100000\n" + kSphere,
          "7: the width of 'v' is 100000: must be a whole number from 1 to 16384"},
         {kView + "s 0 0 0 0\n", "8: the radius of the sphere is zero"},
         {kView + "s 0 0 nan 1\n", "8: the centre of 's': 'nan' is not a finite number"},

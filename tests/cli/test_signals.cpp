@@ -14,18 +14,18 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr double kMaxEnd_s = 1;  // maximum time from the signal to the end of the program
+constexpr double kMaxEndDelay_s = 1;  // from the signal to the end of the program
 
 /// The phase of a command in which it receives the signal.
 struct Phase {
     std::string name;
     Arguments arguments;
     std::function<bool()> reached;  // returns true in this phase
-    int delay_ms = 0;               // from `reached` returning true to the signal
+    int delay_ms = 0;               // from the first time that `reached` returns true to the signal
     RunOptions run_options{};
 };
 
-/// The folders of one phase: outputs, inputs and kernel caches.
+/// The folders of a test: outputs, inputs and kernel caches.
 struct Folders {
     ScratchFolder outputs, inputs, cache;
 
@@ -43,7 +43,7 @@ bool has_file(const std::string& folder, const std::string& part) {
     return false;
 }
 
-/// Sends the signal and checks how the run ends. Takes the fastest of three runs, because the computer may be loaded.
+/// Sends the signal and checks how the run ends. Repeats a slow run up to twice, because the computer may be loaded.
 void check_signal(const Folders& folders, const Phase& phase, int signal) {
     RunOptions run_options = phase.run_options;
     run_options.signal = signal;
@@ -51,11 +51,11 @@ void check_signal(const Folders& folders, const Phase& phase, int signal) {
     run_options.signal_after_ms = phase.delay_ms;
     run_options.signal_count = 2;
     RunOutcome run;
-    for (int tries = 0; tries == 0 || (run.after_signal_s > kMaxEnd_s && tries < 3); ++tries)
+    for (int tries = 0; tries == 0 || (run.after_signal_s > kMaxEndDelay_s && tries < 3); ++tries)
         run = run_raya(phase.arguments, run_options);
     INFO(phase.name + "\n" + run.describe());
     CHECK(run.code == 128 + signal);
-    CHECK(run.after_signal_s < kMaxEnd_s);
+    CHECK(run.after_signal_s < kMaxEndDelay_s);
     if (run_options.error_file.empty()) CHECK(run.err.ends_with("raya: interrupted\n"));
     CHECK_FALSE(has_file(folders.outputs.path(), ".tmp"));
     CHECK_FALSE(has_file(folders.inputs.path(), ".tmp"));  // inputs may contain complete files of a study
@@ -81,15 +81,14 @@ std::vector<Phase> reading_phases(const Folders& folders) {
     return phases;
 }
 
-/// Returns the arguments of a long computation: one lane, and not more than the 2,000,000 pixels that a page allows.
+/// Returns the arguments of a long computation: one lane, and at most the 2,000,000 pixels that a page may have.
 Arguments long_work(const std::string& command, const Arguments& extra_options) {
     Arguments arguments = {command, scene_file("spheres"), "--size", "1400", "--lanes", "1", "--format", "e8m21"};
     arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
     return arguments;
 }
 
-/// Returns a phase for every command that uses a device: the compilation of kernels (`builds` is true) or the
-/// computation.
+/// Returns a phase for every command that uses a device: the command compiles kernels (`builds` is true) or computes.
 std::vector<Phase> computing_phases(const Folders& folders, bool builds) {
     const std::string out = folders.outputs / "x.ppm", cache = folders.cache.path();
     std::vector<Arguments> commands = {long_work("render", {"-o", out, "--machine", "grande"}),
@@ -167,7 +166,7 @@ TEST_CASE("signals: end every command that compiles or computes", "[cli][signals
         }
 }
 
-TEST_CASE("signals: during a write they leave no part of the file", "[cli][signals]") {
+TEST_CASE("signals: leave no part of a file that a command is writing", "[cli][signals]") {
     const Folders folders;
     for (const char* call : {"write", "rename"}) {
         std::vector<Phase> phases = writing_phases(folders, call);

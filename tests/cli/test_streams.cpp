@@ -120,7 +120,7 @@ TEST_CASE("generate, info, verify, bench: read stdin and write stdout", "[cli]")
     CHECK(contains(file_contents(folder / "log"), "stdin can be read only once"));
 }
 
-TEST_CASE("./-: is a file named -", "[cli]") {
+TEST_CASE("./-: names a file in the current folder", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     std::filesystem::copy(scene_file("planes"), folder / "-");
@@ -180,7 +180,7 @@ TEST_CASE("-: messages name stdin and the line", "[cli]") {
     CHECK(contains(file_contents(folder / "out"), "skipped stdin:1: entity 'la'"));
 }
 
-TEST_CASE("-o -: a failed write to stdout is exit code 2", "[cli]") {
+TEST_CASE("-o -: a failed write to stdout causes exit code 2", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
     for (const std::string redirection : {"> /dev/full", ">&-"}) {

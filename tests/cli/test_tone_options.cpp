@@ -1,5 +1,5 @@
-// render --exposure, --gamma, --tone: they change the codes of 8-bit images, and report and image contain these
-// options.
+// render --exposure, --gamma, --tone: the options change the codes of 8-bit images. The report and the image file
+// contain the options.
 #include <OpenImageIO/imageio.h>
 
 #include "tests/cli/refusals.hpp"

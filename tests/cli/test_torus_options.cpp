@@ -51,7 +51,7 @@ TEST_CASE("render --machine spa: refuses options of the torus, with reason and r
     check_refused_on("grande", {{{"--inject", "all"}, {"--inject all with --machine grande", remedy}}});
 }
 
-TEST_CASE("render --machine torus: checks its options before rendering", "[cli]") {
+TEST_CASE("render --machine torus: refuses invalid values before rendering", "[cli]") {
     check_refused_on("torus", {{{"--nodes", "4x4"}, {"--nodes 4x4: must be XxYxZ", "65,536"}},
                                {{"--nodes", "0x4x4"}, {"--nodes 0x4x4"}},
                                {{"--nodes", "64x64x17"}, {"--nodes 64x64x17", "65536"}},
@@ -111,7 +111,7 @@ TEST_CASE("render --queue: the error for a deadlock names a queue length that wo
         2, {": deadlock in superstep", "are full at " + queue + " packets; --queue ", " is long enough (tried)"});
 }
 
-TEST_CASE("bench --machine torus: is refused", "[cli]") {
+TEST_CASE("bench: refuses --machine torus and --nodes", "[cli]") {
     const ScratchFolder outputs;
     check_refused(outputs, {"bench", "--samples", "1", "--machine", "torus"}, 2,
                   {"--machine torus", "voxels of the scene, not pixels", "only raya render", "spa"});

@@ -67,7 +67,7 @@ void check_trace(const TracedRun& traced) {
     CHECK(traced.trace["otherData"]["device_clock"].is_object());
 }
 
-// Checks that the host's step "render" contains all commands of the device: both clocks agree.
+// Checks that both clocks agree: the host's step "render" contains all commands of the device.
 void check_clocks(const Document& trace) {
     const TraceSchema schema(trace);
     const auto steps = schema.slices_of(kTraceHost);
@@ -133,7 +133,7 @@ TEST_CASE("render --trace --machine torus: has nodes, packets and links", "[cli]
         CHECK_THAT(traced.run.out, Catch::Contains(std::string("roof    ") + label + ": "));
 }
 
-TEST_CASE("render --trace-events: limits the number of events, and a message has the number of omitted events",
+TEST_CASE("render --trace-events: limits the number of events, and a message states the number of omitted events",
           "[cli]") {
     const TracedRun traced = run_with_trace("centre", {"--pes", "24", "--trace-events", "20"});
     CHECK(traced.trace["otherData"]["events"] == 20);

@@ -85,18 +85,18 @@ TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; la
         CHECK(contains(render.out, "\ntuned   " + file) == extra_options.empty());
         return Document::parse(file_contents(outputs / "r.json"));
     };
-    const Document tuned = report_of_render({}), defaults = report_of_render({"--no-tuned"}),
-                   options = report_of_render({"--lanes", "4"});
-    CHECK_THAT(tuned["device"]["tuned"].get<std::string>(), Catch::StartsWith(file + ", 20"));
-    CHECK(tuned["device"]["lanes"] == lanes);
-    CHECK(defaults["device"]["tuned"] == "defaults");
-    CHECK(options["device"]["tuned"] == "options");
-    CHECK(tuned["image"]["hash"] == defaults["image"]["hash"]);
-    CHECK(tuned["warnings"].empty());
+    const Document tuned_report = report_of_render({}), default_report = report_of_render({"--no-tuned"}),
+                   option_report = report_of_render({"--lanes", "4"});
+    CHECK_THAT(tuned_report["device"]["tuned"].get<std::string>(), Catch::StartsWith(file + ", 20"));
+    CHECK(tuned_report["device"]["lanes"] == lanes);
+    CHECK(default_report["device"]["tuned"] == "defaults");
+    CHECK(option_report["device"]["tuned"] == "options");
+    CHECK(tuned_report["image"]["hash"] == default_report["image"]["hash"]);
+    CHECK(tuned_report["warnings"].empty());
 
     std::ofstream(file) << "{";
-    const Document damaged = report_of_render({"--no-tuned"});
-    CHECK(damaged["warnings"].empty());
+    const Document damaged_report = report_of_render({"--no-tuned"});
+    CHECK(damaged_report["warnings"].empty());
     const RunOutcome warned_run =
         run_raya({"render", scene_file("spheres"), "-o", outputs / "x.pfm", "--size", "16", "--pes", "4", "--machine",
                   "grande", "--accel", "none", "--report", outputs / "r.json"},

@@ -1,4 +1,4 @@
-// -q and -v: they change the messages, not the results.
+// The options -q and -v change the messages, not the results.
 #include <algorithm>
 #include <sstream>
 
@@ -75,7 +75,7 @@ TEST_CASE("render: announces the first compilation and its duration, also withou
     CHECK(run_raya(quiet, {.variables = variables}).err.empty());
 }
 
-TEST_CASE("render -vv: prints builds and device times too", "[cli][verbosity]") {
+TEST_CASE("render -vv: also prints builds and device times", "[cli][verbosity]") {
     const ScratchFolder folder;
     for (const Arguments& twice : {Arguments{"-vv"}, Arguments{"--verbose", "-v"}}) {
         const RunOutcome run = run_without_error(render_16x16(folder, twice));
@@ -109,7 +109,7 @@ TEST_CASE("render -q: prints warnings and errors; -qq: only errors", "[cli][verb
 TEST_CASE("messages: escape control characters in file names", "[cli][verbosity]") {
     const ScratchFolder folder;
     const std::string unusual = "a\x1b[31m\a\xc2\x9b-\xc3\xa9",
-                      escaped = "a\\x1b[31m\\x07\\x9b-\xc3\xa9";  // last: e acute
+                      escaped = "a\\x1b[31m\\x07\\x9b-\xc3\xa9";  // e acute is not escaped
     const std::string scene = folder / (unusual + ".nff"), report = folder / (unusual + ".json");
     std::filesystem::copy_file(scene_with_warning(folder), scene);
     const Arguments size = {"--size", "16", "--pes", "4", "--lanes", "4"};
@@ -137,13 +137,13 @@ TEST_CASE("messages: escape control characters in file names", "[cli][verbosity]
     }
 }
 
-TEST_CASE("messages: use the singular for one", "[cli][verbosity]") {
+TEST_CASE("messages: use the singular after the number 1", "[cli][verbosity]") {
     const ScratchFolder folder;
     const std::string scene = scene_file("planes"), path = folder / "path.txt";
     std::ofstream(path) << "angle 40\n";
-    const Arguments one = {"--size", "4", "--bounces", "1", "--format", "fp32", "--lanes", "1"};
+    const Arguments small = {"--size", "4", "--bounces", "1", "--format", "fp32", "--lanes", "1"};
     const auto with_options = [&](Arguments arguments) {
-        arguments.insert(arguments.end(), one.begin(), one.end());
+        arguments.insert(arguments.end(), small.begin(), small.end());
         return arguments;
     };
     const std::vector<Arguments> runs = {

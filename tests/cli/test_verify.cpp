@@ -69,7 +69,7 @@ TEST_CASE("verify --kernel-dir: a wrong count causes exit code 4, and the remedy
                Catch::StartsWith("run raya verify without --kernel-dir") && !Catch::Contains("driver"));
 }
 
-TEST_CASE("verify --brief: few rays, and reduced formats without the grid", "[cli][verify]") {
+TEST_CASE("verify --brief: traces few rays, and reduced formats without the grid", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string file = scratch / "report.json";
     const RunOutcome run = run_raya({"verify", "--brief", "--only", "geometry", "--report", file});
@@ -81,7 +81,7 @@ TEST_CASE("verify --brief: few rays, and reduced formats without the grid", "[cl
     CHECK(Document::parse(file_contents(file))["depth"] == "brief");
 }
 
-TEST_CASE("verify --only: refuses a name without checks, and lists the checks", "[cli][verify]") {
+TEST_CASE("verify --only: refuses a name that no check has, and lists the checks", "[cli][verify]") {
     const ScratchFolder scratch;
     check_refused(scratch, {"verify", "--only", "no such check", "--report", scratch / "report.json"}, 2,
                   {"--only \"no such check\": no check of",
@@ -112,7 +112,7 @@ TEST_CASE("verify --device all: checks every usable device", "[cli][verify]") {
     CHECK_THAT(run.out, Catch::Contains("3 checks passed"));
 }
 
-TEST_CASE("verify --lanes: the names of checks have the lanes", "[cli][verify]") {
+TEST_CASE("verify --lanes: the names of checks contain the number of lanes", "[cli][verify]") {
     const RunOutcome run = run_raya({"verify", "--lanes", "4", "--only", "number fp32"});
     INFO(run.describe());
     CHECK(run.code == 0);

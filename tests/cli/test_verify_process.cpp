@@ -32,7 +32,7 @@ TEST_CASE("verify: a driver crash fails the running check, and raya runs the oth
         CHECK_THAT(run.out, Catch::Contains(row.ending));
         CHECK(has_line(run.out, ".*: [0-9]+ checks passed, [0-9]+ failed, 0 skipped in [0-9.]+ s"));
         const auto device = Document::parse(file_contents(file))["devices"][0];
-        CHECK(device["failed"].get<int>() >= 3);  // the checks of block copies, and of rows over ring, bus and links
+        CHECK(device["failed"].get<int>() >= 3);  // the checks of rectangular copies: blocks, ring, bus and links
         CHECK(device["passed"].get<int>() >= 11);
         for (const auto& check : device["checks"])
             if (check["status"] == "FAIL") CHECK((check["result"] == row.ending && check["where"] != ""));
@@ -88,7 +88,7 @@ std::string text_on_terminal(const Arguments& arguments, RunOptions run_options)
     const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
     if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) return "no terminal";
     const std::string name = ::ptsname(terminal);
-    const int other_end = ::open(name.c_str(), O_RDWR | O_NOCTTY);  // keeps the terminal open after raya has ended
+    const int slave_end = ::open(name.c_str(), O_RDWR | O_NOCTTY);  // keeps the terminal open after raya has ended
     run_options.error_file = name;
     run_raya(arguments, run_options);
     ::fcntl(terminal, F_SETFL, O_NONBLOCK);
@@ -96,7 +96,7 @@ std::string text_on_terminal(const Arguments& arguments, RunOptions run_options)
     std::array<char, 4096> block{};
     for (ssize_t count; (count = ::read(terminal, block.data(), block.size())) > 0;)
         text.append(block.data(), static_cast<std::size_t>(count));
-    ::close(other_end);
+    ::close(slave_end);
     ::close(terminal);
     return text;
 }
@@ -108,7 +108,7 @@ long count_occurrences(const std::string& text, const std::string& part) {
     return count;
 }
 
-TEST_CASE("progress: slow commands print it on a terminal within two seconds, at most 10 times a second",
+TEST_CASE("progress: slow commands print progress on a terminal within two seconds, at most 10 times a second",
           "[cli][slow]") {
     const ScratchFolder folder;
     const RunOptions slow = device_with_fault("clCreateContext 1 slow");
@@ -131,7 +131,7 @@ TEST_CASE("progress: slow commands print it on a terminal within two seconds, at
     }
 }
 
-TEST_CASE("progress: none with -q", "[cli][verbosity][slow]") {
+TEST_CASE("progress: commands with -q print none", "[cli][verbosity][slow]") {
     const ScratchFolder folder;
     const RunOptions slow = device_with_fault("clCreateContext 1 slow");
     for (const Arguments& arguments : {Arguments{"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12",
@@ -140,7 +140,7 @@ TEST_CASE("progress: none with -q", "[cli][verbosity][slow]") {
         CHECK(text_on_terminal(arguments, slow) == "");
 }
 
-TEST_CASE("progress: verify names a slow check on a terminal, and not in a file", "[cli][verify][slow]") {
+TEST_CASE("progress: verify names a slow check on a terminal, but not if stderr is a file", "[cli][verify][slow]") {
     const Arguments one_check = {"verify", "--only", "machine bus"};
     const RunOptions slow = device_with_fault("clFinish 1 slow");
     CHECK_THAT(

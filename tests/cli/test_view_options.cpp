@@ -111,7 +111,7 @@ Arguments arguments_of(const ViewOptions& v) {
     return arguments;
 }
 
-TEST_CASE("render: view options make the image of a scene with these values, and the report reproduces it", "[cli]") {
+TEST_CASE("render: view options, and the view of the report, make the image of a scene with these values", "[cli]") {
     const ScratchFolder folder;
     const Scene scene = read_nff(scene_file("centre"));
     SplitMix random(6);

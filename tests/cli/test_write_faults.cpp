@@ -1,6 +1,6 @@
-// For each of raya's writing calls, a run in which this call fails (disk_faults.cpp). raya repeats interrupted and
-// short calls. After other errors it ends with exit code 2 and a message. Either the old file is unchanged or the new
-// one is complete.
+// Each of raya's writing calls fails in a run of its own (disk_faults.cpp). raya repeats interrupted and short calls.
+// After other errors raya ends with exit code 2 and a message. Either the old file is unchanged or the new one is
+// complete.
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
@@ -22,11 +22,11 @@ constexpr const char* kOld = "old content";
 
 struct WritingCommand {
     std::string name;
-    Arguments arguments;     // with the folder in each file name
+    Arguments arguments;     // file names include the folder
     bool replaces = true;    // replaces existing files
     bool is_slow = false;    // tested only if thorough()
     std::string input = "";  // name of the file that the command reads
-    bool prints = false;     // prints a text on stdout, the same in each run
+    bool prints = false;     // prints the same text on stdout in each run
 };
 
 /// Returns the commands that write files, with arguments that write them into `folder`.
@@ -75,7 +75,7 @@ Contents files_of(const fs::path& folder) {
     return files;
 }
 
-/// Returns true if the file is complete: equal to the one in `expected`, or, for files that contain times, well-formed.
+/// Returns true if the file is complete. A file that contains times must be well-formed, others as in `expected`.
 bool is_complete(const std::string& name, const std::string& content, const Contents& expected) {
     if (name.ends_with(".rst")) return content.starts_with("raya");
     if (!expected.contains(name)) return false;
@@ -86,7 +86,7 @@ bool is_complete(const std::string& name, const std::string& content, const Cont
 
 struct FaultRun {
     RunOutcome run;
-    Arguments calls;  // lines of RAYA_WRITE_CALLS: "write", "open fails"
+    Arguments calls;  // lines of RAYA_WRITE_CALLS, such as "write" and "open fails"
     Contents files;
     std::string printed;  // stdout, only for commands with `prints`
 };

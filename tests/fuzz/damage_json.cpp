@@ -8,8 +8,8 @@ namespace {
 
 using Document = nlohmann::ordered_json;
 
-// Prefix of a string value that stands for text which the JSON library cannot write. text_of() writes the characters
-// after the prefix without quotes.
+// Prefix of a string value. text_of() writes the characters after the prefix without quotes, because the JSON library
+// cannot write such text.
 constexpr const char* kRaw = "\x01raw";
 
 const char* const kRawValues[] = {"1e400",

@@ -13,13 +13,12 @@
 namespace raya::fuzz {
 
 /// Prints a finding and aborts.
-[[noreturn]] inline void report_finding(const char* what, std::string_view detail) {
-    std::fprintf(stderr, "finding: %s: %.*s\n", what, static_cast<int>(detail.size()), detail.data());
+[[noreturn]] inline void report_finding(const char* finding, std::string_view detail) {
+    std::fprintf(stderr, "finding: %s: %.*s\n", finding, static_cast<int>(detail.size()), detail.data());
     std::abort();
 }
 
-/// Requires that an error message consists of at most 2000 characters and contains the file's name, followed by a
-/// reason.
+/// Requires that an error message has at most 2000 characters and contains the file's name, followed by a reason.
 inline void check_refusal(std::string_view message, std::string_view file) {
     const std::size_t at = message.find(file);
     if (at == std::string_view::npos) report_finding("an error message without the file's name", message);
@@ -28,8 +27,8 @@ inline void check_refusal(std::string_view message, std::string_view file) {
     if (message.size() > kMaxLength) report_finding("an error message that is too long", message);
 }
 
-/// Requires what check_refusal() requires. The message must also contain a line number, as in
-/// "FILE:LINE: " or "FILE, line LINE: ".
+/// Calls check_refusal(). Also requires that a line number follows the file's name, as in "FILE:LINE" or "FILE, line
+/// LINE".
 inline void check_refusal_with_line(std::string_view message, std::string_view file) {
     check_refusal(message, file);
     std::string_view rest = message.substr(message.find(file) + file.size());

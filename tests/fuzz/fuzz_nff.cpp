@@ -36,7 +36,7 @@ void check_round_trip(const Scene& scene) {
         report_finding("a scene changes if it is written and read again", written);
 }
 
-/// Checks lenient reading: the resulting scene can be written as NFF, and a file without remarks is plain NFF.
+/// Checks lenient reading. Without remarks, it must give the same scene as strict reading.
 void check_leniently(std::string_view text) {
     std::vector<NffRemark> remarks;
     const Scene scene = parse_nff(text, kFile, &remarks);

@@ -22,13 +22,13 @@ void check_bench(const ScratchFolder& folder, std::string_view text) {
     const std::string file = folder.write("bench.json", text);
     try {
         BenchReport report = read_bench_report(file);
-        // Adds parts that the reader skips.
+        // The reader skips these parts of a report.
         report.rows.front().roofline.emplace().unavailable = "not measured";
         report.builds.emplace_back();
         const std::string written = to_json(report).dump();
         const BenchReport reread = read_bench_report(folder.write("again.json", written));
-        // Removes the skipped parts from the expected report. Seconds are stored as milliseconds, so they may be
-        // rounded.
+        // Removes the skipped parts from the expected report. Times are stored in milliseconds, so rounding may shorten
+        // the text.
         report.rows.front().roofline.reset();
         report.builds.clear();
         if (to_json(read_bench_report(folder.write("again.json", to_json(reread).dump()))).dump().size() + 64 <

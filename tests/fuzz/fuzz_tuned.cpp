@@ -1,4 +1,4 @@
-// Fuzz target for tuned files as `raya render` reads and `raya tune` extends them: a file must be either used, or
+// Fuzz target for tuned files, which `raya render` reads and `raya tune` extends: a file must be either used, or
 // ignored with a warning.
 #include "host/error.hpp"
 #include "host/tune/store.hpp"

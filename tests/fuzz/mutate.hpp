@@ -13,7 +13,6 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace raya::fuzz {
 
-/// Random choices.
 class Random {
   public:
     explicit Random(unsigned seed) : engine_(seed + 1) {}

@@ -100,8 +100,8 @@ class Grammar {
         return "c " + vector() + blank() + base_radius + "\n" + vector() + blank() + apex_radius + "\n";
     }
 
-    // Returns a polygon whose corners lie on an ellipse in a random plane, but some are moved inwards. Rounding makes
-    // the polygon slightly non-planar.
+    // Returns a polygon in a random plane. Its corners lie on an ellipse, except for some that lie inside. Rounding
+    // makes the polygon slightly non-planar.
     std::string polygon(bool patch) {
         const std::size_t corners = 3 + random_.below(random_.one_in(8) ? 20 : 5);
         double axes[3][3];

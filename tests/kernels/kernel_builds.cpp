@@ -25,7 +25,6 @@ struct Build {
     KernelOptions options;
 };
 
-// Returns the properties of a typical current GPU.
 DeviceInfo typical_gpu() {
     DeviceInfo device;
     device.name = "a GPU";
@@ -47,25 +46,25 @@ KernelOptions with_accel(KernelOptions options, std::uint32_t accel) {
     return options;
 }
 
-// Returns builds of the kernels that compute in `all.format`, for all alternatives of their code: with and without
-// acceleration structures and kinds of objects, and for devices without exact arithmetic.
+// Returns builds of the kernels that compute in `all.format`: for each accelerator, for all kinds of objects and for
+// spheres only, and for devices without exact arithmetic. `all` has all kinds of objects.
 std::vector<Build> builds_in(const std::string& format, const KernelOptions& all) {
-    KernelOptions spheres = all, check = all;
+    KernelOptions spheres = all, single = all;
     spheres.polygons = spheres.patches = spheres.cones = false;
-    check.group_size = 1;
-    check.words_local = false;
-    KernelOptions refined = check;
+    single.group_size = 1;
+    single.words_local = false;
+    KernelOptions refined = single;
     refined.exact_divide = refined.exact_fma = false;
     std::vector<Build> builds = {
-        {"ring/trace.cl", format, all},       {"ring/trace.cl", format + " spheres", spheres},
-        {"ring/filter.cl", format, all},      {"ring/contrast.cl", format, all},
-        {"torus/inject.cl", format, all},     {"torus/trace_voxel.cl", format, all},
-        {"torus/compose.cl", format, check},  {"number/operations.cl", format, all},
-        {"checks/numbers.cl", format, check}, {"checks/numbers.cl", format + " refined", refined},
+        {"ring/trace.cl", format, all},        {"ring/trace.cl", format + " spheres", spheres},
+        {"ring/filter.cl", format, all},       {"ring/contrast.cl", format, all},
+        {"torus/inject.cl", format, all},      {"torus/trace_voxel.cl", format, all},
+        {"torus/compose.cl", format, single},  {"number/operations.cl", format, all},
+        {"checks/numbers.cl", format, single}, {"checks/numbers.cl", format + " refined", refined},
     };
     for (const auto& [suffix, accel] : kAccelerators) {
         builds.push_back({"ring/trace.cl", format + suffix, with_accel(all, accel)});
-        builds.push_back({"checks/hits.cl", format + suffix, with_accel(check, accel)});
+        builds.push_back({"checks/hits.cl", format + suffix, with_accel(single, accel)});
     }
     return builds;
 }

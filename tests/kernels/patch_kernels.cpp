@@ -1,5 +1,5 @@
 // patch_kernels TO [FILE FIND REPLACE]...: writes the kernels to the folder TO. In each FILE it replaces FIND, which
-// must occur exactly once, by REPLACE. For tests that are shell scripts.
+// must occur exactly once, by REPLACE. Tests that are scripts run this program.
 #include <cstdio>
 #include <exception>
 

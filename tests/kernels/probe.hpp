@@ -12,7 +12,7 @@
 
 namespace raya {
 
-/// Returns the job's words of a scene. The image size is arbitrary, because probe.cl uses neither camera, image size
+/// Returns the words of a scene's job. The image size is arbitrary, because probe.cl uses neither camera, image size
 /// nor cycles.
 inline std::vector<std::uint32_t> job_words(const Scene& scene) {
     JobSettings settings;
@@ -48,7 +48,7 @@ inline std::vector<float> ray_words(const std::vector<reference::Ray>& rays, flo
     return words;
 }
 
-/// The nearest hits of rays: [ray].
+/// The nearest hits, one per ray.
 struct ProbedHits {
     std::vector<std::uint32_t> objects;  // object numbers in the job
     std::vector<float> distances;

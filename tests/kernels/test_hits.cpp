@@ -22,11 +22,11 @@ constexpr std::size_t kRays = 10'000;
 // about thirty times: 9e-7 in all.
 constexpr double kDistanceLimit = 1e-6;  // relative to the scene's extent
 
-// The maximum fraction of rays that may differ by more because they graze an edge or an outline. A band of 1e-6 of the
-// extent around the outlines of twenty objects covers about 1e-4 of the view.
+// The maximum fraction of rays that may exceed kDistanceLimit because they graze an edge or an outline. A band of 1e-6
+// of the extent around the outlines of twenty objects covers about 1e-4 of the view.
 constexpr double kMaxGrazing = 0.001;
 
-Found reference_hit(const Scene& scene, const reference::Ray& ray) {
+RayResult reference_hit(const Scene& scene, const reference::Ray& ray) {
     const auto hit = reference::closest_hit(scene, ray);
     if (!hit) return {-1};
     return {static_cast<double>(hit->object), hit->t};
@@ -37,7 +37,7 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
     const double limit = kDistanceLimit * scene_extent(scene);
     const std::vector<int> numbers = object_numbers(scene);
     const auto find = [&](const reference::Ray& ray) { return reference_hit(scene, ray); };
-    Agreement agreement{.reach = limit};
+    Agreement agreement{.shift = limit};
     std::size_t hit_count = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         CAPTURE(i, hits.objects[i], hits.distances[i]);
@@ -45,7 +45,7 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
         hit_count += hit;
         if (hit) REQUIRE(hits.objects[i] < numbers.size());
         if (!hit) REQUIRE(hits.distances[i] == kFarLimit);
-        const Found found = hit ? Found{double(numbers[hits.objects[i]]), hits.distances[i]} : Found{-1};
+        const RayResult found = hit ? RayResult{double(numbers[hits.objects[i]]), hits.distances[i]} : RayResult{-1};
         CHECK(agreement.accepts(find, rays[i], found, {0, limit}));
     }
     CHECK(hit_count > kRays / 10);
@@ -124,8 +124,8 @@ TEST_CASE("a hit counts only if it is nearer than the ray's limit", "[kernels]")
         const ProbedHits stopped = closest_hits(runner, job, up_to_hit);
         CHECK(stopped.objects == std::vector<std::uint32_t>(hits.objects.size(), kNoObject));
         CHECK(bits(stopped.distances) == bits(hits.distances));
-        const ProbedHits without_ray = closest_hits(runner, job, ray_words(random_rays(32, 1600), 0));
-        CHECK(without_ray.objects == stopped.objects);
+        const ProbedHits zero_limit = closest_hits(runner, job, ray_words(random_rays(32, 1600), 0));
+        CHECK(zero_limit.objects == stopped.objects);
     }
 }
 

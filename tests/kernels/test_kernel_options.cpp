@@ -13,7 +13,7 @@ using Catch::Contains;
 
 namespace {
 
-DeviceInfo a_device(const std::string& type, std::uint32_t width, std::size_t max_group) {
+DeviceInfo device_with(const std::string& type, std::uint32_t width, std::size_t max_group) {
     DeviceInfo device;
     device.name = "a device";
     device.type = type;
@@ -22,7 +22,7 @@ DeviceInfo a_device(const std::string& type, std::uint32_t width, std::size_t ma
     return device;
 }
 
-const DeviceInfo kCpu = a_device("cpu", 8, 4096);
+const DeviceInfo kCpu = device_with("cpu", 8, 4096);
 
 }  // namespace
 
@@ -48,14 +48,14 @@ TEST_CASE("every kernel option becomes a -D option", "[ring]") {
                   "-DRAYA_CONES=0", "-DRAYA_FILTER=1"});
     DeviceInfo exact = kCpu;
     exact.correctly_rounded_divide_sqrt = exact.fused_multiply_add = true;
-    const auto arithmetic = [&](const KernelOptions& options) {
+    const auto arithmetic_options = [&](const KernelOptions& options) {
         const Options all = build_options(options, exact);
         return Options(all.begin() + 1, std::find(all.begin(), all.end(), "-DRAYA_LANES=1"));
     };
-    CHECK(arithmetic({}) ==
+    CHECK(arithmetic_options({}) ==
           Options{"-DRAYA_EXACT_DIVIDE=1", "-DRAYA_EXACT_FMA=1", "-cl-fp32-correctly-rounded-divide-sqrt"});
-    CHECK(arithmetic({.exact_divide = false}) == Options{"-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=1"});
-    CHECK(arithmetic({.exact_fma = false}) ==
+    CHECK(arithmetic_options({.exact_divide = false}) == Options{"-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=1"});
+    CHECK(arithmetic_options({.exact_fma = false}) ==
           Options{"-DRAYA_EXACT_DIVIDE=1", "-DRAYA_EXACT_FMA=0", "-cl-fp32-correctly-rounded-divide-sqrt"});
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("lanes, group sizes and bounces out of range are refused", "[ring]") {
     for (const std::uint32_t group : {0u, 1025u})
         check_error({.group_size = group}, kCpu,
                     Contains("--group " + std::to_string(group) + ":") && Contains("1..1024"));
-    const DeviceInfo small = a_device("gpu", 1, 16);
+    const DeviceInfo small = device_with("gpu", 1, 16);
     CHECK_NOTHROW(build_options({.group_size = 16}, small));
     check_error({.group_size = 17}, small, Contains("--group 17:") && Contains("1..16") && Contains("a device"));
     CHECK_NOTHROW(build_options({.bounces = 0}, kCpu));
@@ -93,24 +93,25 @@ TEST_CASE("lanes, group sizes and bounces out of range are refused", "[ring]") {
 }
 
 TEST_CASE("default lanes and group size depend on the device", "[ring]") {
-    CHECK(default_lanes(a_device("cpu", 16, 4096)) == 16);
-    CHECK(default_lanes(a_device("cpu", 8, 4096)) == 8);
-    CHECK(default_lanes(a_device("cpu", 2, 4096)) == 4);  // more than the vector width: more work per branch
-    CHECK(default_lanes(a_device("gpu", 1, 1024)) == 1);
-    CHECK(default_group_size(a_device("cpu", 16, 4096)) == 1);
-    CHECK(default_group_size(a_device("gpu", 1, 1024)) == 128);
-    CHECK(default_group_size(a_device("gpu", 1, 8)) == 8);
-    CHECK(default_group_size(a_device("gpu", 1, 1024), true) == 128);
+    CHECK(default_lanes(device_with("cpu", 16, 4096)) == 16);
+    CHECK(default_lanes(device_with("cpu", 8, 4096)) == 8);
+    CHECK(default_lanes(device_with("cpu", 2, 4096)) == 4);  // more lanes than the vector width: more work per branch
+    CHECK(default_lanes(device_with("gpu", 1, 1024)) == 1);
+    CHECK(default_group_size(device_with("cpu", 16, 4096)) == 1);
+    CHECK(default_group_size(device_with("gpu", 1, 1024)) == 128);
+    CHECK(default_group_size(device_with("gpu", 1, 8)) == 8);
+    CHECK(default_group_size(device_with("gpu", 1, 1024), true) == 128);
 }
 
-TEST_CASE("defaults on llvmpipe, which vectorises over work-items: one lane, groups of 8, of 1 for torus nodes",
-          "[ring]") {
-    DeviceInfo llvmpipe = a_device("cpu", 1, 1024);
+TEST_CASE(
+    "on llvmpipe, which vectorises over work-items, the defaults are one lane and 8 work-items, 1 for torus nodes",
+    "[ring]") {
+    DeviceInfo llvmpipe = device_with("cpu", 1, 1024);
     llvmpipe.max_loop_iterations = 65'535;
     CHECK(default_lanes(llvmpipe) == 1);
     CHECK(default_group_size(llvmpipe) == 8);
     CHECK(default_group_size(llvmpipe, true) == 1);
-    CHECK(default_group_size(a_device("cpu", 16, 4096), true) == 1);
+    CHECK(default_group_size(device_with("cpu", 16, 4096), true) == 1);
     for (const bool torus : {false, true}) {
         const KernelChoice defaults = chosen_kernels({}, llvmpipe, {.torus = torus});
         CHECK(defaults.group_size == default_group_size(llvmpipe, torus));
@@ -119,7 +120,7 @@ TEST_CASE("defaults on llvmpipe, which vectorises over work-items: one lane, gro
         CHECK((with_lanes.lanes == 4 && with_lanes.group_size == defaults.group_size));
         CHECK(with_lanes.tuning.sphere_batch == defaults.tuning.sphere_batch);
     }
-    for (const TuningKey& what :
+    for (const TuningKey& key :
          {TuningKey{.accel = RAYA_ACCEL_GRID}, TuningKey{.accel = RAYA_ACCEL_BVH}, {.fp32 = false}})
-        CHECK(chosen_kernels({}, llvmpipe, what).tuning.sphere_batch == 0);
+        CHECK(chosen_kernels({}, llvmpipe, key).tuning.sphere_batch == 0);
 }

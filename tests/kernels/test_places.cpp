@@ -19,14 +19,13 @@ namespace {
 
 constexpr std::size_t kPlaceRays = 4'000;
 
-constexpr double kPlaceLimit = 1e-6;         // relative to the scene's extent, as for the distance of a hit
 constexpr double kColourLimit = 1e-7;        // rounding of the scene's words
 constexpr double kMaxPlacesGrazing = 0.002;  // fraction of rays that may graze an edge or a checker square's side
 
-Found reference_place(const Scene& scene, const reference::Ray& ray) {
+RayResult reference_place(const Scene& scene, const reference::Ray& ray) {
     const auto hit = reference::closest_hit(scene, ray);
     if (!hit) return {-1};
-    Found found{static_cast<double>(hit->object), hit->leaving ? 1.0 : 0.0};
+    RayResult found{static_cast<double>(hit->object), hit->leaving ? 1.0 : 0.0};
     append(found, hit->point);
     append(found, hit->geometric);
     append(found, hit->shading);
@@ -34,8 +33,8 @@ Found reference_place(const Scene& scene, const reference::Ray& ray) {
     return found;
 }
 
-// Returns an upper bound of the curvature of an object at a point. The radius of a cone may go to 0 at the apex. The
-// radii of spheres are at least 0.2, and normals of patches turn no faster than on a sphere of that radius.
+// Returns an upper bound of the curvature of an object at a point. It is 1 / 0.2 = 5 for spheres, whose radii are at
+// least 0.2, and for patches, whose normals turn no faster. It grows towards a cone's apex, where the radius may be 0.
 double curvature(const Scene& scene, std::size_t object, const Vec3& point) {
     const std::size_t first_cone = scene.object_count() - scene.cones.size();
     if (object < first_cone) return 5;
@@ -47,9 +46,9 @@ double curvature(const Scene& scene, std::size_t object, const Vec3& point) {
 }
 
 // The error of a normal is the error of the hit point times the curvature.
-Found limits_of(const Scene& scene, std::size_t object, const Vec3& point) {
+RayResult limits_of(const Scene& scene, std::size_t object, const Vec3& point) {
     const double place = kPlaceLimit * scene_extent(scene);
-    Found limits{0, 0};
+    RayResult limits{0, 0};
     limits.insert(limits.end(), 3, place);
     limits.insert(limits.end(), 6, place * curvature(scene, object, point));
     limits.insert(limits.end(), 3, kColourLimit);
@@ -60,17 +59,18 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
                                     const ProbedPlaces& places) {
     const std::vector<int> numbers = object_numbers(scene);
     const auto find = [&](const reference::Ray& ray) { return reference_place(scene, ray); };
-    Agreement agreement{.reach = kPlaceLimit * scene_extent(scene)};
+    Agreement agreement{.shift = kPlaceLimit * scene_extent(scene)};
     std::size_t leaving = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (hits.objects[i] == kNoObject) continue;
         const int object = numbers[hits.objects[i]];
-        Found found{double(object), double(places.leaving[i])};
+        RayResult found{double(object), double(places.leaving[i])};
         for (const auto vector :
              {ProbedPlaces::kPoint, ProbedPlaces::kGeometric, ProbedPlaces::kNormal, ProbedPlaces::kColour})
             append(found, places.vector(i, vector));
         CAPTURE(i, hits.objects[i], hits.distances[i]);
-        const Found limits = limits_of(scene, static_cast<std::size_t>(object), places.vector(i, ProbedPlaces::kPoint));
+        const RayResult limits =
+            limits_of(scene, static_cast<std::size_t>(object), places.vector(i, ProbedPlaces::kPoint));
         CHECK(agreement.accepts(find, rays[i], found, limits));
         leaving += places.leaving[i];
     }

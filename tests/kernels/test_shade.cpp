@@ -32,25 +32,25 @@ constexpr double kSumLimit = 100 * 0.1 * kDirectionLimit;
 constexpr double kWeightLimit = 1e-7;
 constexpr double kMaxShadesGrazing = 0.01;  // fraction of rays that graze an edge, shadow, cone tip or critical angle
 
-void append_ray(Found& found, const ProbedRay& ray) {
+void append_ray(RayResult& found, const ProbedRay& ray) {
     append(found, ray.origin);
     append(found, ray.direction);
     found.push_back(ray.weight);
 }
 
-// Found holds for a hit: object number; numbers of shadow rays, shadow hits, reflected rays and refracted rays; sum;
-// then the reflected ray and the refracted ray, if they were made. For a miss it holds object number and sum.
+// RayResult holds for a hit: object number; numbers of shadow rays, shadow hits, reflected rays and refracted rays;
+// sum; then the reflected ray and the refracted ray, if they were made. For a miss it holds object number and sum.
 constexpr std::size_t kIntegers = 5, kSumAt = 5, kRaysAt = 8, kRayNumbers = 7;
 
-Found limits_for(const Found& found, double extent) {
-    Found limits(kIntegers, 0);
+RayResult limits_for(const RayResult& found, double extent) {
+    RayResult limits(kIntegers, 0);
     limits.insert(limits.end(), 3, kSumLimit);
     for (std::size_t at = kRaysAt; at < found.size(); at += kRayNumbers) {
         limits.insert(limits.end(), 3, kPlaceLimit * extent);
         limits.insert(limits.end(), 3, kDirectionLimit);
         limits.push_back(kWeightLimit);
     }
-    return found.size() > kSumAt ? limits : Found(found.size(), kWeightLimit);
+    return found.size() > kSumAt ? limits : RayResult(found.size(), kWeightLimit);
 }
 
 struct DirectLight {
@@ -77,9 +77,9 @@ DirectLight reference_light(const Scene& scene, const reference::Hit& hit, const
     return lit;
 }
 
-Found reference_step(const Scene& scene, const reference::Ray& ray) {
+RayResult reference_step(const Scene& scene, const reference::Ray& ray) {
     const auto hit = reference::closest_hit(scene, ray);
-    Found found{hit ? static_cast<double>(hit->object) : -1.0};
+    RayResult found{hit ? static_cast<double>(hit->object) : -1.0};
     if (!hit) {
         append(found, kWeight * scene.background);
         return found;
@@ -103,8 +103,8 @@ Found reference_step(const Scene& scene, const reference::Ray& ray) {
     return found;
 }
 
-Found probed_step(const ProbedSteps& steps, std::size_t ray, int object) {
-    Found found{static_cast<double>(object)};
+RayResult probed_step(const ProbedSteps& steps, std::size_t ray, int object) {
+    RayResult found{static_cast<double>(object)};
     if (object < 0) {
         append(found, steps.sum(ray));
         return found;
@@ -157,29 +157,28 @@ TEST_CASE("a step of a ray tree agrees with the reference's formulas", "[kernels
     const ProbedHits hits = closest_hits(runner, job_words(scene), ray_words(rays));
     const ProbedSteps steps = shade_tree_step(runner, job_words(scene), ray_words(rays), 0);
     const auto find = [&](const reference::Ray& ray) { return reference_step(scene, ray); };
-    Agreement agreement{.reach = kPlaceLimit * scene_extent(scene)};
-    std::size_t both = 0, through = 0, total = 0;
+    Agreement agreement{.shift = kPlaceLimit * scene_extent(scene)};
+    std::size_t reflecting_and_refracting = 0, only_refracting = 0, totally_reflecting = 0;
     for (std::size_t i = 0; i < kShadeRays; ++i) {
         CAPTURE(kSceneSeed, kRaySeed, i, hits.objects[i]);
         const bool hit = hits.objects[i] != kNoObject;
-        const Found found = probed_step(steps, i, hit ? numbers[hits.objects[i]] : -1);
+        const RayResult found = probed_step(steps, i, hit ? numbers[hits.objects[i]] : -1);
         CAPTURE(found);
         CHECK(agreement.accepts(find, rays[i], found, limits_for(found, scene_extent(scene))));
         check_state(scene, faces, steps, i, hit, 0);
-        both += steps.pending_levels(i) != 0;
-        through += steps.events(i, at(RAYA_REFRACTED)) && !steps.events(i, at(RAYA_REFLECTED));
-        total += hit && steps.events(i, at(RAYA_REFLECTED)) && steps.followed(i).weight > 0.9 * kWeight;
+        reflecting_and_refracting += steps.pending_levels(i) != 0;
+        only_refracting += steps.events(i, at(RAYA_REFRACTED)) && !steps.events(i, at(RAYA_REFLECTED));
+        totally_reflecting += hit && steps.events(i, at(RAYA_REFLECTED)) && steps.followed(i).weight > 0.9 * kWeight;
     }
     fmt::print("Grazing rays that differ from the reference by more than the limits, of {} shaded rays: {}.\n",
                kShadeRays, agreement.grazing);
     CHECK(static_cast<double>(agreement.grazing) <= kMaxShadesGrazing * kShadeRays);
-    CHECK(both > kShadeRays / 50);     // number of hits that reflect and refract
-    CHECK(through > kShadeRays / 50);  // number of hits that only refract
-    CHECK(total > kShadeRays / 50);    // number of total reflections: weight factor Ks + T, 0.92 or 0.95
+    CHECK(reflecting_and_refracting > kShadeRays / 50);
+    CHECK(only_refracting > kShadeRays / 50);
+    CHECK(totally_reflecting > kShadeRays / 50);  // weight factor Ks + T: 0.92 or 0.95
 }
 
-TEST_CASE("a step at a deeper level differs only in its level, and a step at the last level makes no rays",
-          "[kernels]") {
+TEST_CASE("a step at a deeper level gives the same numbers, and a step at the last level makes no rays", "[kernels]") {
     const Scene scene = mixed_scene(kSceneSeed);
     const std::vector<std::uint32_t> job = job_words(scene);
     const std::vector<float> rays = ray_words(random_rays(kRaySeed, kShadeRays));

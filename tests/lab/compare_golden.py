@@ -5,8 +5,8 @@
                                                 STUDY: names of studies (default: all recorded tables)
 
 Figures except measured times must agree to 1 part in 10^9, half widths of intervals to 1 in 10^6. golden_names.csv maps
-columns and cells that were renamed after the recording. Verdicts are not compared: the rules have changed since. Prints
-the differences and the number of compared figures. Exit codes: 0 equal; 1 a difference.
+columns and cells that were renamed after the recording. Verdicts are not compared, because their rules are newer.
+Prints the differences and the number of compared figures. Exit codes: 0 equal; 1 a difference.
 """
 import csv
 import math
@@ -14,7 +14,7 @@ import re
 import sys
 from pathlib import Path
 
-FIGURES, INTERVALS = 1e-9, 1e-6
+FIGURES, INTERVALS = 1e-9, 1e-6  # relative tolerances
 # Columns of measured times and rates whose name does not contain "measured": {pattern of file names: pattern of column names}.
 MEASURED = {
     r"accel(-growth|-scenes)?": r".*\(ms\)|.*\(ns\)|.*\(s\)|time( \+-)?|samples",
@@ -62,7 +62,7 @@ def compare_table(ours, theirs, stem):
     compared = skipped = 0
     differences = []
     for number, (a, b) in enumerate(zip(ours[1:], theirs[1:]), 1):
-        # Embree's reciprocals, and therefore the origins of secondary rays, depend on the processor.
+        # Rows of Embree: its reciprocals, and therefore the origins of secondary rays, depend on the processor.
         if any(cell.startswith("measured") or cell == "Embree" for cell in b):
             skipped += len(b)
             continue
@@ -86,8 +86,8 @@ def main(out, golden, wanted):
             differences.append(f"{path.name}: no such file")
             continue
         golden_rows = [[renamed(cell) for cell in row] for row in rows_of(path)]
-        figures, measured, found = compare_table(rows_of(out / path.name), golden_rows, path.stem)
-        compared, skipped, differences = compared + figures, skipped + measured, differences + found
+        table_compared, table_skipped, table_differences = compare_table(rows_of(out / path.name), golden_rows, path.stem)
+        compared, skipped, differences = compared + table_compared, skipped + table_skipped, differences + table_differences
     for line in differences:
         print(line)
     print(f"{compared} figures compared, {skipped} measured ones skipped, {len(differences)} differences")

@@ -1,4 +1,4 @@
-"""Adds the package `raya` of the build folder to the path. The build folder is RAYA_BUILD, by default build/ of this checkout."""
+"""Adds the package `raya` of the build folder to the path. RAYA_BUILD names the build folder; default: build/."""
 import os
 import sys
 from pathlib import Path

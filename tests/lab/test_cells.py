@@ -24,11 +24,11 @@ def test_comparisons_have_no_empty_columns(paper, remark, columns):
 
 
 def test_integers_are_printed_without_rounding():
-    table = Table("some", "Some", [{"p": 100000, "u": 0.5}, {"p": 3, "u": 100000.4}])
+    table = Table("loads", "Loads", [{"p": 100000, "u": 0.5}, {"p": 3, "u": 100000.4}])
     assert cells_of_table(table) == [["p", "u"], ["100000", "0.5"], ["3", "100000"]]
 
 
 def test_command_of_a_document_names_all_scenes():
-    pages = [Page({}, run={"command": f"raya study {words} -o DIR"}) for words in ("fig7 a.nff", "images a.nff b.nff")]
+    pages = [Page({}, run={"command": f"raya study {arguments} -o DIR"}) for arguments in ("fig7 a.nff", "images a.nff b.nff")]
     assert command_of(pages[:1]) == "raya study fig7 a.nff -o DIR"
     assert command_of(pages) == "raya study all a.nff b.nff -o DIR"

@@ -86,8 +86,8 @@ def test_program_with_damaged_rows_writes_no_files(folder):
 
 def page_of(**members):
     series = [Series("u", [0, 1], [1.5, 0.4])]
-    return Page({}, tables=[Table("some", "u", [{"p": 0}])], plots=[Plot("some", "u", "p", "u", series)],
-                **members).describe("some", "Some")
+    return Page({}, tables=[Table("loads", "u", [{"p": 0}])], plots=[Plot("loads", "u", "p", "u", series)],
+                **members).describe("loads", "Loads")
 
 
 @pytest.mark.parametrize("module, name", [(plots, "files_of"), (document, "json_of"), (document, "environment")])
@@ -112,12 +112,12 @@ def test_failed_write_leaves_no_partial_file(tmp_path, monkeypatch):
 
 
 def test_missing_and_infinite_values_are_shown(tmp_path):
-    table = Table("some", "u", [{"p": 0, "u": np.nan}, {"p": 1, "u": np.inf}])
-    page = Page({}, tables=[table], plots=[Plot("some", "u", "p", "u", [Series("u", [0, 1], [np.nan, np.inf])])])
-    write_page(tmp_path, page.describe("some", "Some"))
-    assert (tmp_path / "some.csv").read_text() == "p,u\n0,-\n1,inf\n"
-    assert json.loads((tmp_path / "some.json").read_text())["tables"][0]["rows"] == [[0, None], [1, "inf"]]
-    assert "| 0 | - |\n| 1 | inf |\n" in (tmp_path / "some.md").read_text()
+    table = Table("loads", "u", [{"p": 0, "u": np.nan}, {"p": 1, "u": np.inf}])
+    page = Page({}, tables=[table], plots=[Plot("loads", "u", "p", "u", [Series("u", [0, 1], [np.nan, np.inf])])])
+    write_page(tmp_path, page.describe("loads", "Loads"))
+    assert (tmp_path / "loads.csv").read_text() == "p,u\n0,-\n1,inf\n"
+    assert json.loads((tmp_path / "loads.json").read_text())["tables"][0]["rows"] == [[0, None], [1, "inf"]]
+    assert "| 0 | - |\n| 1 | inf |\n" in (tmp_path / "loads.md").read_text()
 
 
 @pytest.mark.parametrize("ours", [None, "much", float("nan")])

@@ -9,7 +9,7 @@ from raya.lab import statistics as s  # noqa: E402
 SEED, DRAWS = 20261124, 2000
 SIDE, POWER = 0.025, 0.8  # probability of a wrong verdict on one side; power at the detectable deviation
 # Standard deviations of u(0) in the nine families of families.py, 64 x 64 pixels, 300 seeds.
-OF_FAMILIES = [0.55, 0.72, 0.60, 0.11, 0.62, 0.07, 0.20, 0.16, 0.16]
+FAMILY_DEVIATIONS = [0.55, 0.72, 0.60, 0.11, 0.62, 0.07, 0.20, 0.16, 0.16]
 ONE_DOMINATES = [1] + 8 * [0.01]
 
 
@@ -22,12 +22,12 @@ def error_of(probability, draws):
     return 3 * (probability * (1 - probability) / draws) ** 0.5
 
 
-def is_at_most(part, bound, draws=DRAWS):
-    assert part <= bound + error_of(bound, draws), f"{part} of {draws} instead of at most {bound}, seed {SEED}"
+def assert_at_most(fraction, bound, draws=DRAWS):
+    assert fraction <= bound + error_of(bound, draws), f"fraction {fraction} of {draws} draws instead of at most {bound}, seed {SEED}"
 
 
-def is_about(part, wanted, draws=DRAWS):
-    assert abs(part - wanted) <= error_of(wanted, draws), f"{part} of {draws} instead of {wanted}, seed {SEED}"
+def assert_about(fraction, wanted, draws=DRAWS):
+    assert abs(fraction - wanted) <= error_of(wanted, draws), f"fraction {fraction} of {draws} draws instead of {wanted}, seed {SEED}"
 
 
 def reproduced(test):
@@ -38,8 +38,8 @@ def contradicted(test):
     return not test.supports and test.p <= s.LEVEL
 
 
-def parts(tests):
-    """The fractions of the tests that are reproduced and that are contradicted."""
+def fractions(tests):
+    """Returns the fraction of the tests that are reproduced, and the fraction of those that are contradicted."""
     tests = list(tests)
     return np.mean([reproduced(test) for test in tests]), np.mean([contradicted(test) for test in tests])
 
@@ -47,28 +47,28 @@ def parts(tests):
 # Intervals
 
 
-def covered(distribution, true_mean, count, confidence=0.95):
-    """The fraction of intervals, each computed from `count` values, that contain the true mean."""
+def coverage(distribution, true_mean, count, confidence=0.95):
+    """Returns the fraction of intervals, each computed from `count` values, that contain the true mean."""
     estimates = [s.estimate(row, None, confidence) for row in distribution(random(), (DRAWS, count))]
     return np.mean([e.low <= true_mean <= e.high for e in estimates])
 
 
 @pytest.mark.parametrize("count", [2, 5, 16, 64])
 def test_interval_of_normal_values_contains_the_mean(count):
-    part = covered(lambda g, shape: g.normal(7, 3, shape), 7, count)
-    assert 0.93 <= part <= 0.97, f"{part} of {DRAWS} intervals, seed {SEED}"
+    fraction = coverage(lambda g, shape: g.normal(7, 3, shape), 7, count)
+    assert 0.93 <= fraction <= 0.97, f"{fraction} of {DRAWS} intervals, seed {SEED}"
 
 
 def test_interval_of_64_skewed_values_contains_the_mean():
-    part = covered(lambda g, shape: g.gamma(4, 1, shape), 4, 64)
-    assert 0.93 <= part <= 0.97, f"{part} of {DRAWS} intervals, seed {SEED}"
+    fraction = coverage(lambda g, shape: g.gamma(4, 1, shape), 4, 64)
+    assert 0.93 <= fraction <= 0.97, f"{fraction} of {DRAWS} intervals, seed {SEED}"
 
 
-def strata_covered(deviations, each, draw):
-    """The fraction of stratified intervals that contain the mean of the families' means. draw: function(generator, shape) with mean 0 and standard
-    deviation 1. The families' means are 0, 1, 2, ..., so that an interval that ignores the families is much too long."""
-    generator, families = random(), [name for name in range(len(deviations)) for _ in range(each)]
-    scale, shift = np.repeat(deviations, each), np.array(families)
+def stratified_coverage(deviations, count, draw):
+    """Returns the fraction of intervals of families, with `count` values of each, that contain the mean of the families' means. draw:
+    function(generator, shape) with mean 0 and deviation 1. The families' means are 0, 1, ..., so an interval that ignores them is much too long."""
+    generator, families = random(), [name for name in range(len(deviations)) for _ in range(count)]
+    scale, shift = np.repeat(deviations, count), np.array(families)
     estimates = [s.estimate(shift + scale * draw(generator, len(families)), families) for _ in range(DRAWS)]
     return np.mean([e.low <= np.mean(range(len(deviations))) <= e.high for e in estimates])
 
@@ -83,14 +83,14 @@ def skewed(generator, shape):
 
 @pytest.mark.parametrize("draw", [normal, skewed])
 def test_interval_of_families_contains_the_mean_of_their_means(draw):
-    part = strata_covered([1] * 9, 12, draw)
-    assert 0.93 <= part <= 0.97, f"{part} of {DRAWS} intervals, seed {SEED}"
+    fraction = stratified_coverage([1] * 9, 12, draw)
+    assert 0.93 <= fraction <= 0.97, f"{fraction} of {DRAWS} intervals, seed {SEED}"
 
 
-@pytest.mark.parametrize("deviations, each", [(OF_FAMILIES, 12), (OF_FAMILIES, 2), (ONE_DOMINATES, 12), (ONE_DOMINATES, 4)])
-def test_interval_of_families_with_unequal_variances_is_not_too_short(deviations, each):
-    """With few values of a family its degrees of freedom count, not those of all families together."""
-    is_at_most(1 - strata_covered(deviations, each, normal), 0.05)
+@pytest.mark.parametrize("deviations, count", [(FAMILY_DEVIATIONS, 12), (FAMILY_DEVIATIONS, 2), (ONE_DOMINATES, 12), (ONE_DOMINATES, 4)])
+def test_interval_of_families_with_unequal_variances_is_not_too_short(deviations, count):
+    """A family that dominates the variance also dominates the degrees of freedom."""
+    assert_at_most(1 - stratified_coverage(deviations, count, normal), 0.05)
 
 
 def test_mean_and_error_of_strata_by_hand():
@@ -104,14 +104,14 @@ def test_families_of_unequal_size_have_equal_weights():
     assert s.estimate([0, 0, 0, 0, 6, 6], list("aaaabb")).mean == 3
 
 
-def test_one_family_is_no_stratum():
+def test_estimate_of_one_family_is_that_without_families():
     values = [1, 2, 3, 4, 5]
     assert s.estimate(values, ["a"] * 5) == s.estimate(values)
 
 
 @pytest.mark.parametrize("values", [[], [[1, 2], [3, 4]], np.zeros((3, 0))])
 def test_only_a_list_of_values_has_an_estimate(values):
-    """A column of a table with damaged rows is empty, or is two columns."""
+    """A column of a damaged table may be empty or consist of two columns."""
     with pytest.raises(ValueError):
         s.estimate(values)
 
@@ -142,7 +142,7 @@ def test_joint_intervals_contain_all_means(tests):
     draws, confidence = 8_000 // tests, s.bonferroni_confidence(tests)
     values = random().normal(0, 1, (draws, tests, 20))
     all_hold = [all(abs(e.mean) <= e.half for e in (s.estimate(row, None, confidence) for row in draw)) for draw in values]
-    is_about(np.mean(all_hold), 0.95, draws)
+    assert_about(np.mean(all_hold), 0.95, draws)
 
 
 @pytest.mark.parametrize("count", [39, 64, 200])
@@ -151,8 +151,8 @@ def test_prediction_interval_contains_one_more_value(name, count):
     values = getattr(random(), name)(size=(DRAWS * 4, count + 1))
     bounds = np.quantile(values[:, 1:], [0.025, 0.975], axis=1, method="weibull")
     assert np.allclose(bounds[:, 0], s.prediction_interval(values[0, 1:]))  # the same computation for all rows at once
-    part = np.mean((bounds[0] <= values[:, 0]) & (values[:, 0] <= bounds[1]))
-    assert 0.93 <= part <= 0.97, f"{part} of {DRAWS * 4}, seed {SEED}"
+    fraction = np.mean((bounds[0] <= values[:, 0]) & (values[:, 0] <= bounds[1]))
+    assert 0.93 <= fraction <= 0.97, f"{fraction} of {DRAWS * 4}, seed {SEED}"
 
 
 def test_estimate_of_a_worked_example():
@@ -174,7 +174,7 @@ def test_prediction_of_39_values_is_their_range():
     assert s.prediction_interval(np.arange(39)) == (0, 38)
 
 
-# Tests at the bound of their rule: a wrong verdict has at most 2.5 % on a side.
+# Tests whose true value is the bound of the rule: the probability of a wrong verdict is at most 2.5 % on each side.
 
 
 @pytest.mark.parametrize("families, count", [(None, 5), (9, 108)])
@@ -182,10 +182,10 @@ def test_above_and_below_at_their_bound(families, count):
     names = families and [i % families for i in range(count)]
     values = 7 + random().normal(0, 3, (DRAWS, count))
     tests = [s.above(row, 7, names) for row in values]
-    for part in parts(tests):
-        is_about(part, SIDE)  # the test is exact for normal values
-    is_about(np.mean([test.p_for <= 0.5 for test in tests]), 0.5)
-    is_about(np.mean([test.p <= s.LEVEL / 20 for test in tests]), s.LEVEL / 20)  # the first bound of Holm's correction for 20 tests
+    for fraction in fractions(tests):
+        assert_about(fraction, SIDE)  # the test is exact for normal values
+    assert_about(np.mean([test.p_for <= 0.5 for test in tests]), 0.5)
+    assert_about(np.mean([test.p <= s.LEVEL / 20 for test in tests]), s.LEVEL / 20)  # the first bound of Holm's correction for 20 tests
     for row, test in zip(values[:20], tests):
         below = s.below(row, 7, names)
         assert (below.p_for, below.p_against, below.interval, below.detectable) == (test.p_against, test.p_for, test.interval, test.detectable)
@@ -199,28 +199,28 @@ def test_above_of_a_worked_example():
     assert not s.below([1, 2, 3, 4, 5]).supports
 
 
-@pytest.mark.parametrize("mean, wrong", [(1, 0), (2, 0), (1.5, 1)])
-def test_within_at_its_bounds(mean, wrong):
-    """At a bound a verdict on either side is wrong with 2.5 %; in the middle of the bounds only "not reproduced" is wrong."""
+@pytest.mark.parametrize("mean, first_wrong", [(1, 0), (2, 0), (1.5, 1)])
+def test_within_at_its_bounds(mean, first_wrong):
+    """At a bound, "reproduced" and "not reproduced" are wrong with at most 2.5 % each. Between the bounds only "not reproduced" is wrong."""
     draws = DRAWS // 2
-    found = parts(s.within(row, 1, 2) for row in random().normal(mean, 1, (draws, 40)))
-    for part in found[wrong:]:
-        is_at_most(part, SIDE, draws)
-    if not wrong:
+    found = fractions(s.within(row, 1, 2) for row in random().normal(mean, 1, (draws, 40)))
+    for fraction in found[first_wrong:]:
+        assert_at_most(fraction, SIDE, draws)
+    if not first_wrong:
         assert min(found) > SIDE / 2, f"{found}, seed {SEED}"
 
 
 def test_within_narrow_bounds_is_never_reproduced_without_the_precision():
     draws = DRAWS // 2
-    right, wrong = parts(s.within(row, -0.01, 0.01) for row in random().normal(0, 1, (draws, 40)))
+    right, wrong = fractions(s.within(row, -0.01, 0.01) for row in random().normal(0, 1, (draws, 40)))
     assert right == 0
-    is_at_most(wrong, 2 * SIDE, draws)
+    assert_at_most(wrong, 2 * SIDE, draws)
 
 
 @pytest.mark.parametrize("values, wanted", [
     ([1.4, 1.5, 1.6], "yes"), ([0.4, 0.5, 0.6], "no"), ([2.4, 2.5, 2.6], "no"), ([0.5, 1.5, 2.5], "?"), ([0.99, 1.0, 1.01], "?"),
     ([1.99, 2.0, 2.01], "?")])
-def test_within_three_ways(values, wanted):
+def test_within_has_three_verdicts(values, wanted):
     assert s.verdicts({"it": s.within(values, 1, 2)})["it"] == {"yes": s.REPRODUCED, "no": s.NOT_REPRODUCED, "?": s.COMPATIBLE}[wanted]
 
 
@@ -237,17 +237,17 @@ def test_equal_values_decide_without_an_error(value, above, below):
 
 @pytest.mark.parametrize("count", [2, 20])
 def test_every_claim_must_hold(count):
-    """All but one of several claims hold clearly; the last one is at its bound, so "reproduced" is wrong. If all are at their bounds, "not
-    reproduced" is wrong."""
+    """If one claim is at its bound and the others hold clearly, "reproduced" is wrong. If all claims are at their bounds, "not reproduced" is wrong
+    too."""
     generator = random()
     last = [s.above(row) for row in generator.normal(0, 1, (DRAWS, 20))]
     clear = [s.Test(1e-9, 1 - 1e-9)] * (count - 1)
-    is_about(parts(s.every([*clear, one]) for one in last)[0], SIDE)
+    assert_about(fractions(s.every([*clear, one]) for one in last)[0], SIDE)
     uniform = generator.uniform(size=(DRAWS, count))
     at_bounds = [s.every(s.Test(p, 1 - p) for p in row) for row in uniform]
-    is_at_most(parts(at_bounds)[0], SIDE)
-    is_at_most(parts(at_bounds)[1], SIDE)
-    assert parts(at_bounds)[1] > SIDE / 2, f"seed {SEED}"
+    assert_at_most(fractions(at_bounds)[0], SIDE)
+    assert_at_most(fractions(at_bounds)[1], SIDE)
+    assert fractions(at_bounds)[1] > SIDE / 2, f"seed {SEED}"
 
 
 def test_every_claim_of_a_worked_example():
@@ -262,15 +262,15 @@ def test_every_claim_of_a_worked_example():
 
 @pytest.mark.parametrize("total, bound", [(108, 0.95), (20, 0.5)])
 def test_proportion_at_its_bound(total, bound):
-    """Exact: the probabilities of the counts that decide, if the share is the bound."""
+    """If the true proportion is the bound, counts that decide have a probability of at most 2.5 % on each side. The test computes it exactly."""
     likely = [count for count in range(total + 1) if stats.binom.pmf(count, total, bound) > 1e-9]
     found = {count: s.proportion([True] * count + [False] * (total - count), bound) for count in likely}
     for decides in (reproduced, contradicted):
         counts = [count for count, test in found.items() if decides(test)]
         assert 0 < stats.binom.pmf(counts, total, bound).sum() <= SIDE
     fewest = min(count for count, test in found.items() if reproduced(test))
-    share = bound + found[fewest].detectable  # the counts reach `fewest` with 80 % from this share on
-    assert stats.binom.sf(fewest - 1, total, share) >= POWER > stats.binom.sf(fewest - 1, total, share - (1 - bound) / 100)
+    proportion = bound + found[fewest].detectable  # from this proportion on, the count is at least `fewest` with 80 %
+    assert stats.binom.sf(fewest - 1, total, proportion) >= POWER > stats.binom.sf(fewest - 1, total, proportion - (1 - bound) / 100)
 
 
 def test_proportion_of_a_worked_example():
@@ -286,53 +286,53 @@ def test_proportion_of_too_few_pictures_has_no_detectable_deviation():
 
 @pytest.mark.parametrize("count", [5])
 def test_another_picture_contradicts_a_true_figure_with_5_percent(count):
-    """The figure is one more value, so it is too small with 2.5 % and too large with 2.5 %."""
+    """The figure is one more value, so the test wrongly finds it too small with 2.5 % and too large with 2.5 %."""
     values = random().normal(100, 5, (DRAWS, count + 1))
-    tests = [s.one_more(row[0], row[1:], 1e-6) for row in values]
+    tests = [s.next_value_within(row[0], row[1:], 1e-6) for row in values]
     for side in (-1, 1):
-        is_at_most(np.mean([contradicted(test) and side * (row[0] - row[1:].mean()) > 0 for test, row in zip(tests, values)]), SIDE)
+        assert_at_most(np.mean([contradicted(test) and side * (row[0] - row[1:].mean()) > 0 for test, row in zip(tests, values)]), SIDE)
 
 
 @pytest.mark.parametrize("count, centre", [(5, 110), (40, 90), (40, 94), (40, 114)])
 def test_another_picture_at_the_bounds(count, centre):
-    """Wrong verdicts: "reproduced", and the next picture lies outside 10 % of the figure 100; "not reproduced", and it lies within."""
+    """The verdict "reproduced" is wrong if the next picture lies outside 100 +- 10 %, "not reproduced" if it lies within."""
     draws = DRAWS // 2
     values = random().normal(centre, 3, (draws, count + 1))
-    tests = [s.one_more(100, row[1:], 0.1) for row in values]
+    tests = [s.next_value_within(100, row[1:], 0.1) for row in values]
     inside = (90 <= values[:, 0]) & (values[:, 0] <= 110)
-    is_at_most(np.mean(~inside & [reproduced(test) for test in tests]), SIDE, draws)
-    is_at_most(np.mean(inside & [contradicted(test) for test in tests]), SIDE, draws)
+    assert_at_most(np.mean(~inside & [reproduced(test) for test in tests]), SIDE, draws)
+    assert_at_most(np.mean(inside & [contradicted(test) for test in tests]), SIDE, draws)
 
 
 @pytest.mark.parametrize("values, wanted", [((99, 101), "yes"), ((94, 96), "yes"), ((104, 106), "yes"), ((79, 81), "no"), ((119, 121), "no"),
                                             ((80, 100), "?"), ((100, 120), "?"), ((89, 91), "?")])
-def test_another_picture_three_ways(values, wanted):
+def test_another_picture_has_three_verdicts(values, wanted):
     """The rule is that one more value lies within 10 % of 100, not that our values equal 100."""
-    test = s.one_more(100, np.tile(values, 15), 0.1)
+    test = s.next_value_within(100, np.tile(values, 15), 0.1)
     assert s.verdicts({"it": test})["it"] == {"yes": s.REPRODUCED, "no": s.NOT_REPRODUCED, "?": s.COMPATIBLE}[wanted]
 
 
 def test_interval_of_another_picture_is_the_one_that_is_tested():
-    """By Student's t distribution for one more value, as the p values are: 15 +- 2.262157 x sqrt(10 / 9 x 1.1) x 5 for ten values 10 and 20."""
+    """Interval and p values use Student's t distribution for one more value: 15 +- 2.262157 x sqrt(10 / 9 x 1.1) x 5 for ten values 10 and 20."""
     half = 2.262157 * (10 / 9 * 1.1) ** 0.5 * 5
-    assert s.one_more(15, [10, 20] * 5, 0.1, 2).interval == f"{15 - half:.2f} .. {15 + half:.2f}"
+    assert s.next_value_within(15, [10, 20] * 5, 0.1, 2).interval == f"{15 - half:.2f} .. {15 + half:.2f}"
 
 
 # The power at the detectable deviation
 
 
 def standardised(count, families=None):
-    """Values with standard deviation 1, in each family."""
+    """Values with mean 0 and standard deviation 1 in each family."""
     values = random().normal(size=count)
     for name in dict.fromkeys(families or [0]):
-        some = np.array(families or [0] * count) == name
-        values[some] = (values[some] - values[some].mean()) / values[some].std(ddof=1)
+        in_family = np.array(families or [0] * count) == name
+        values[in_family] = (values[in_family] - values[in_family].mean()) / values[in_family].std(ddof=1)
     return values
 
 
-def is_power(part, draws=DRAWS):
-    """The detectable deviation is that of an approximation with two quantiles of Student's t distribution."""
-    assert abs(part - POWER) <= 0.01 + error_of(POWER, draws), f"{part} of {draws}, seed {SEED}"
+def assert_power(fraction, draws=DRAWS):
+    """Allows an error of 0.01, because the detectable deviation is approximated with two quantiles of Student's t distribution."""
+    assert abs(fraction - POWER) <= 0.01 + error_of(POWER, draws), f"power {fraction} in {draws} draws instead of {POWER}, seed {SEED}"
 
 
 @pytest.mark.parametrize("families, count", [(None, 12), (9, 108)])
@@ -341,24 +341,24 @@ def test_power_of_above_and_within(families, count):
     d = s.above(standardised(count, names), 0, names).detectable
     assert s.within(standardised(count, names), -1, 1, names).detectable == d
     values = random().normal(size=(draws, count))
-    is_power(parts(s.above(row, -d, names) for row in values)[0], draws)
+    assert_power(fractions(s.above(row, -d, names) for row in values)[0], draws)
     if not families:
-        is_power(parts(s.within(row, d, 9) for row in values)[1], draws)
-        is_power(parts(s.within(row, -9, d) for row in values)[0], draws)
+        assert_power(fractions(s.within(row, d, 9) for row in values)[1], draws)
+        assert_power(fractions(s.within(row, -9, d) for row in values)[0], draws)
 
 
 def test_power_of_another_picture():
-    """A figure that is drawn from a distribution whose mean is shifted by the detectable deviation."""
-    d = s.one_more(100, 100 + standardised(40), 1e-6).detectable
+    """The figure is one more value, shifted by the detectable deviation."""
+    d = s.next_value_within(100, 100 + standardised(40), 1e-6).detectable
     values = random().normal(100, 1, (DRAWS, 41))
-    is_power(np.mean([contradicted(s.one_more(row[0] + d, row[1:], 1e-6)) for row in values]))
+    assert_power(np.mean([contradicted(s.next_value_within(row[0] + d, row[1:], 1e-6)) for row in values]))
 
 
 # Verdicts with Holm's correction
 
 
 def verdicts_of(p_values):
-    """Verdicts on null tests with these p values of "the claim is false"."""
+    """Verdicts on tests whose p values of "the claim is false" are given."""
     return list(s.verdicts({i: s.Test(p, 1 - p) for i, p in enumerate(p_values)}).values())
 
 
@@ -372,9 +372,9 @@ def test_holms_correction_by_hand():
                                  "fifth": s.COMPATIBLE}
 
 
-def test_bonferronis_correction_would_decide_less():
+def test_three_p_values_below_all_bounds_are_decided():
     tests = {i: s.Test(p, 0.9) for i, p in enumerate((0.002, 0.006, 0.007))}
-    assert list(s.verdicts(tests).values()) == [s.REPRODUCED] * 3  # 0.014 is above 0.05 / 5, but also above none of 0.05 / 3, / 2 and / 1
+    assert list(s.verdicts(tests).values()) == [s.REPRODUCED] * 3  # 0.004, 0.012 and 0.014 are below 0.05 / 3
 
 
 def test_verdicts_on_no_test_and_on_one_test():
@@ -386,14 +386,14 @@ def test_verdicts_on_no_test_and_on_one_test():
 
 @pytest.mark.parametrize("clear, alike", [(0, False), (20, False), (0, True)])
 def test_one_or_more_wrong_verdicts_of_20_null_tests(clear, alike):
-    """20 tests at their bounds, where any verdict is wrong, next to others that are clearly reproduced; independent tests, and all with one p."""
+    """Any verdict on 20 tests at their bounds is wrong. clear: number of other tests, clearly reproduced; alike: the 20 tests have one p value."""
     draws, generator, wrong = 5000, random(), 0
     for _ in range(draws):
         null = np.repeat(generator.uniform(), 20) if alike else generator.uniform(size=20)
         found = verdicts_of([*[1e-12] * clear, *null])
         assert found[:clear] == [s.REPRODUCED] * clear
         wrong += any(verdict != s.COMPATIBLE for verdict in found[clear:])
-    is_at_most(wrong / draws, s.LEVEL, draws)
+    assert_at_most(wrong / draws, s.LEVEL, draws)
     assert alike or wrong / draws > 0.04, f"{wrong} of {draws}, seed {SEED}: the correction decides too little"
 
 
@@ -402,8 +402,8 @@ def test_counted_claims_change_no_other_verdict():
     for _ in range(DRAWS):
         tests = {i: s.Test(p, 1 - p) for i, p in enumerate(generator.uniform(size=8) ** 3)}
         counted = {f"counted {i}": s.counted(generator.uniform() < 0.5) for i in range(generator.integers(1, 9))}
-        some = [*tests.items(), *counted.items()]
-        found = s.verdicts(dict(some[i] for i in generator.permutation(len(some))))
+        both = [*tests.items(), *counted.items()]
+        found = s.verdicts(dict(both[i] for i in generator.permutation(len(both))))
         assert {key: found[key] for key in tests} == s.verdicts(tests), f"{tests}, seed {SEED}"
 
 

@@ -22,17 +22,17 @@ def run(lab, scenes):
 
 
 def test_a_crash_ends_only_its_study(tmp_path):
-    crash, good, none = (tmp_path / f"{name}.py" for name in ("crash", "good", "none"))
+    crash, valid, invalid = (tmp_path / f"{name}.py" for name in ("crash", "valid", "invalid"))
     crash.write_text(STUDY.format("__import__('os').kill(__import__('os').getpid(), 11)"))
-    good.write_text(STUDY.format("pass"))
-    none.write_text(STUDY.format("return lab"))
+    valid.write_text(STUDY.format("pass"))
+    invalid.write_text(STUDY.format("return lab"))
     worker = Worker()
     try:
         with pytest.raises(raya.DeviceError, match="crashed"):
             worker.run(str(crash), [], str(tmp_path), OPTIONS)
-        page, device = worker.run(str(good), [], str(tmp_path), OPTIONS)
+        page, device = worker.run(str(valid), [], str(tmp_path), OPTIONS)
         assert page.title == "Title" and device["name"]
         with pytest.raises(ValueError, match=r"run\(\) returns Laboratory"):
-            worker.run(str(none), [], str(tmp_path), OPTIONS)
+            worker.run(str(invalid), [], str(tmp_path), OPTIONS)
     finally:
         worker.close()

@@ -118,4 +118,3 @@ TEST_CASE("a cited machine without a model is refused with the reason", "[machin
     CHECK_THROWS_WITH(machine_named("sight"),
                       Contains("--machine sight: not modelled: no public description") && Contains("16 PEs"));
 }
-

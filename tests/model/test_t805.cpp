@@ -58,8 +58,8 @@ TEST_CASE("cycles of each event on a T805 agree with those counted by hand", "[m
     CHECK(cycles[RAYA_DISCARDED] == arithmetic(8 + 25, 12 + 18, 1 + 3, 1) + control(2 + 6 + 6, 1 + 4 + 1));
 }
 
-// A packet charged with 30 words takes 14 more stores. If each ray has one return of 6 words, a return takes two
-// stores less, and no light source needs a return of its own.
+// A packet charged with 30 instead of 16 words takes 14 more stores. If each ray has one return of 6 words, this return
+// takes two stores less than one of 8 words, and RAYA_LIT creates no return.
 TEST_CASE("an event that creates a packet includes the stores of the packet's charged words", "[machine]") {
     const auto default_cycles = t805_cycles(), charged_cycles = t805_cycles({30, true});
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {

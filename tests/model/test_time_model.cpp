@@ -1,4 +1,4 @@
-// Modelled times, compared with times computed by hand and with times in the paper.
+// Modelled times, compared with times computed by hand and with those of Kohata & Ito (1993).
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>

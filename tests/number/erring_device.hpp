@@ -7,7 +7,7 @@ namespace raya {
 
 /// Returns patches for builds with RAYA_EXACT_DIVIDE=0. They add an error, which depends on the operands' bits, to
 /// results that are normal numbers.
-inline std::vector<SourcePatch> erring_device() {
+inline std::vector<SourcePatch> erring_device_patches() {
     const std::string file = "number/divide.clh", before = "// The neighbour of z whose bits are";
     const std::string functions = R"(
 static inline real with_error(real z, mask bits, int max_error) {
@@ -22,9 +22,9 @@ static inline real with_error(real z, mask bits, int max_error) {
             {file, "real z = sqrt(x);", "real z = with_error(sqrt(x), as_lanes_int(x), 3);"}};
 }
 
-/// Returns a build of the format for the simulated device.
+/// Returns a build for the simulated device, in which the number layer refines divisions and square roots.
 inline NumberBuild refined_build(const NumberFormat& format, std::uint32_t lanes = widest_lanes()) {
-    return {.format = format, .lanes = lanes, .trusted = false, .sources = {.patches = erring_device()}};
+    return {.format = format, .lanes = lanes, .trusted = false, .sources = {.patches = erring_device_patches()}};
 }
 
 }  // namespace raya

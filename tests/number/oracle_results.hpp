@@ -57,7 +57,6 @@ float oracle_result(Oracle& oracle, std::size_t operation, float a, float b, flo
     }
 }
 
-/// The operations whose results are rounded.
 inline const std::vector<std::size_t> kRoundingOperations = {kAdd, kSub, kMul, kDiv, kSqrt, kMad, kMulAdd};
 
 /// Returns the expected results of `operations`, computed by the oracle for all rows.

@@ -18,9 +18,9 @@ std::vector<float> all_numbers(const NumberFormat& format) {
     const int first = 1 << format.fraction_bits;
     for (int exponent = range.lowest; exponent <= range.highest; ++exponent)
         for (int significand = first; significand < 2 * first; ++significand) {
-            const float size = std::ldexp(static_cast<float>(significand), exponent - format.fraction_bits);
-            numbers.push_back(size);
-            numbers.push_back(-size);
+            const float magnitude = std::ldexp(static_cast<float>(significand), exponent - format.fraction_bits);
+            numbers.push_back(magnitude);
+            numbers.push_back(-magnitude);
         }
     return numbers;
 }

@@ -64,8 +64,8 @@ const std::vector<Mutation>& mutations() {
          {"number/scaled.clh", "fabs(a * b) < 0x1p-60f", "fabs(a * b) < 0.0f"},
          wide,
          kMul},
-        {"one step of refinement", {"number/divide.clh", "i < 3", "i < 1"}, {8, 23, false}, kDiv, true},
-        {"two steps of refinement", {"number/divide.clh", "i < 4", "i < 2"}, {8, 23, false}, kSqrt, true},
+        {"only one step of refinement", {"number/divide.clh", "i < 3", "i < 1"}, {8, 23, false}, kDiv, true},
+        {"only two steps of refinement", {"number/divide.clh", "i < 4", "i < 2"}, {8, 23, false}, kSqrt, true},
     };
     return all;
 }

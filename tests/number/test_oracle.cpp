@@ -18,9 +18,9 @@ struct Size {
     int exponent_bits, fraction_bits;
 };
 
-/// Returns formats with Y = 4 .. 21 and every X, in both roundings. They include the smallest and the largest format,
-/// and the SPA's format. The layer has separate code for X = 8 and for Y > 15, so the formats include either case alone
-/// and both cases together.
+/// Returns formats eXmY with X = 5 .. 8 and Y = 4 .. 21, in both roundings. They include the smallest and the largest
+/// format and the SPA's format. The layer has separate code for X = 8 and for Y > 15. The formats include each of these
+/// cases alone, and both together.
 std::vector<NumberFormat> tested_formats() {
     std::vector<Size> sizes = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
     if (is_long_run(kDefaultRows)) sizes.insert(sizes.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
@@ -31,8 +31,8 @@ std::vector<NumberFormat> tested_formats() {
     return formats;
 }
 
-/// Returns the numbers of lanes to test: in a long run all, else the largest number and, for the most important
-/// formats, also one lane.
+/// Returns the numbers of lanes to test: all in a long run, otherwise the largest, and 1 for the most important
+/// formats.
 std::vector<std::uint32_t> tested_lanes(const NumberFormat& format) {
     if (is_long_run(kDefaultRows)) return {1, 4, 8, 16};
     if (format == NumberFormat{6, 15, false} || format == NumberFormat{8, 21, false}) return {1, widest_lanes()};

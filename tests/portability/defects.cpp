@@ -1,4 +1,4 @@
-// Tests a device for known defects of OpenCL implementations. Runs a minimal kernel for each defect, and compares the
+// Tests a device for known defects of OpenCL implementations: runs a minimal kernel for each defect, and compares the
 // result with the correct result and with known wrong results.
 // Usage: defects [DEVICE]
 //   Prints a line for each run of a kernel of tests/portability: right, an expected failure with its reason, or WRONG.

@@ -1,4 +1,4 @@
-// Reads an element of an array inside a structure argument. The compiler does not know the element's index.
+// Reads an element of an array inside a structure argument. The index depends on the work-item.
 //   out    one number per work-item: 10, 20 or 30; expected: 20 for work-item 0
 // raya's kernels read structures from buffers, because a compiler with this defect crashes on structure arguments.
 typedef struct {

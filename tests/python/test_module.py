@@ -57,10 +57,10 @@ def test_render_agrees_with_the_program(centre, tmp_path):
 def test_loads_are_sums_of_costs(small):
     owner = raya.owners(32, 32, offset=4, pes=32)
     assert small.cost.dtype == np.uint64 and small.cost.shape == (32, 32)
-    by_owner = np.bincount(owner.ravel(), small.cost.ravel(), minlength=32)
-    assert (small.loads == by_owner).all() and (raya.loads(small.cost, offset=4, pes=32) == by_owner).all()
-    assert small.imbalance == pytest.approx(by_owner.max() / by_owner.mean() - 1, rel=1e-12)
-    assert small.speedup == pytest.approx(by_owner.sum() / by_owner.max(), rel=1e-12)
+    owner_loads = np.bincount(owner.ravel(), small.cost.ravel(), minlength=32)
+    assert (small.loads == owner_loads).all() and (raya.loads(small.cost, offset=4, pes=32) == owner_loads).all()
+    assert small.imbalance == pytest.approx(owner_loads.max() / owner_loads.mean() - 1, rel=1e-12)
+    assert small.speedup == pytest.approx(owner_loads.sum() / owner_loads.max(), rel=1e-12)
 
 
 def test_owners_of_the_cyclic_mapping():

@@ -11,7 +11,7 @@
 
 namespace raya {
 
-/// An installed MPI library.
+/// An MPI library.
 struct Mpi {
     std::string launcher;  // path of its mpirun; empty: not installed
     std::string program;   // path of a raya executable whose raya_mpi.so is built with this library
@@ -127,9 +127,9 @@ inline std::size_t count_raya_lines(const std::string& text) {
 
 }  // namespace run_ranks_detail
 
-/// Runs the launcher with `arguments`, which must include the path of the program. Kills a run that does not end within
-/// 60 s; its exit code is 124. `ranks`: number of ranks to wait for before the signal of `fault` is sent. Throws
-/// std::runtime_error if the signal cannot be sent.
+/// Runs the launcher with `arguments`, which must include the path of the program. A run that does not end within 60 s
+/// is killed and has the exit code 124. `ranks`: number of ranks that must have started before the signal of `fault` is
+/// sent. Throws std::runtime_error if the signal cannot be sent.
 inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& arguments, std::size_t ranks = 0,
                               const RanksFault& fault = {}, RunOptions run_options = {}) {
     namespace detail = run_ranks_detail;

@@ -76,8 +76,8 @@ TEST_CASE("torus: a rank's device holds the rank's nodes, plus an inbox for each
         const std::vector<std::uint64_t> rank_bytes = bytes_of_ranks<TorusRenderer>(count, scene, settings);
         for (std::uint32_t rank = 0; rank < count; ++rank) {
             const NodeDistribution distribution(settings.torus, count, rank);
-            // Mailboxes take nearly all memory of these nodes. On a single rank, half of the mailboxes are inboxes. One
-            // of several ranks also holds an inbox for each link that enters its nodes from another rank.
+            // Mailboxes take nearly all memory of these nodes. On a single rank, half of the mailboxes are inboxes.
+            // With several ranks, each rank also holds an inbox for each link that enters its nodes from another rank.
             const double inboxes_per_node = static_cast<double>(distribution.inboxes()) / distribution.nodes();
             CAPTURE(count, rank, single_bytes, rank_bytes[rank], inboxes_per_node);
             CHECK(static_cast<double>(rank_bytes[rank]) <

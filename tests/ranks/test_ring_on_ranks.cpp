@@ -72,7 +72,7 @@ TEST_CASE("random rings: image, loads and counts are the same on 1 to 8 ranks", 
     SplitMix random(kSeed);
     std::vector<Scene> scenes;
     for (const std::string& name : project_scenes()) scenes.push_back(project_scene(name));
-    std::uint32_t cases = 0, uneven = 0;
+    std::uint32_t cases = 0, uneven_cases = 0;
     for (std::uint32_t i = 0; i < quick_cases(24, 120); ++i) {
         const Scene& scene = scenes[i % scenes.size()];
         RingSettings settings = settings_of(RingCase{.format = i % 3 ? "fp32" : "spa22"});
@@ -92,12 +92,12 @@ TEST_CASE("random rings: image, loads and counts are the same on 1 to 8 ranks", 
             CAPTURE(kSeed, i, scene.name, count, settings.mapping.pes, settings.mapping.width, settings.mapping.height,
                     settings.mapping.kind);
             check_same(single, render_on(count, scene, settings));
-            uneven += settings.mapping.pes % count != 0;
+            uneven_cases += settings.mapping.pes % count != 0;
             ++cases;
         }
     }
     CHECK(cases > 60);
-    CHECK(uneven > 10);
+    CHECK(uneven_cases > 10);
 }
 
 TEST_CASE("more ranks than PEs are refused with both numbers", "[ranks]") {

@@ -79,7 +79,7 @@ TEST_CASE("each rank has a cuboid of nodes, of nearly equal size, and rank 0 has
         CHECK(rank_of[RAYA_ROOT] == 0);
         for (std::uint32_t rank = 0; rank < ranks; ++rank) {
             raya_place low{{~0u, ~0u, ~0u}}, high{};
-            std::uint32_t count = 0;
+            std::uint32_t nodes_of_rank = 0;
             for (std::uint32_t node = 0; node < nodes; ++node) {
                 if (rank_of[node] != rank) continue;
                 const raya_place p = raya_torus_place(torus, node);
@@ -87,19 +87,19 @@ TEST_CASE("each rank has a cuboid of nodes, of nearly equal size, and rank 0 has
                     low.at[axis] = std::min(low.at[axis], p.at[axis]);
                     high.at[axis] = std::max(high.at[axis], p.at[axis]);
                 }
-                ++count;
+                ++nodes_of_rank;
             }
-            REQUIRE(count > 0);
-            std::uint32_t box = 1;
-            for (int axis = 0; axis < 3; ++axis) box *= 1 + high.at[axis] - low.at[axis];
-            CHECK(box == count);
+            REQUIRE(nodes_of_rank > 0);
+            std::uint32_t nodes_of_box = 1;
+            for (int axis = 0; axis < 3; ++axis) nodes_of_box *= 1 + high.at[axis] - low.at[axis];
+            CHECK(nodes_of_box == nodes_of_rank);
         }
     }
-    const raya_torus even = make_torus({4, 4, 4}, Links::kTorus3d);
+    const raya_torus cube = make_torus({4, 4, 4}, Links::kTorus3d);
     for (const std::uint32_t ranks : {1u, 2u, 4u, 8u, 16u, 32u, 64u})
-        CHECK(NodeDistribution(even, ranks, 0).max_nodes_of_rank() == 64 / ranks);
-    CHECK(NodeDistribution(even, 3, 0).max_nodes_of_rank() <= 32);
-    CHECK(NodeDistribution(even, 7, 0).max_nodes_of_rank() <= 16);
+        CHECK(NodeDistribution(cube, ranks, 0).max_nodes_of_rank() == 64 / ranks);
+    CHECK(NodeDistribution(cube, 3, 0).max_nodes_of_rank() <= 32);
+    CHECK(NodeDistribution(cube, 7, 0).max_nodes_of_rank() <= 16);
 }
 
 TEST_CASE("slots, inner nodes and inboxes of a rank agree with the links of its nodes", "[ranks]") {
@@ -117,7 +117,7 @@ TEST_CASE("slots, inner nodes and inboxes of a rank agree with the links of its 
                 bool inner = true;
                 for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
                     inner &= distribution.has(raya_link_end(torus, node, link));
-                CHECK(inner == (slot < distribution.inner()));
+                CHECK(inner == (slot < distribution.inner_nodes()));
             }
             for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
                 std::vector<int> uses(distribution.inboxes());  // [inbox]: number of links that use it

@@ -103,7 +103,7 @@ class ThreadTransport final : public Transport {
 /// Runs `work` on `count` concurrent ranks, `ranks_per_host` per host. If ranks throw, rethrows the first exception.
 /// Throws std::logic_error if a sent message was not received.
 inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& work, std::uint32_t ranks_per_host = 8) {
-    // PoCL 3.1 returns no device to some threads if several threads make the first query at the same time.
+    // This thread makes the first query: PoCL 3.1 returns no device to some threads if several make it concurrently.
     all_devices();
     MessageStore store;
     std::exception_ptr first_exception;

@@ -1,6 +1,6 @@
 // Program that checks every call of the MPI transport with known bytes, for messages of 0 bytes up to more than MPI's
-// eager limit. Run it under mpirun, also with Valgrind or sanitizers. It exists because these tools find few errors of
-// the transport in a whole render, which spends most of its time inside an OpenCL driver.
+// eager limit. Run it under mpirun, also with Valgrind or sanitizers. In a whole render, these tools find few errors of
+// the transport, because most of the time is spent inside an OpenCL driver.
 #include <fmt/core.h>
 
 #include <memory>

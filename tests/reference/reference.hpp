@@ -36,8 +36,8 @@ std::optional<double> hit_plane(const Plane& plane, const Ray& ray);
 std::optional<double> hit_polygon(const Polygon& polygon, const Ray& ray);
 std::optional<double> hit_cone(const Cone& cone, const Ray& ray);
 
-/// Returns the hit of the ray with the smallest t in 0 < t < far; empty if there is none. Of objects with equal t,
-/// the ray hits the object with the lowest number.
+/// Returns the hit of the ray with the smallest t in 0 < t < far; empty if there is none. If several objects have this
+/// t, the ray hits the object with the lowest number.
 std::optional<Hit> closest_hit(const Scene& scene, const Ray& ray, double far = kFar);
 
 /// Returns the direction R of the reflected ray. Direction and normal must have length 1.
@@ -56,7 +56,7 @@ struct Options {
     int threads = 2;                 // number of threads of render(), >= 1; does not change the image
 };
 
-/// Number of rays of each kind, and of primary and shadow rays that hit an object.
+/// Numbers of rays of each kind, and numbers of primary and shadow rays that hit an object.
 struct Counts {
     std::uint64_t primary = 0, primary_hits = 0;
     std::uint64_t reflected = 0, refracted = 0;
@@ -79,8 +79,8 @@ using History = std::vector<int>;
 /// pixel, fractions are points between sample points.
 Ray primary_ray(const Scene& scene, const Options& options, double x, double y);
 
-/// Returns the radiance (linear, not clamped) along primary_ray(x, y). Adds the rays of the ray tree to `counts`, and
-/// the events to `history` unless `history` is null.
+/// Returns the radiance (linear, not clamped) along primary_ray(x, y). Adds the numbers of the tree's rays to
+/// `counts`, and the tree's events to `history` unless `history` is null.
 Colour trace_pixel(const Scene& scene, const Options& options, double x, double y, Counts& counts,
                    History* history = nullptr);
 

@@ -24,17 +24,17 @@ double highlight(double x, double shine) { return x > 0 ? std::pow(x, shine) : 0
 /// Traces the ray tree of one pixel.
 class TreeTracer {
   public:
-    TreeTracer(const Scene& scene, int bounces, double margin, Counts& counts, History* history)
-        : scene_(scene), bounces_(bounces), margin_(margin), counts_(counts), history_(history) {}
+    TreeTracer(const Scene& scene, int max_level, double margin, Counts& counts, History* history)
+        : scene_(scene), max_level_(max_level), margin_(margin), counts_(counts), history_(history) {}
 
-    /// Returns the radiance along a ray of level `bounces` (0 for the primary ray).
-    Colour radiance(const Ray& ray, int bounces) {
+    /// Returns the radiance along a ray of level `level` (0 for the primary ray).
+    Colour radiance(const Ray& ray, int level) {
         const std::optional<Hit> hit = closest_hit(scene_, ray);
-        note(hit ? 2 * hit->object + hit->odd_square : kMiss);
+        record(hit ? 2 * hit->object + hit->odd_square : kMiss);
         if (!hit) return scene_.background;
-        if (bounces == 0) ++counts_.primary_hits;
+        if (level == 0) ++counts_.primary_hits;
         Colour sum = direct_light(ray, *hit);
-        if (bounces < bounces_) sum += secondary_light(ray, *hit, bounces + 1);
+        if (level < max_level_) sum += secondary_light(ray, *hit, level + 1);
         return sum;
     }
 
@@ -53,7 +53,7 @@ class TreeTracer {
             const Vec3 to_light = (light.position - origin_in_front(hit)).normalized();
             const double cosine = hit.shading.dot(to_light);
             const bool reached = cosine > 0 && !in_shadow(hit, light);
-            note(reached ? kLit : kUnlit);
+            record(reached ? kLit : kUnlit);
             if (!reached) continue;
             const double gloss = material.specular * highlight(mirrored.dot(to_light), material.shine);
             sum += light_colour(scene_, light) * (material.diffuse * cosine * hit.colour + Colour(gloss));
@@ -70,8 +70,8 @@ class TreeTracer {
         return blocked;
     }
 
-    /// Returns the contributions of the reflected and the refracted ray of a hit. Both rays have the level `bounces`.
-    Colour secondary_light(const Ray& ray, const Hit& hit, int bounces) {
+    /// Returns the contributions of the reflected and the refracted ray of a hit. Both rays have the level `level`.
+    Colour secondary_light(const Ray& ray, const Hit& hit, int level) {
         const Surface& material = surface(hit);
         double reflectance = material.specular;
         std::optional<Vec3> refracted;
@@ -79,29 +79,29 @@ class TreeTracer {
             const double e = hit.leaving ? material.refraction : 1 / material.refraction;
             refracted = refracted_direction(ray.direction, hit.shading, e);
             if (!refracted) {
-                note(kTotalReflection);
+                record(kTotalReflection);
                 reflectance += material.transmittance;
             }
         }
         Colour sum(0, 0, 0);
         if (reflectance > 0) {
             ++counts_.reflected;
-            sum += reflectance *
-                   radiance({origin_in_front(hit), reflected_direction(ray.direction, hit.shading)}, bounces);
+            sum +=
+                reflectance * radiance({origin_in_front(hit), reflected_direction(ray.direction, hit.shading)}, level);
         }
         if (refracted) {
             ++counts_.refracted;
-            sum += material.transmittance * radiance({hit.point - margin_ * hit.geometric, *refracted}, bounces);
+            sum += material.transmittance * radiance({hit.point - margin_ * hit.geometric, *refracted}, level);
         }
         return sum;
     }
 
-    void note(int event) {
+    void record(int event) {
         if (history_) history_->push_back(event);
     }
 
     const Scene& scene_;
-    int bounces_;
+    int max_level_;
     double margin_;  // scene units
     Counts& counts_;
     History* history_;

@@ -23,7 +23,6 @@ Scene scene_from(double eye_z) {
     return scene;
 }
 
-/// Returns the radiance of trace_pixel().
 Colour radiance(const Scene& scene, const Options& options, double x, double y) {
     Counts counts;
     return trace_pixel(scene, options, x, y, counts);
@@ -152,14 +151,14 @@ TEST_CASE("refraction obeys Snell's law") {
     CHECK(reflected_direction(Vec3(0.6, 0, -0.8), normal) == Vec3(0.6, 0, 0.8));
 }
 
-TEST_CASE("a glass sphere shows the checkered plane behind it as the closed formula predicts") {
-    constexpr double kEye = 5, kIor = 1.5, kBehind = 3, kSize = 0.05;
+TEST_CASE("a glass sphere shows the squares of a checkered plane where the closed formula predicts them") {
+    constexpr double kEye = 5, kIor = 1.5, kPlaneDistance = 3, kSquareSize = 0.05;
     Scene scene = scene_from(kEye);
     Surface checkered = matt({1, 1, 1});
-    checkered.checker = Checker{{1, 0, 0}, {0, 1, 0}, kSize};
+    checkered.checker = Checker{{1, 0, 0}, {0, 1, 0}, kSquareSize};
     scene.surfaces = {glass(1, kIor), checkered};
     scene.spheres = {{{0, 0, 0}, 1, 0}};
-    scene.planes = {{{0, 0, 1}, -kBehind, 1}};
+    scene.planes = {{{0, 0, 1}, -kPlaneDistance, 1}};
     const Options options{.width = 201, .height = 201, .bounces = 2};
     int odd = 0;
     for (int x = 100; x < 170; ++x) {
@@ -168,10 +167,10 @@ TEST_CASE("a glass sphere shows the checkered plane behind it as the closed form
         const double inner = std::asin(std::sin(incidence) / kIor);
         const double exit_angle = incidence - theta + std::numbers::pi - 2 * inner;  // polar angle of the exit point
         const double ray_angle = theta - 2 * (incidence - inner);
-        const double plane_x = std::sin(exit_angle) + (std::cos(exit_angle) + kBehind) * std::tan(ray_angle);
-        const double square = plane_x / kSize;
+        const double plane_x = std::sin(exit_angle) + (std::cos(exit_angle) + kPlaneDistance) * std::tan(ray_angle);
+        const double square = plane_x / kSquareSize;
         if (std::abs(square - std::round(square)) < 1e-4)
-            continue;  // skips pixels near an edge, which the ray offset shifts
+            continue;  // the margin of secondary rays shifts the squares' edges
         CAPTURE(x, plane_x);
         const bool even = std::fmod(std::floor(square), 2) == 0;
         odd += !even;

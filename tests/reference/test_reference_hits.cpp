@@ -35,9 +35,9 @@ class Random {
 
 Vec3 at(const Ray& ray, double t) { return ray.origin + t * ray.direction; }
 
-/// Samples signed_distance(t), the distance of a ray from a surface, positive outside, NaN beyond the ends of the
-/// surface. Returns the smallest sampled t <= end at which the sign changes; empty if there is none. If `outward_only`
-/// is true, only changes from negative to positive count.
+/// Returns the smallest sampled t <= end at which signed_distance(t) changes its sign; empty if there is none.
+/// signed_distance(t) is the distance of the ray's point from a surface: positive outside, NaN beyond the surface's
+/// ends. If `outward_only` is true, only changes from negative to positive count.
 template <class SignedDistance>
 std::optional<double> first_crossing(const SignedDistance& signed_distance, double end, bool outward_only) {
     constexpr int kSteps = 500;
@@ -169,7 +169,7 @@ TEST_CASE("concave polygons and polygons with a hole are hit only inside their o
         0};
     for (const Polygon& polygon : {notched, holed}) {
         CHECK(hit_polygon(polygon, {{0.5, 0.6, 1}, {0, 0, -1}}));
-        CHECK_FALSE(hit_polygon(polygon, {{1.5, 1.5, 1}, {0, 0, -1}}));  // the notch; the hole
+        CHECK_FALSE(hit_polygon(polygon, {{1.5, 1.5, 1}, {0, 0, -1}}));  // in the notch or the hole
         for (int i = 0; i < kRays; ++i) {
             CAPTURE(kSeed, i);
             const Vec3 target(random.uniform(-0.5, 3.5), random.uniform(-0.5, 3.5), 0);
@@ -208,7 +208,7 @@ TEST_CASE("a triangle's normals are interpolated linearly and normalised") {
     check_normal(middle, normals[0] + normals[1] + normals[2]);
 }
 
-TEST_CASE("a patch with five vertices reproduces a linear field, and turns normals against the ray") {
+TEST_CASE("the normals of a patch with five vertices reproduce a linear field, and are turned against the ray") {
     // The normals have different lengths. The interpolated normal is a linear function of the point only before it is
     // normalised.
     constexpr std::uint64_t kSeed = 6;
@@ -230,8 +230,8 @@ TEST_CASE("a patch with five vertices reproduces a linear field, and turns norma
     }
     CHECK(hits > 500);
 
-    // Changes two normals, so that no linear field fits all vertices. Near a vertex the result must be the vertex's
-    // normal, not an extrapolation from another triangle.
+    // With two changed normals, no linear field fits all vertices. Near a vertex the hit must have the vertex's normal,
+    // not an extrapolation from another triangle.
     scene.polygons[0].normals[0] = Vec3(1, 0, 1).normalized();
     scene.polygons[0].normals[3] = Vec3(0, 1, 1).normalized();
     for (std::size_t i = 0; i < patch.vertices.size(); ++i) {

@@ -105,7 +105,7 @@ TEST_CASE("read_bench_report: refuses files that are not valid reports, with a r
                        Contains("rays and times must be positive"));
 }
 
-TEST_CASE("compare_bench: a row is slower if best and median both exceed the tolerance", "[bench]") {
+TEST_CASE("compare_bench: a row is slower if best and median rate both fall by more than the tolerance", "[bench]") {
     struct Case {
         double best, median;  // rates divided by those of the baseline, whose times are 10 and 12 ms
         double tolerance;     // percent
@@ -127,7 +127,7 @@ TEST_CASE("compare_bench: a row is slower if best and median both exceed the tol
     }
 }
 
-TEST_CASE("compare_bench: a different image fails, however fast the kernel is", "[bench]") {
+TEST_CASE("compare_bench: a different image fails the comparison, however fast the kernel is", "[bench]") {
     BenchMeasurement other = row(4, 1, 1);
     other.hash = "fedcba9876543210";
     const BenchComparison result = compare_bench(report({row(4, 10, 10)}), report({other}), 100);

@@ -15,8 +15,8 @@ using Catch::Matchers::StartsWith;
 // Returns the content of <pre id="report">, which must contain no HTML entities.
 std::string report_in(const std::string& page) {
     const std::string begin = "<pre id=\"report\" tabindex=\"0\">";
-    const std::size_t from = page.find(begin) + begin.size();
-    return page.substr(from, page.find("</pre>", from) - from);
+    const std::size_t start = page.find(begin) + begin.size();
+    return page.substr(start, page.find("</pre>", start) - start);
 }
 
 TEST_CASE("report_page: embeds the report unchanged, whatever its texts contain", "[page]") {
@@ -30,7 +30,7 @@ TEST_CASE("report_page: embeds the report unchanged, whatever its texts contain"
     CHECK(page == report_page(report));
 }
 
-TEST_CASE("report_page: one file that loads no resources", "[page]") {
+TEST_CASE("report_page: makes one file that loads no resources", "[page]") {
     const std::string page = report_page({{"kind", "raya render"}});
     CHECK_THAT(page, StartsWith("<!doctype html>"));
     CHECK_THAT(page, Contains("default-src 'none'") && Contains("<noscript>"));
@@ -56,13 +56,13 @@ TEST_CASE("cost_json: the cycles can be decoded exactly", "[page]") {
         for (std::uint64_t i = 0; i < 209; ++i) cycles.push_back(bits == 0 ? 0 : i * 0x9e3779b97f4a7c15 >> (64 - bits));
         const Json json = cost_json(cycles);
         const std::string bytes = gunzip(decoded(json.at("gzip").text()));
-        const std::size_t pixels = cycles.size(), planes = json.at("bytes").integer();
+        const std::size_t pixels = cycles.size(), byte_planes = json.at("bytes").integer();
         CAPTURE(bits);
-        CHECK(planes == std::max(1u, (bits + 7) / 8));
-        REQUIRE(bytes.size() == pixels * planes);
+        CHECK(byte_planes == std::max(1u, (bits + 7) / 8));
+        REQUIRE(bytes.size() == pixels * byte_planes);
         for (std::size_t at = 0; at < pixels; ++at) {
             std::uint64_t found = 0;
-            for (std::size_t plane = planes; plane-- > 0;)
+            for (std::size_t plane = byte_planes; plane-- > 0;)
                 found = found << 8 | static_cast<std::uint8_t>(bytes[plane * pixels + at]);
             REQUIRE(found == cycles[at]);
         }

@@ -1,4 +1,4 @@
-// Tests of TraceFile, whose traces TraceSchema checks, and of TraceSchema, which must find the errors of invalid
+// Tests of TraceFile: TraceSchema finds no errors in its traces. Tests of TraceSchema: it finds the errors of invalid
 // traces.
 #include <catch2/catch.hpp>
 #include <functional>

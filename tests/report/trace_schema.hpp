@@ -1,4 +1,4 @@
-// Checks the rules of Chrome's JSON trace format, as Perfetto reads the format, and raya's additional rules.
+// Checks the rules of Chrome's JSON trace format, as Perfetto applies them, and raya's additional rules.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -25,14 +25,14 @@ inline Scene grid_objects() {
     return scene;
 }
 
-/// Returns grid_objects(), seen along an axis, for an image of `rows` rows. The distance between pixels is 1 /
-/// `pixels_per_unit` at distance 1 from the eye. If this spacing is a power of two, the image's corner and the steps
-/// between pixels have few significant bits, so the primary rays are exact. Images with different spacings then send
-/// the same ray through the same point.
+/// Returns grid_objects(), seen along an axis, for an image of `rows` rows. At distance 1 from the eye, the distance
+/// between pixels is 1 / `pixels_per_unit`. If this spacing is a power of two, the image's corner and the steps between
+/// pixels have few significant bits. So the primary rays are exact, and images with different spacings send the same
+/// ray through the same point of the image plane.
 inline Scene grid_scene(std::uint32_t rows, Sampling sampling, double pixels_per_unit) {
     Scene scene = grid_objects();
-    const double steps = sampling == Sampling::kCorners ? std::max(1.0, rows - 1.0) : rows;
-    scene.view.angle_degrees = 2 * std::atan(steps / 2 / pixels_per_unit) * 180 / std::numbers::pi;
+    const double spacings = sampling == Sampling::kCorners ? std::max(1.0, rows - 1.0) : rows;
+    scene.view.angle_degrees = 2 * std::atan(spacings / 2 / pixels_per_unit) * 180 / std::numbers::pi;
     return scene;
 }
 

@@ -1,4 +1,4 @@
-// Random mappings of small images for tests, with fewer, as many or more PEs than the image has columns.
+// Random mappings of small images for tests. The number of PEs may be less than, equal to or more than the width.
 #pragma once
 #include <algorithm>
 #include <cstdint>

@@ -12,7 +12,7 @@
 namespace raya {
 namespace {
 
-// The results that do not depend on the acceleration structure: the image, and all counts except those of tests,
+// Returns the results that do not depend on the accelerator: the image, and all counts except those of tests,
 // traversals and traversal steps.
 std::string image_and_events(const RingResult& r) { return image_and_counts(r.image, r.all.events); }
 
@@ -139,11 +139,11 @@ TEST_CASE("counts of tests and steps do not depend on lanes, groups and PEs", "[
     for (const auto& [lanes, group, pes] :
          quick(1, {std::array{4u, 3u, 7u}, {1u, 16u, 1u}, {8u, 3u, 32u}, {16u, 1u, 5u}})) {
         CAPTURE(format, accel_text(accel), lanes, group, pes);
-        RingCase other = c;
-        other.lanes = lanes;
-        other.group = group;
-        other.pes = pes;
-        CHECK(render_with(session, scene, other, accel).all.events == expected);
+        RingCase changed = c;
+        changed.lanes = lanes;
+        changed.group = group;
+        changed.pes = pes;
+        CHECK(render_with(session, scene, changed, accel).all.events == expected);
     }
     RingSettings in_global_memory = raya::settings_of(c);
     in_global_memory.accel = accel;
@@ -170,12 +170,12 @@ TEST_CASE("the numbers of ray trees and beams per lane change no bit and no coun
     }
 }
 
-// Returns a scene to which, for each kind of object, twice as many copies of random objects are added. The copies have
-// distant object numbers and other surfaces, so that most rays hit several objects at equal distances.
-Scene doubled_scene(std::uint64_t seed) {
+// Returns a scene to which 2 n copies of random objects are added for each kind of n objects. The copies have distant
+// object numbers and random surfaces, so that most rays hit several objects at equal distances.
+Scene scene_with_copies(std::uint64_t seed) {
     Scene scene = random_view_scene(seed);
     SplitMix random(seed);
-    const auto double_all = [&](auto& objects) {
+    const auto add_copies = [&](auto& objects) {
         auto copies = objects;
         const std::size_t count = objects.size();
         for (std::size_t i = 0; i < 2 * count; ++i) {
@@ -185,9 +185,9 @@ Scene doubled_scene(std::uint64_t seed) {
         }
         objects = copies;
     };
-    double_all(scene.spheres);
-    double_all(scene.polygons);
-    double_all(scene.cones);
+    add_copies(scene.spheres);
+    add_copies(scene.polygons);
+    add_copies(scene.cones);
     return scene;
 }
 
@@ -195,7 +195,7 @@ TEST_CASE("of objects at equal distances, the one with the lowest number is hit,
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(2, {"fp32", "spa22", "e5m6"})));
     for (const std::uint64_t seed : quick_of(1, kSceneSeeds)) {
-        const Scene scene = doubled_scene(seed);
+        const Scene scene = scene_with_copies(seed);
         const RingCase c{.width = 24, .height = 20, .pes = 6, .format = format};
         const std::string expected = image_and_events(render_with(session, scene, c, {}));
         CAPTURE(seed, format);
@@ -214,8 +214,7 @@ TEST_CASE(
     Session session(choose_device(""));
     Scene scene = project_scene("planes");
     scene.planes = {{{0, 0, 1}, 0, 0}};
-    // The sphere makes the box high, so that rays find the large square in voxels before the voxel in which they hit
-    // it.
+    // The sphere makes the box high. So a ray finds the large square in voxels before the voxel of the hit.
     scene.spheres = {{{-4, -4, 4}, 0.1, 0}};
     scene.cones.clear();
     scene.polygons = {};
@@ -300,7 +299,7 @@ TEST_CASE("a grid or BVH saves 95 % of the tests of many small spheres", "[ring]
 }
 
 // Each fault injected into the BVH's kernels must change an image or a count. One scene has objects of every kind, most
-// of which lie several nodes deep. In the other scene, rays hit many objects at equal distances.
+// of them several BVH nodes deep. In the other scene, rays hit many objects at equal distances.
 TEST_CASE("every injected fault in the BVH traversal is detected", "[ring][accel][faults]") {
     Session session(choose_device(""));
     Scene copies = crowded_scene(3);  // gets 20 copies of each sphere, more than a leaf holds

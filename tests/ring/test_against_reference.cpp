@@ -11,7 +11,7 @@ namespace raya {
 
 TEST_CASE("fp32 renders agree with the double-precision reference", "[ring]") {
     constexpr std::uint32_t kSide = 160;
-    constexpr double kMaxExcused = 0.02;  // fraction of pixels whose rays may graze an edge
+    constexpr double kMaxExcused = 0.02;  // maximum fraction of pixels that may differ because their rays graze an edge
     for (const std::string& name : project_scenes()) {
         CAPTURE(name);
         const Scene scene = project_scene(name);
@@ -21,9 +21,7 @@ TEST_CASE("fp32 renders agree with the double-precision reference", "[ring]") {
         const reference::Difference d = reference::compare(expected, result.image.rgb, scene, options);
         fmt::print(
             "{:8} PSNR {:5.1f} dB, largest difference {:.4f}, {} pixels differ by more than 2/255, of which {} graze "
-            "an "
-            "edge ({:.2f} "
-            "%)\n",
+            "an edge ({:.2f} %)\n",
             name, d.psnr_db, d.largest, d.above_limit, d.excused, 100.0 * d.excused / (kSide * kSide));
         CHECK(d.psnr_db >= 50);
         CHECK(d.above_limit == d.excused);

@@ -19,8 +19,8 @@ using whole_image::value_at;
 
 constexpr double kPixelsPerUnit = 32;
 
-/// [size]: width, height. There are few sizes, so that few reference images are rendered. In images with sides of one
-/// or two pixels, pixels have few neighbours.
+/// [size]: width, height. There are few sizes, so that few reference images are rendered. Some sides have one or two
+/// pixels, so that pixels have few neighbours.
 constexpr std::array<std::array<std::uint32_t, 2>, 10> kSizes = {
     {{1, 1}, {1, 9}, {8, 1}, {2, 2}, {3, 2}, {7, 5}, {17, 13}, {32, 20}, {8, 40}, {39, 40}}};
 
@@ -50,7 +50,7 @@ Antialias random_supersampling(SplitMix& random) {
             .points = random.next() % 2 ? RAYA_POINTS_AXES : RAYA_POINTS_DIAGONALS};
 }
 
-/// Reference images of the scene without antialiasing. One PE renders each of them, only once.
+/// Reference images of the scene without antialiasing. A single PE renders each image once.
 class PlainImages {
   public:
     explicit PlainImages(Session& session) : session_(session) {}
@@ -185,7 +185,7 @@ TEST_CASE("supersampling takes the mean of five points where a neighbour differs
     SplitMix random(kSeed);
     Session session(choose_device(""));
     PlainImages plain(session);
-    std::size_t recomputed = 0, pixels = 0, mixed = 0;
+    std::size_t recomputed = 0, pixels = 0, partly_marked = 0;
     for (const char* format : {"fp32", "spa22"})
         for (int i = 0; i < case_count(); ++i) {
             RingCase c = random_case(random, format);
@@ -196,13 +196,13 @@ TEST_CASE("supersampling takes the mean of five points where a neighbour differs
             check_supersampled(result, plain.image_of(c), plain.fine_image_of(c), c);
             const std::size_t size = std::size_t{c.width} * c.height;
             if (c.antialias.threshold == 0 && size > 1) CHECK(result.recomputed == size);
-            mixed += result.recomputed > 0 && result.recomputed < size;
+            partly_marked += result.recomputed > 0 && result.recomputed < size;
             recomputed += result.recomputed;
             pixels += size;
         }
     CHECK(recomputed > pixels / 10);  // the cases have both marked and unmarked pixels
     CHECK(recomputed < pixels * 9 / 10);
-    CHECK(mixed > std::size_t(case_count()) / 2);
+    CHECK(partly_marked > std::size_t(case_count()) / 2);
 }
 
 TEST_CASE("the additional points lie half a pixel away, for any camera", "[ring][antialias]") {

@@ -132,9 +132,10 @@ TEST_CASE("PEs, offset and fold change no bit, mark or count of anti-aliasing", 
 TEST_CASE("phases are named after their passes", "[ring][antialias]") {
     Session session(choose_device(""));
     const auto names = [&](const Antialias& antialias) {
-        std::vector<std::string> all;
-        for (const Phase& phase : render_case(session, {.antialias = antialias}).phases) all.push_back(phase.name);
-        return all;
+        std::vector<std::string> phase_names;
+        for (const Phase& phase : render_case(session, {.antialias = antialias}).phases)
+            phase_names.push_back(phase.name);
+        return phase_names;
     };
     CHECK(names({}) == std::vector<std::string>{"trace"});
     CHECK(names(kFilter) == std::vector<std::string>{"trace"});

@@ -17,7 +17,7 @@ struct DenormalCase {
 };
 
 const std::vector<DenormalCase>& denormal_cases() {
-    static const std::vector<DenormalCase> all = {
+    static const std::vector<DenormalCase> cases = {
         {"none", {.width = 20, .height = 15, .pes = 7}},
         {"one lane", {.width = 20, .height = 15, .pes = 7, .lanes = 1}},
         {"spa22", {.width = 20, .height = 15, .pes = 7, .format = "spa22"}},
@@ -28,7 +28,7 @@ const std::vector<DenormalCase>& denormal_cases() {
         {"spa22, bvh", {.width = 20, .height = 15, .pes = 7, .format = "spa22"}, AccelKind::kBvh},
         {"filter", {.width = 20, .height = 15, .pes = 7, .antialias = {.method = AntialiasMethod::kFilter}}},
         {"supersample", {.width = 20, .height = 15, .pes = 7, .antialias = {.method = AntialiasMethod::kSupersample}}}};
-    return all;
+    return cases;
 }
 
 bool render_meets_denormals(Session& session, const Scene& scene, const DenormalCase& denormal_case,

@@ -34,13 +34,14 @@ struct Launch {
 
 /// The memory of all PEs, block after block, followed by a guard block that no PE may read or write.
 struct Memory {
-    std::vector<float> arrived, pixels;  // [PE][3][band]; [PE][3][capacity], pixels or sums
-    std::vector<std::uint8_t> marks;     // [PE][capacity]
+    std::vector<float> arrived;       // [PE][3][band]
+    std::vector<float> pixels;        // [PE][3][capacity]: pixels or sums
+    std::vector<std::uint8_t> marks;  // [PE][capacity]
 };
 
 template <class T>
-bool same_bits(const std::vector<T>& a, const std::vector<T>& b, std::size_t from, std::size_t to) {
-    return from == to || std::memcmp(a.data() + from, b.data() + from, (to - from) * sizeof(T)) == 0;
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b, std::size_t begin, std::size_t end) {
+    return begin == end || std::memcmp(a.data() + begin, b.data() + begin, (end - begin) * sizeof(T)) == 0;
 }
 
 /// Returns true if the memories a and b have the same bits in the blocks `first` to `end` - 1.
@@ -178,18 +179,17 @@ Findings find_faults(Runner& runner, std::uint64_t seed, int launches) {
         for (int choice = 0; choice < 2; ++choice) {
             const std::size_t pe = random_below(random, l.m.pes);
             const Memory seen = runner.run(l, poisoned(random, l, before, pe), l.m.pes);
-            Memory expected = after;  // not the arrived block, which contains poison
+            Memory expected = after;  // except the arrived block, which contains poison
             const auto at = static_cast<std::ptrdiff_t>(3 * pe * l.band);
             std::copy_n(seen.arrived.begin() + at, 3 * l.band, expected.arrived.begin() + at);
             found.poison_read += !same_blocks(l, expected, seen, pe, pe + 1);
             found.blocks_changed += !same_blocks(l, before, after, pe, pe + 1);
         }
-        // Compares a run of `groups` - 1 PEs with one of `groups` PEs: they may differ only in the block of the last
-        // PE.
+        // Memory after a run of `groups` - 1 PEs and of `groups` PEs may differ only in the block of the last PE.
         const std::size_t groups = 1 + random_below(random, l.m.pes);
-        const Memory without = runner.run(l, before, groups - 1), with = runner.run(l, before, groups);
-        found.stray_writes += !same_blocks(l, without, with, 0, groups - 1) ||
-                              !same_blocks(l, without, with, groups, std::size_t{l.m.pes} + 1);
+        const Memory fewer_run = runner.run(l, before, groups - 1), all_run = runner.run(l, before, groups);
+        found.stray_writes += !same_blocks(l, fewer_run, all_run, 0, groups - 1) ||
+                              !same_blocks(l, fewer_run, all_run, groups, std::size_t{l.m.pes} + 1);
     }
     return found;
 }
@@ -198,7 +198,8 @@ struct Fault {
     const char* effect;  // memory that the faulty kernel uses by mistake
     Step step;
     SourcePatch patch;
-    bool reads, writes;  // the fault must be detected by Findings::poison_read, by Findings::stray_writes
+    bool reads;   // the fault must be detected by Findings::poison_read
+    bool writes;  // the fault must be detected by Findings::stray_writes
 };
 
 const Fault kFaults[] = {

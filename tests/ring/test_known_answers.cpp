@@ -88,7 +88,7 @@ TEST_CASE("glass of index 1 is invisible, and a ray through the centre of a glas
     scene.spheres = {{{0, 0, 5}, 1, 0}};
     const RingResult through = render_scene(scene, c);
     CHECK(through.all.events[RAYA_REFRACTED] > 200);
-    int unequal = 0;  // number of values that differ: at a checker corner, rounding may select the other colour
+    int unequal = 0;  // number of values that differ, because rounding selects another colour at a checker corner
     for (std::size_t i = 0; i < wall.image.rgb.size(); ++i)
         unequal += std::abs(wall.image.rgb[i] - through.image.rgb[i]) > 1e-5f;
     CHECK(unequal <= 3);

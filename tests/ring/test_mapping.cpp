@@ -113,7 +113,7 @@ TEST_CASE("slot mappings of the largest images and arrays agree with the definit
                 std::uint32_t wrong = 0;
                 for (int i = 0; i < 100; ++i) {
                     const std::uint32_t edge =
-                        i < 4 ? kSide - 1 : random_below(random, kSide);  // first the last row and column
+                        i < 4 ? kSide - 1 : random_below(random, kSide);  // cases 0 to 3: the last row or column
                     const raya_pixel pixel{i % 2 ? edge : random_below(random, kSide),
                                            i % 2 ? random_below(random, kSide) : edge};
                     const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);

@@ -18,8 +18,8 @@ using Owners = std::vector<std::uint32_t>;  // [row][column]
 
 constexpr std::uint32_t kKinds[] = {RAYA_ROWS, RAYA_BLOCKS, RAYA_GRID, RAYA_TILES, RAYA_RANDOM};
 
-/// A set of pixels: every `step_across`-th pixel of every `step_down`-th row, from row `top` and column `left` up to,
-/// but without, `bottom` and `right`. set_owner() assigns these pixels to `pe`.
+/// A set of pixels: every `step_across`-th pixel of every `step_down`-th row, in the rows [top, bottom) and the columns
+/// [left, right). set_owner() assigns these pixels to `pe`.
 struct PixelLattice {
     std::uint32_t top, step_down, bottom, left, step_across, right;
 };
@@ -144,7 +144,7 @@ TEST_CASE("mappings of every kind agree with the definition on the largest image
         std::uint32_t wrong = 0;
         for (int i = 0; i < 200; ++i) {
             const std::uint32_t edge =
-                i < 4 ? kSide - 1 : random_below(random, kSide);  // first the last row and column
+                i < 4 ? kSide - 1 : random_below(random, kSide);  // cases 0 to 3: the last row or column
             const raya_pixel pixel{i % 2 ? edge : random_below(random, kSide),
                                    i % 2 ? random_below(random, kSide) : edge};
             const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
@@ -177,18 +177,19 @@ TEST_CASE("random mapping: the seed determines the mapping, and different seeds 
           "[mapping]") {
     const auto owners = [](std::uint32_t seed) { return defined_owners({64, 64, 16, seed, RAYA_RANDOM}); };
     constexpr std::uint32_t kSeeds = 50;
-    std::vector<Owners> all;
-    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) all.push_back(owners(seed));
+    std::vector<Owners> seed_owners;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) seed_owners.push_back(owners(seed));
     std::uint32_t pairs = 0, uncorrelated = 0;
     for (std::uint32_t a = 0; a < kSeeds; ++a)
         for (std::uint32_t b = a + 1; b < kSeeds; ++b, ++pairs) {
-            const std::uint32_t same =
-                std::inner_product(all[a].begin(), all[a].end(), all[b].begin(), 0u, std::plus<>(), std::equal_to<>());
-            uncorrelated += same > 176 && same < 336;  // 4096 / 16 = 256, +- 5 standard deviations of 15.5
+            const std::uint32_t equal_owners =
+                std::inner_product(seed_owners[a].begin(), seed_owners[a].end(), seed_owners[b].begin(), 0u,
+                                   std::plus<>(), std::equal_to<>());
+            uncorrelated += equal_owners > 176 && equal_owners < 336;  // 4096 / 16 +- 5 standard deviations of 15.5
         }
     CHECK(uncorrelated == pairs);
     // The recorded start of the mapping random:1, which must never change, because reports name mappings by their seed.
-    const Owners first(all[1].begin(), all[1].begin() + 12);
+    const Owners first(seed_owners[1].begin(), seed_owners[1].begin() + 12);
     CHECK(first == Owners{12, 9, 15, 13, 2, 10, 13, 10, 14, 10, 14, 5});
 }
 

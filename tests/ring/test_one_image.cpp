@@ -85,8 +85,8 @@ TEST_CASE("the mapping's kind changes no bit of the image and no count, with and
     const ImageAndCounts expected = image_and_counts_of(render_scene(scene, c));
     struct Row {
         MappingRule mapping;
-        std::uint32_t pes,
-            supersampling_group;  // group size with supersampling, 1 or 4; the filter uses 4 or 1
+        std::uint32_t pes;
+        std::uint32_t supersampling_group;  // group size with supersampling, 1 or 4; with the filter: 5 - this size
     };
     // If there are more PEs than rows or tiles, some PEs are idle.
     const Row rows[] = {{rows_mapping(), 5, 1},      {rows_mapping(), 40, 4},      {blocks_mapping(), 5, 4},

@@ -65,9 +65,9 @@ std::uint64_t copied_bytes(Session& session, const std::string& label) {
 
 /// Returns the number of commands that are not copies.
 std::size_t commands_without_copies(Session& session) {
-    const auto& all = session.profile().commands();
+    const auto& commands = session.profile().commands();
     return static_cast<std::size_t>(
-        std::count_if(all.begin(), all.end(), [](const CommandRecord& c) { return c.kind != "copy"; }));
+        std::count_if(commands.begin(), commands.end(), [](const CommandRecord& c) { return c.kind != "copy"; }));
 }
 
 constexpr std::size_t kRingSizes[] = {1, 2, 3, 7, 64};

@@ -84,13 +84,13 @@ TEST_CASE("a render that is stopped at any band and resumed gives the same image
         CAPTURE(antialias_name(method), device_pixels);
         const RingSettings settings = settings_for(method, device_pixels);
         const RingResult whole = RingRenderer(session, scene, settings).render();
-        TestCheckpoint to_end;
-        const RingResult saved = RingRenderer(session, scene, settings).render({}, to_end.checkpointing());
+        TestCheckpoint uninterrupted;
+        const RingResult saved = RingRenderer(session, scene, settings).render({}, uninterrupted.checkpointing());
         check_same(saved, whole);
         CHECK(saved.earlier_s == 0);
-        REQUIRE(to_end.count() > 3);
-        for (int stop = 1; stop <= to_end.count(); stop += 1 + static_cast<int>(random() % quick_cases(9, 3))) {
-            CAPTURE(stop, to_end.count());
+        REQUIRE(uninterrupted.count() > 3);
+        for (int stop = 1; stop <= uninterrupted.count(); stop += 1 + static_cast<int>(random() % quick_cases(9, 3))) {
+            CAPTURE(stop, uninterrupted.count());
             TestCheckpoint first(stop);
             CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.checkpointing()), Stopped);
             TestCheckpoint second(1 + static_cast<int>(random() % 2), first.saved());  // the render may stop again
@@ -105,7 +105,7 @@ TEST_CASE("a render that is stopped at any band and resumed gives the same image
             check_same(resumed, whole);
             CHECK(resumed.earlier_s > 0);
             CHECK(resumed.render_s > resumed.earlier_s);
-            REQUIRE(last.count() < to_end.count());  // finished bands are not repeated
+            REQUIRE(last.count() < uninterrupted.count());  // finished bands are not repeated
         }
     }
 }
@@ -120,9 +120,9 @@ TEST_CASE("one renderer renders with and without a checkpoint, in any order", "[
     check_same(renderer.render(), whole);
     TestCheckpoint last(1 << 30, first.saved());
     check_same(renderer.render({}, last.checkpointing()), whole);
-    const RingResult without = renderer.render();
-    check_same(without, whole);
-    CHECK(without.earlier_s == 0);
+    const RingResult unsaved = renderer.render();
+    check_same(unsaved, whole);
+    CHECK(unsaved.earlier_s == 0);
 }
 
 TEST_CASE("a checkpoint of another render is refused with a message that names the difference", "[ring][checkpoint]") {
@@ -131,19 +131,19 @@ TEST_CASE("a checkpoint of another render is refused with a message that names t
     const RingSettings settings = settings_for(AntialiasMethod::kNone, 1 << 22);
     TestCheckpoint first(2);
     CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.checkpointing()), Stopped);
-    const auto check_refused = [&](const Scene& other, const RingSettings& changed, const char* why) {
-        CAPTURE(why);
+    const auto check_refused = [&](const Scene& other_scene, const RingSettings& changed, const char* reason) {
+        CAPTURE(reason);
         TestCheckpoint second(1 << 30, first.saved());
-        RingRenderer renderer(session, other, changed);
-        CHECK_THROWS_WITH(renderer.render({}, second.checkpointing()), Catch::Contains(why));
+        RingRenderer renderer(session, other_scene, changed);
+        CHECK_THROWS_WITH(renderer.render({}, second.checkpointing()), Catch::Contains(reason));
     };
     Scene moved = scene;
     moved.view.from.x += 1e-3;
     check_refused(moved, settings, "was rendered with another scene, camera or light");
-    const auto check_setting = [&](const char* why, const auto& change) {
+    const auto check_setting = [&](const char* reason, const auto& change) {
         RingSettings changed = settings;
         change(changed);
-        check_refused(scene, changed, why);
+        check_refused(scene, changed, reason);
     };
     check_setting("was rendered with --bounces 3, not 2", [](RingSettings& s) { s.bounces = 2; });
     check_setting("was rendered with --cost or --mapping dynamic", [](RingSettings& s) { s.record_costs = false; });

@@ -147,10 +147,10 @@ TEST_CASE("the work of the ring's kernels agrees with the counts", "[ring]") {
     REQUIRE(works.size() == 3);
     CHECK(works[0].label == "trace");
     CHECK(works[1].label == "supersample");
-    const Operations all = operations_of(super.result.all.events);
-    CHECK(works[0].operations + works[1].operations == all.multiply_accumulates);
-    CHECK(works[0].divisions + works[1].divisions == all.divisions);
-    CHECK(works[0].roots + works[1].roots == all.roots);
+    const Operations all_operations = operations_of(super.result.all.events);
+    CHECK(works[0].operations + works[1].operations == all_operations.multiply_accumulates);
+    CHECK(works[0].divisions + works[1].divisions == all_operations.divisions);
+    CHECK(works[0].roots + works[1].roots == all_operations.roots);
     // In one launch, each of 24 PEs reads the job's words, reads and writes RAYA_EVENTS counters per work-item, and
     // writes 20 bytes per pixel.
     const std::uint64_t words = super.result.communication.broadcast_words;

@@ -83,26 +83,26 @@ bool well_formed(const std::vector<Leg>& route, std::uint32_t pes) {
 /// either direction costs 1, a restart from the PEs' own blocks 0. The function searches the states (distance, visited
 /// distances) breadth first.
 int min_rotations(std::uint32_t pes, std::uint32_t wanted) {
-    constexpr int kFar = std::numeric_limits<int>::max();
-    const std::uint32_t all = 1u << pes;
-    std::vector<int> rotations(std::size_t{pes} * all, kFar);
-    std::deque<std::uint32_t> next;  // states: distance * all + seen
+    constexpr int kUnreached = std::numeric_limits<int>::max();
+    const std::uint32_t seen_sets = 1u << pes;  // number of sets of distances
+    std::vector<int> rotations(std::size_t{pes} * seen_sets, kUnreached);
+    std::deque<std::uint32_t> next;  // states: distance * seen_sets + seen
     const auto reach = [&](std::uint32_t distance, std::uint32_t seen, int cost, bool costs_nothing) {
-        const std::uint32_t state = distance * all + (seen | 1u << distance);
+        const std::uint32_t state = distance * seen_sets + (seen | 1u << distance);
         if (cost >= rotations[state]) return;
         rotations[state] = cost;
         costs_nothing ? next.push_front(state) : next.push_back(state);
     };
     reach(0, 0, 0, true);
     while (!next.empty()) {
-        const std::uint32_t state = next.front(), distance = state / all, seen = state % all;
+        const std::uint32_t state = next.front(), distance = state / seen_sets, seen = state % seen_sets;
         next.pop_front();
         if ((seen & wanted) == wanted) return rotations[state];
         reach(0, seen, rotations[state], true);
         reach((distance + 1) % pes, seen, rotations[state] + 1, false);
         reach((distance + pes - 1) % pes, seen, rotations[state] + 1, false);
     }
-    return kFar;
+    return kUnreached;
 }
 
 /// Returns the number of rotations that go round the ring except across the widest gap between adjacent distances,

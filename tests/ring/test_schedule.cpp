@@ -24,9 +24,9 @@ CostImage random_image(SplitMix& random, std::uint32_t width, std::uint32_t heig
     CostImage image{width, height, {}};
     const std::uint64_t kind = random.next() % 8;
     for (std::uint32_t i = 0; i < width * height; ++i) {
-        const std::uint64_t any = random.next();
-        const std::uint64_t heavy = any % 16 == 0 ? any % 1'000'003 : any % 10;
-        image.cycles.push_back(kind == 0 ? 0 : kind < 4 ? any % 4 : kind < 6 ? 9'000 + any % 2'000 : heavy);
+        const std::uint64_t number = random.next();
+        const std::uint64_t heavy = number % 16 == 0 ? number % 1'000'003 : number % 10;
+        image.cycles.push_back(kind == 0 ? 0 : kind < 4 ? number % 4 : kind < 6 ? 9'000 + number % 2'000 : heavy);
     }
     return image;
 }
@@ -97,7 +97,7 @@ TEST_CASE("a static load is the sum of the costs of the PE's pixels", "[schedule
         CAPTURE(kSeed, i, width, height, pes, offset, fold);
         const CostImage image = random_image(random, width, height);
         Cycles sums;
-        for (std::uint32_t pe = 0; pe < pes; ++pe) {  // from the PE's list of pixels instead of the owners
+        for (std::uint32_t pe = 0; pe < pes; ++pe) {  // uses the PE's list of pixels instead of raya_owner()
             const raya_share share = raya_share_of(m, pe);
             sums.push_back(0);
             for (std::uint32_t k = 0; k < raya_share_size(share); ++k) {
@@ -141,9 +141,9 @@ TEST_CASE("dynamic and hybrid schedules agree with the simulation", "[schedule]"
     const raya_mapping two_pes{6, 1, 2, 0, RAYA_FOLD_BLOCK};  // pixel costs: PE 0 owns 5 1 1, PE 1 owns 1 1 2
     CHECK(dynamic_schedule(six_pixels, two_pes, {1, 0, 0}).load.per_pe == Cycles{5, 6});
     CHECK(dynamic_schedule(six_pixels, two_pes, {2, 10, 0}).load.per_pe ==
-          Cycles{16, 12 + 13});  // 5 1, then 1 1, then 1 2
+          Cycles{16, 12 + 13});  // PE 0: chunk 5 1; PE 1: chunks 1 1 and 1 2
     CHECK(dynamic_schedule(six_pixels, two_pes, {1, 10, 0.5}).load.per_pe ==
-          Cycles{5 + 11 + 12, 1 + 11 + 11});  // 1 1 1 2 left
+          Cycles{5 + 11 + 12, 1 + 11 + 11});  // static: 5 and 1; then chunks of one pixel: 1 1 1 2
     // The root answers at 3, 6, 9: PE 0 takes 5 at 3, PE 1 takes 1 at 6, 1 at 10, and so on.
     const raya_mapping one_row{3, 1, 2, 0, RAYA_FOLD_BLOCK};
     CHECK(dynamic_schedule({3, 1, {5, 1, 1}}, one_row, {1, 0, 0, 3}).load.per_pe == Cycles{3 + 5, 6 + 1 + 3 + 1});
@@ -174,11 +174,11 @@ TEST_CASE("schedules contain all work and satisfy Graham's bounds", "[schedule]"
         const std::uint64_t total = total_cycles(image), bound = lower_bound(image, pes);
         CAPTURE(kSeed, i, width, height, pes, offset, fold, plan.chunk, plan.overhead, plan.static_fraction, total,
                 bound);
-        const Schedule any = dynamic_schedule(image, m, plan);
-        const std::uint64_t work = total + any.requests * (plan.overhead + plan.root_cycles);
-        CHECK(sum_of(any.load.per_pe) >= work);
-        if (plan.root_cycles == 0) CHECK(sum_of(any.load.per_pe) == work);
-        CHECK(any.load.max >= std::max(bound, any.requests * plan.root_cycles));
+        const Schedule schedule = dynamic_schedule(image, m, plan);
+        const std::uint64_t work = total + schedule.requests * (plan.overhead + plan.root_cycles);
+        CHECK(sum_of(schedule.load.per_pe) >= work);
+        if (plan.root_cycles == 0) CHECK(sum_of(schedule.load.per_pe) == work);
+        CHECK(schedule.load.max >= std::max(bound, schedule.requests * plan.root_cycles));
 
         plan.overhead = plan.root_cycles = 0;
         plan.static_fraction = 0;
@@ -206,11 +206,11 @@ TEST_CASE("extreme plans have the expected loads: one chunk, all static, one PE,
         const DynamicPlan plan = random_plan(random, pixels);
         CAPTURE(kSeed, i, m.width, m.height, m.pes, plan.chunk, plan.overhead, plan.static_fraction);
 
-        const Schedule at_once = dynamic_schedule(image, m, {pixels + random_below(random, 3), plan.overhead, 0});
+        const Schedule one_chunk = dynamic_schedule(image, m, {pixels + random_below(random, 3), plan.overhead, 0});
         Cycles on_first_pe(m.pes);
         on_first_pe[0] = total + plan.overhead;
-        CHECK(at_once.load.per_pe == on_first_pe);
-        CHECK(at_once.requests == 1);
+        CHECK(one_chunk.load.per_pe == on_first_pe);
+        CHECK(one_chunk.requests == 1);
 
         const Schedule all_static = dynamic_schedule(image, m, {plan.chunk, plan.overhead, 1});
         CHECK(all_static.load.per_pe == static_load(image, m).per_pe);
@@ -252,13 +252,14 @@ TEST_CASE("large images: schedules contain all work on few PEs, and on as many P
     SplitMix random(kSeed);
     CostImage image{kSide, kSide, {}};
     for (std::uint32_t i = 0; i < kPixels; ++i) image.cycles.push_back(1 + random.next() % 20'000);
-    const auto on = [](std::uint32_t pes) { return raya_mapping{kSide, kSide, pes, 32, RAYA_FOLD_CYCLIC}; };
-    CHECK((dynamic_schedule(image, on(kPixels), {1, 0, 0}).load.per_pe == image.cycles));
+    const auto mapping_on = [](std::uint32_t pes) { return raya_mapping{kSide, kSide, pes, 32, RAYA_FOLD_CYCLIC}; };
+    CHECK((dynamic_schedule(image, mapping_on(kPixels), {1, 0, 0}).load.per_pe == image.cycles));
     const std::uint64_t total = total_cycles(image);
     for (const std::uint32_t pes : {1'000u, 16'384u, 524'288u}) {
         CAPTURE(kSeed, pes);
-        const Schedule schedule = dynamic_schedule(image, on(pes), {2, 100, 0.25});
+        const Schedule schedule = dynamic_schedule(image, mapping_on(pes), {2, 100, 0.25});
         CHECK(sum_of(schedule.load.per_pe) == total + 100 * schedule.requests);
-        CHECK(pes * dynamic_schedule(image, on(pes), {1, 0, 0}).load.max <= (2 * pes - 1) * lower_bound(image, pes));
+        CHECK(pes * dynamic_schedule(image, mapping_on(pes), {1, 0, 0}).load.max <=
+              (2 * pes - 1) * lower_bound(image, pes));
     }
 }

@@ -1,7 +1,7 @@
-// Ray counts by kind, compared with the counts that SPD publishes for its scenes. The images have 513 x 513 rays
-// through pixel corners and trees of depth 5, where the eye ray has depth 1. SPD says: "Implementations should agree
-// within about 10 %". The bounds in these tests are tighter: the range of two published implementations, extended by 1
-// % at both ends.
+// Ray counts by kind, compared with the counts that SPD publishes for its scenes. The images have 513 x 513 primary
+// rays through pixel corners. A ray tree has up to 5 levels, that of the primary ray included. SPD says:
+// "Implementations should agree within about 10 %". The bounds in these tests are tighter: the range of two published
+// implementations, extended by 1 % at both ends.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>

@@ -61,8 +61,8 @@ inline Image line_sums(const Image& image, int down, int right, const Arithmetic
     });
 }
 
-/// Returns the image of the means of each pixel's 3 x 3 neighbourhood within the image, summed along rows, then along
-/// columns.
+/// Returns the image whose pixels are the means of the 3 x 3 neighbourhoods, clipped to the image. Sums are taken along
+/// rows, then along columns.
 inline Image filtered(const Image& image, const NumberFormat& format) {
     const Arithmetic arithmetic(format);
     const Image sums = line_sums(line_sums(image, 0, 1, arithmetic), 1, 0, arithmetic);

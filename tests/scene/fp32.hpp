@@ -1,4 +1,3 @@
-// Rounds numbers of a scene to fp32.
 #pragma once
 #include "host/scene/scene.hpp"
 

@@ -1,4 +1,4 @@
-// Decodes the words of a job (kernels/shared/job.h) and counts how often each word is read.
+// Decoder of a job (kernels/shared/job.h) for tests.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -11,7 +11,7 @@
 
 namespace raya {
 
-/// The words of a job, with a count of reads for each word. `at`: index of the first word to read.
+/// Decodes the words of a job and counts how often each word is read. `at` is the index of the first word to read.
 class PackedScene {
   public:
     explicit PackedScene(std::vector<std::uint32_t> words)
@@ -22,19 +22,17 @@ class PackedScene {
     const raya_job& job() const { return job_; }
     std::size_t size() const { return words_.size(); }
 
-    std::uint32_t index(std::size_t at) {
+    std::uint32_t word(std::size_t at) {
         ++reads_.at(at);
         return words_.at(at);
     }
-    double real(std::size_t at) { return std::bit_cast<float>(index(at)); }
+    double real(std::size_t at) { return std::bit_cast<float>(word(at)); }
     Vec3 vector(std::size_t at) {
         const double x = real(at), y = real(at + 1);
         return {x, y, real(at + 2)};
     }
 
-    /// Returns the number of words that were never read.
     std::size_t unread_words() const { return static_cast<std::size_t>(std::count(reads_.begin(), reads_.end(), 0)); }
-    /// Returns the number of words that were read more than once.
     std::size_t reread_words() const {
         return static_cast<std::size_t>(std::count_if(reads_.begin(), reads_.end(), [](int n) { return n > 1; }));
     }

@@ -1,4 +1,3 @@
-// Random integers for tests.
 #pragma once
 #include <cstdint>
 

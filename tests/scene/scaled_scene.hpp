@@ -1,4 +1,3 @@
-// Scenes scaled to another unit of length.
 #pragma once
 #include "host/scene/scene.hpp"
 

@@ -1,4 +1,4 @@
-// The main scene (scenes/centre.nff) has the imbalance of the paper's scene, and scenes/README.md states it correctly.
+// The main scene (scenes/centre.nff) has the imbalance of the paper's scene; scenes/README.md states this imbalance.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -24,14 +24,15 @@ RingResult render_on_spa(Session& session, const Scene& scene, std::uint32_t p) 
 TEST_CASE("the centre scene has the imbalance of the paper's scene, 1.58 +- 0.03", "[calibration]") {
     Session session(choose_device(""));
     const Scene scene = parse_nff(file_contents(RAYA_SOURCE_DIR "/scenes/centre.nff"), "centre");
-    const Load columns = render_on_spa(session, scene, 0).all.load, cyclic = render_on_spa(session, scene, 16).all.load;
-    CHECK(columns.per_pe.size() == 256);
-    CHECK(columns.mean == cyclic.mean);
-    CHECK(columns.imbalance >= 1.55);
-    CHECK(columns.imbalance <= 1.61);
+    const Load column_load = render_on_spa(session, scene, 0).all.load,
+               cyclic_load = render_on_spa(session, scene, 16).all.load;
+    CHECK(column_load.per_pe.size() == 256);
+    CHECK(column_load.mean == cyclic_load.mean);
+    CHECK(column_load.imbalance >= 1.55);
+    CHECK(column_load.imbalance <= 1.61);
     const std::string readme = file_contents(RAYA_SOURCE_DIR "/scenes/README.md");
-    CHECK_THAT(readme, Catch::Contains(fmt::format("**{:.3f}**", columns.imbalance)));
-    CHECK_THAT(readme, Catch::Contains(fmt::format("**{:.3f}**", cyclic.imbalance)));
+    CHECK_THAT(readme, Catch::Contains(fmt::format("**{:.3f}**", column_load.imbalance)));
+    CHECK_THAT(readme, Catch::Contains(fmt::format("**{:.3f}**", cyclic_load.imbalance)));
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST_CASE("SplitMix64 generates the published numbers", "[generate]") {
     CHECK(random.next() == 3203168211198807973u);
 }
 
-TEST_CASE("balls: counts and sizes, and every sphere touches its parent", "[generate]") {
+TEST_CASE("balls: level n has 1 + 9 + ... + 9^n spheres, and every sphere touches its parent", "[generate]") {
     std::size_t expected = 0, power = 1;
     for (int level = 0; level <= 5; ++level, power *= 9) {
         expected += power;
@@ -100,30 +100,32 @@ TEST_CASE("balls: counts and sizes, and every sphere touches its parent", "[gene
     }
 }
 
-TEST_CASE("balls: the scenes of SPD's files, with their spheres in the same order", "[generate]") {
+TEST_CASE("balls: scenes equal those of SPD's files, with spheres in the same order", "[generate]") {
     for (const int level : {2, 4}) {
         const auto path = spd_folder() / ("balls" + std::to_string(level) + ".nff");
         if (!std::filesystem::exists(path)) {
             WARN("file missing, skipped: " << path);
             continue;
         }
-        const Scene theirs = read_nff(path), ours = generate_balls(level);
-        REQUIRE(ours.spheres.size() == theirs.spheres.size());
-        double farthest = 0;
-        for (std::size_t i = 0; i < ours.spheres.size(); ++i) {
-            farthest = std::max(farthest, (ours.spheres[i].centre - theirs.spheres[i].centre).length());
-            farthest = std::max(farthest, std::abs(ours.spheres[i].radius - theirs.spheres[i].radius));
+        const Scene spd_scene = read_nff(path), generated = generate_balls(level);
+        REQUIRE(generated.spheres.size() == spd_scene.spheres.size());
+        double max_difference = 0;
+        for (std::size_t i = 0; i < generated.spheres.size(); ++i) {
+            max_difference =
+                std::max(max_difference, (generated.spheres[i].centre - spd_scene.spheres[i].centre).length());
+            max_difference =
+                std::max(max_difference, std::abs(generated.spheres[i].radius - spd_scene.spheres[i].radius));
         }
-        CHECK(farthest < 1e-5);
-        CHECK(ours.view == theirs.view);
-        CHECK(ours.background == theirs.background);
-        CHECK(ours.lights == theirs.lights);
-        CHECK(ours.surfaces == theirs.surfaces);
-        CHECK(ours.polygons == theirs.polygons);
+        CHECK(max_difference < 1e-5);
+        CHECK(generated.view == spd_scene.view);
+        CHECK(generated.background == spd_scene.background);
+        CHECK(generated.lights == spd_scene.lights);
+        CHECK(generated.surfaces == spd_scene.surfaces);
+        CHECK(generated.polygons == spd_scene.polygons);
     }
 }
 
-TEST_CASE("lattice: counts, and every cylinder joins two spheres", "[generate]") {
+TEST_CASE("lattice: size n has (n + 1)^3 spheres, and every cylinder joins two spheres", "[generate]") {
     for (const int size : {1, 2, 3, 7, 12}) {
         CAPTURE(size);
         const Scene s = generate_lattice(size);
@@ -151,36 +153,38 @@ TEST_CASE("lattice: counts, and every cylinder joins two spheres", "[generate]")
     }
 }
 
-TEST_CASE("lattice: the scene of SPD's file, with its objects in the same order", "[generate]") {
+TEST_CASE("lattice: the scene equals that of SPD's file, with objects in the same order", "[generate]") {
     const auto path = spd_folder() / "lattice.nff";
     if (!std::filesystem::exists(path)) {
         WARN("file missing, skipped: " << path);
         return;
     }
-    const Scene theirs = read_nff(path), ours = generate_lattice(12);
-    REQUIRE(ours.spheres.size() == theirs.spheres.size());
-    REQUIRE(ours.cones.size() == theirs.cones.size());
-    double farthest = 0;
-    const auto compare = [&](const Vec3& a, const Vec3& b) { farthest = std::max(farthest, (a - b).length()); };
-    for (std::size_t i = 0; i < ours.spheres.size(); ++i) {
-        compare(ours.spheres[i].centre, theirs.spheres[i].centre);
-        compare(Vec3(ours.spheres[i].radius), Vec3(theirs.spheres[i].radius));
+    const Scene spd_scene = read_nff(path), generated = generate_lattice(12);
+    REQUIRE(generated.spheres.size() == spd_scene.spheres.size());
+    REQUIRE(generated.cones.size() == spd_scene.cones.size());
+    double max_difference = 0;
+    const auto compare = [&](const Vec3& a, const Vec3& b) {
+        max_difference = std::max(max_difference, (a - b).length());
+    };
+    for (std::size_t i = 0; i < generated.spheres.size(); ++i) {
+        compare(generated.spheres[i].centre, spd_scene.spheres[i].centre);
+        compare(Vec3(generated.spheres[i].radius), Vec3(spd_scene.spheres[i].radius));
     }
-    for (std::size_t i = 0; i < ours.cones.size(); ++i) {
-        compare(ours.cones[i].base, theirs.cones[i].base);
-        compare(ours.cones[i].apex, theirs.cones[i].apex);
-        compare({ours.cones[i].base_radius, ours.cones[i].apex_radius, 0},
-                {theirs.cones[i].base_radius, theirs.cones[i].apex_radius, 0});
-        REQUIRE(ours.cones[i].surface == theirs.cones[i].surface);
+    for (std::size_t i = 0; i < generated.cones.size(); ++i) {
+        compare(generated.cones[i].base, spd_scene.cones[i].base);
+        compare(generated.cones[i].apex, spd_scene.cones[i].apex);
+        compare({generated.cones[i].base_radius, generated.cones[i].apex_radius, 0},
+                {spd_scene.cones[i].base_radius, spd_scene.cones[i].apex_radius, 0});
+        REQUIRE(generated.cones[i].surface == spd_scene.cones[i].surface);
     }
-    compare(ours.view.from, theirs.view.from);
-    compare(ours.view.at, theirs.view.at);
-    CHECK(farthest < 5e-6);  // the file has six digits
-    CHECK(ours.view.up == theirs.view.up);
-    CHECK(ours.view.angle_degrees == theirs.view.angle_degrees);
-    CHECK(ours.background == theirs.background);
-    CHECK(ours.lights == theirs.lights);
-    CHECK(ours.surfaces == theirs.surfaces);
+    compare(generated.view.from, spd_scene.view.from);
+    compare(generated.view.at, spd_scene.view.at);
+    CHECK(max_difference < 5e-6);  // the file has six digits
+    CHECK(generated.view.up == spd_scene.view.up);
+    CHECK(generated.view.angle_degrees == spd_scene.view.angle_degrees);
+    CHECK(generated.background == spd_scene.background);
+    CHECK(generated.lights == spd_scene.lights);
+    CHECK(generated.surfaces == spd_scene.surfaces);
 }
 
 TEST_CASE("gears: wheels consist of valid outlines, and size 4 has as many polygons as SPD's gears", "[generate]") {
@@ -215,11 +219,11 @@ TEST_CASE("gears: wheels are closed surfaces whose fronts face outwards", "[gene
         volume += corners[0].dot(newell_normal(corners)) / 6;
     }
     for (const auto& [start, end] : edges) REQUIRE(edges.contains({end, start}));
-    const double disc = 3.14159265 * 0.5 * 0.5 * 0.4;  // volume of a wheel without teeth: radius 0.5, thickness 0.4
-    CHECK(volume == Approx(8 * disc).epsilon(0.05));
+    const double disc_volume = 3.14159265 * 0.5 * 0.5 * 0.4;  // a wheel without teeth: radius 0.5, thickness 0.4
+    CHECK(volume == Approx(8 * disc_volume).epsilon(0.05));
 }
 
-TEST_CASE("gears: teeth mesh with the neighbours' gaps without touching", "[generate]") {
+TEST_CASE("gears: teeth reach into the gaps of neighbouring wheels without touching them", "[generate]") {
     const Scene s = generate_gears(2);
     std::vector<Polygon> layer;  // the upper faces of the lower wheels
     for (std::size_t wheel = 0; wheel < 8; wheel += 2) layer.push_back(s.polygons[1 + 146 * wheel]);
@@ -238,7 +242,7 @@ TEST_CASE("gears: teeth mesh with the neighbours' gaps without touching", "[gene
         }
 }
 
-TEST_CASE("uniform: spheres lie inside voxels, whose numbers of spheres differ by at most one, and do not touch",
+TEST_CASE("uniform: spheres lie inside voxels and do not touch; the voxels' numbers of spheres differ by at most one",
           "[generate]") {
     struct Row {
         int count;
@@ -269,7 +273,8 @@ TEST_CASE("uniform: spheres lie inside voxels, whose numbers of spheres differ b
     }
 }
 
-TEST_CASE("random: centres lie in the cube, the volume is moderate, and the seed determines the scene", "[generate]") {
+TEST_CASE("random: centres lie in the cube, spheres fill 0.1 to 17 % of it, and the seed determines the scene",
+          "[generate]") {
     for (const int count : {1, 30, 1000, 20000}) {
         CAPTURE(count);
         const Scene s = generate_random(count, 7);
@@ -289,7 +294,7 @@ TEST_CASE("random: centres lie in the cube, the volume is moderate, and the seed
     CHECK(generate_random(1000, 7).surfaces.size() == 12);
 }
 
-TEST_CASE("cluster: seven spheres above the floor that nearly never touch", "[generate]") {
+TEST_CASE("cluster: seven spheres lie above the floor and almost never touch", "[generate]") {
     const ClusterShape shape;
     int disjoint = 0;
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
@@ -303,13 +308,12 @@ TEST_CASE("cluster: seven spheres above the floor that nearly never touch", "[ge
         int glass = 0, mirrors = 0;
         for (std::size_t i = 0; i < s.spheres.size(); ++i) {
             const Sphere& sphere = s.spheres[i];
-            CHECK(sphere.radius >= shape.smallest - 1e-9);
-            CHECK(sphere.radius <= shape.largest + 1e-9);
+            CHECK(sphere.radius >= shape.min_sphere_radius - 1e-9);
+            CHECK(sphere.radius <= shape.max_sphere_radius + 1e-9);
             CHECK(sphere.centre.z >= sphere.radius - 1e-8);
             CHECK(sphere.centre.z <= sphere.radius + shape.height + 1e-8);
             CHECK(std::hypot(sphere.centre.x, sphere.centre.y) <= shape.radius + 1e-8);
-            for (std::size_t other = 0; other < i; ++other)
-                touching = touching || gap(sphere, s.spheres[other]) < -1e-8;
+            for (std::size_t j = 0; j < i; ++j) touching = touching || gap(sphere, s.spheres[j]) < -1e-8;
             const Surface& surface = s.surfaces[static_cast<std::size_t>(sphere.surface)];
             glass += surface.transmittance > 0;
             mirrors += surface.transmittance == 0 && surface.specular > 0;

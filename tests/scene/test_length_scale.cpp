@@ -32,7 +32,7 @@ TEST_CASE("the project's scenes need no scaling in fp32 and in the SPA's format"
         CAPTURE(name);
         for (const NumberFormat& format : {kFp32, kSpa22}) {
             CHECK(length_scale(scene, format).exponent == 0);
-            CHECK(length_scale(scene, format).vanishing == 0);
+            CHECK(length_scale(scene, format).vanishing_count == 0);
         }
     }
     for (const int level : {0, 4, 5}) CHECK(length_scale(generate_balls(level), kSpa22).exponent == 0);
@@ -49,8 +49,8 @@ TEST_CASE("the limits of formats are those of the kernels", "[length_scale]") {
 
 TEST_CASE("a scene within a format's range is not scaled; outside the range it is scaled to the middle",
           "[length_scale]") {
-    // e6m15: the maximum hit distance is 2^15, so the maximum length is 2^13. The minimum radius is 2^-15, or 2^-13
-    // with the margin of a factor of 4.
+    // e6m15: the maximum hit distance is 2^15, so the maximum length is 2^13. The minimum radius is 2^-15, which a
+    // margin of a factor of 4 raises to 2^-13.
     CHECK(length_scale(sphere_seen_from(1, 8192), kSpa22).exponent == 0);
     CHECK(length_scale(sphere_seen_from(1, 8193), kSpa22).exponent == -8);
     CHECK(length_scale(sphere_seen_from(0x1p-13, 8), kSpa22).exponent == 0);
@@ -60,13 +60,13 @@ TEST_CASE("a scene within a format's range is not scaled; outside the range it i
     Scene far_light = sphere_seen_from(1, 4);
     far_light.lights.push_back({{0, 1e6, 0}, {}});
     CHECK(length_scale(far_light, kSpa22).exponent < -6);
-    CHECK(length_scale(far_light, kSpa22).largest == 1e6);
+    CHECK(length_scale(far_light, kSpa22).largest_length == 1e6);
     Scene far_plane = sphere_seen_from(1, 4);
     far_plane.planes.push_back({{0, 1, 0}, -1e6, 0});
     CHECK(length_scale(far_plane, kSpa22).exponent < -7);
 }
 
-TEST_CASE("if a scene is scaled, a scene 2^k times as large has a scale 2^-k times as large", "[length_scale]") {
+TEST_CASE("outside a format's range, a scene twice as large has half the scale", "[length_scale]") {
     std::mt19937 random(14);
     for (int i = 0; i < 300; ++i) {
         const double radius = std::pow(10, std::uniform_real_distribution<double>(-3, 1)(random));
@@ -92,11 +92,11 @@ TEST_CASE("objects too small for the format are counted, and a scene of only suc
     scene.spheres.push_back({{0, 0, 0}, 1e-5, 0});
     scene.spheres.push_back({{3, 0, 0}, 2e-6, 0});
     const LengthScale scale = length_scale(scene, kSpa22);
-    CHECK(scale.vanishing == 2);
-    CHECK(scale.smallest == 2e-6);
+    CHECK(scale.vanishing_count == 2);
+    CHECK(scale.smallest_length == 2e-6);
     CHECK(scale.min_visible > 1e-5);
     CHECK(scale.min_visible < 1);
-    CHECK(length_scale(scene, kFp32).vanishing == 0);
+    CHECK(length_scale(scene, kFp32).vanishing_count == 0);
     const Scene speck = sphere_seen_from(1e-4, 1e6);
     CHECK_THROWS_AS(length_scale(speck, kSpa22), UserError);
     CHECK_THROWS_WITH(length_scale(speck, kSpa22), Contains("one.nff") && Contains("0.0001 to 1e+06") &&

@@ -52,7 +52,7 @@ std::string view_with(const std::string& old_line, const std::string& new_line) 
 
 }  // namespace
 
-TEST_CASE("refused: files of other formats", "[nff]") {
+TEST_CASE("files of other formats are refused", "[nff]") {
     check({{"nff\nversion 2.0\n", "1: this is Sense8's NFF"},
            {"# made by hand\nNFF\nVERSION 2\n", "2: this is Sense8's NFF"},
            {std::string("\x89PNG\r\n\x1a\n\0\0", 10), "2: a control character: is this a binary file?"},
@@ -63,13 +63,13 @@ TEST_CASE("refused: files of other formats", "[nff]") {
            {"", "1: no 'v'"}});
 }
 
-TEST_CASE("refused: scenes without a view or an object", "[nff]") {
+TEST_CASE("scenes without a view or an object are refused", "[nff]") {
     check({{kOneSphere, "2: no 'v': the file has no viewpoint"},
            {kShortView, "8: no object: the image would be empty"},
            {kShortView + "f 1 1 1 1 0 0 0 1\nl 1 1 1\n", "10: no object"}});
 }
 
-TEST_CASE("refused: invalid numbers", "[nff]") {
+TEST_CASE("invalid numbers are refused", "[nff]") {
     check_entities({{"s 0 0 zero 1", "9: the centre of 's': 'zero' is not a number"},
                     {"s 0 0 nan 1", "9: the centre of 's': 'nan' is not a finite number"},
                     {"s 0 0 0\n-inf", "10: the radius of 's': '-inf' is not a finite number"},
@@ -85,7 +85,7 @@ TEST_CASE("refused: invalid numbers", "[nff]") {
                     {"b 0 0 1e10", "9: the background colour of 'b': '1e10' is out of range"}});
 }
 
-TEST_CASE("refused: entities with too few or too many values", "[nff]") {
+TEST_CASE("entities with too few or too many values are refused", "[nff]") {
     check_entities(
         {{"s 0 0 0\ns 0 0 0 1", "10: 's' of line 9 is incomplete: expected the radius, found 's'"},
          {"s 0 0", "9: the file ends before the centre of 's'"},
@@ -104,7 +104,7 @@ TEST_CASE("refused: entities with too few or too many values", "[nff]") {
          {"S 0 0 0 1", "9: unknown entity 'S'"}});
 }
 
-TEST_CASE("refused: invalid views", "[nff]") {
+TEST_CASE("invalid views are refused", "[nff]") {
     const char* range = "must be a whole number from 1 to 16384";
     check({{kShortView + kShortView + kOneSphere, "8: a second 'v'"},
            {view_with("angle 40\n", ""), "7: 'v' is incomplete: 's' follows, but still missing: angle"},
@@ -130,7 +130,7 @@ TEST_CASE("refused: invalid views", "[nff]") {
     CHECK(error_message_of(view_with("hither 0.5", "hither -1")) == "accepted");
 }
 
-TEST_CASE("refused: invalid colours and surfaces", "[nff]") {
+TEST_CASE("invalid colours and surfaces are refused", "[nff]") {
     check_entities({{"b 0 -0.1 0", "9: the background colour is negative"},
                     {"b 0 0 0\nb 0 0 0", "10: a second 'b'"},
                     {"l 0 0 0 1 1 -1", "9: the light's colour is negative"},
@@ -147,7 +147,7 @@ TEST_CASE("refused: invalid colours and surfaces", "[nff]") {
     CHECK(error_message_of(kShortView + "f 2 2 2 1 0 0 0 -1\n" + kOneSphere) == "accepted");
 }
 
-TEST_CASE("refused: invalid spheres and cones", "[nff]") {
+TEST_CASE("invalid spheres and cones are refused", "[nff]") {
     check_entities({{"s 0 0 0 0", "9: the radius of the sphere is zero"},
                     {"s 0 0 0 -1e-31", "9: the radius of the sphere is zero"},
                     {"c 0 0 0 0 0 0 1 0", "9: both radii of the cone are zero"},
@@ -158,7 +158,7 @@ TEST_CASE("refused: invalid spheres and cones", "[nff]") {
         CHECK(error_message_of(kShortView + cone) == "accepted");
 }
 
-TEST_CASE("refused: invalid polygons", "[nff]") {
+TEST_CASE("invalid polygons are refused", "[nff]") {
     check_entities(
         {{"p 2 0 0 0 1 0 0", "9: the number of vertices of 'p' is 2: must be a whole number from 3"},
          {"p -3", "9: the number of vertices of 'p' is -3"},
@@ -176,7 +176,7 @@ TEST_CASE("refused: invalid polygons", "[nff]") {
          {"pp 3 0 0 0 0 0 1 1 0 0 0 0 0 0 1 0 0 0 1", "9: a normal of the patch is zero"}});
 }
 
-TEST_CASE("refused: invalid #raya extensions", "[nff]") {
+TEST_CASE("invalid #raya extensions are refused", "[nff]") {
     check_entities(
         {{"#raya", "9: the file ends before the word of '#raya'"},
          {"#raya\nplane 0 0 1 0", "9: the line ends before the word of '#raya'"},
@@ -197,7 +197,7 @@ TEST_CASE("refused: invalid #raya extensions", "[nff]") {
          {"#raya checker 1 1 1 0 0 0\n" + kTriangle, "9: the line ends before the size of '#raya checker'"}});
 }
 
-TEST_CASE("refused: files that cannot be read", "[nff]") {
+TEST_CASE("files that cannot be read are refused", "[nff]") {
     CHECK_THROWS_WITH(read_nff(RAYA_SOURCE_DIR "/scenes/none.nff"),
                       Catch::EndsWith("scenes/none.nff: cannot read the scene: No such file or directory"));
     CHECK_THROWS_WITH(read_nff(RAYA_SOURCE_DIR "/scenes"),
@@ -206,7 +206,7 @@ TEST_CASE("refused: files that cannot be read", "[nff]") {
     CHECK_THROWS_AS(read_nff(RAYA_SOURCE_DIR "/scenes/none.nff"), UserError);
 }
 
-TEST_CASE("refused by the writer: a checker that NFF cannot express", "[nff]") {
+TEST_CASE("write_nff() refuses a checker that NFF cannot express", "[nff]") {
     Scene scene = parse_nff(kShortView + kOneSphere, "t.nff");
     scene.surfaces[0].checker = Checker{{1, 1, 1}, {0, 0, 0}, 1};
     CHECK_THROWS_WITH(write_nff(scene), "t.nff: NFF has no checkered spheres and cones; use a plane or polygon");

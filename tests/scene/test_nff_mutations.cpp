@@ -1,5 +1,5 @@
-// Mutated NFF files: the reader must either return a scene, which must not change if written and read again, or throw
-// an error with file and line.
+// For each mutated NFF file, the reader must return a scene or throw an error with file and line. The scene must be
+// equal after writing and reading.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -77,9 +77,9 @@ class Mutator {
                 text.replace(start, below(2) * length, kTokens[below(kTokens.size())]);
                 break;
             default: {  // insert a piece of another scene
-                const std::string& other = kTexts[below(kTexts.size())];
-                const auto [other_start, other_length] = piece(other);
-                text.replace(start, length, other, other_start, other_length);
+                const std::string& donor = kTexts[below(kTexts.size())];
+                const auto [donor_start, donor_length] = piece(donor);
+                text.replace(start, length, donor, donor_start, donor_length);
             }
         }
     }

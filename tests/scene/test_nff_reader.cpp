@@ -57,7 +57,7 @@ TEST_CASE("white space, comments and line ends do not change a scene", "[nff]") 
     CHECK(scene_of(replaced(entities, " 1 ", " +1.0e0 ")) == plain);
 }
 
-TEST_CASE("the parts of v may have any order", "[nff]") {
+TEST_CASE("the parts of the entity 'v' may have any order", "[nff]") {
     const Scene s =
         parse_nff("v resolution 320 200 hither 0.5 up 0 0 1\nangle 40 at 0 0 1\nfrom 0 -5 1\ns 0 0 0 1", "t.nff");
     CHECK(s.view == scene_of("s 0 0 0 1\n").view);

@@ -77,7 +77,7 @@ class JobCheck {
   private:
     void check_surface(int surface, std::size_t at) { check_surface_word(surface, at + RAYA_OBJECT_SURFACE_AT); }
     void check_surface_word(int surface, std::size_t at) {
-        CHECK(packed_.index(at) == surface_at_.at(static_cast<std::size_t>(surface)));
+        CHECK(packed_.word(at) == surface_at_.at(static_cast<std::size_t>(surface)));
     }
 
     void check_light(const Light& light, std::size_t at) {
@@ -104,12 +104,12 @@ class JobCheck {
         CHECK(radius == fp32(std::abs(cone.base_radius)));
         CHECK((base + height * axis - cone.apex).length() <= limit_);
         CHECK(std::abs(radius + packed_.real(at + RAYA_CONE_SLOPE) * height - std::abs(cone.apex_radius)) <= limit_);
-        CHECK(packed_.index(at + RAYA_CONE_INSIDE) == (cone.base_radius < 0 || cone.apex_radius < 0 ? 1u : 0u));
+        CHECK(packed_.word(at + RAYA_CONE_INSIDE) == (cone.base_radius < 0 || cone.apex_radius < 0 ? 1u : 0u));
         check_surface(cone.surface, at);
     }
 
-    /// Checks the faces of a polygon in the job: the polygon itself, or the triangles of a patch. `face`: number of the
-    /// first of these faces; incremented for each.
+    /// Checks the job's faces of a polygon: the polygon itself, or the triangles of a patch. `face` is the number of
+    /// the first face; the function adds the number of faces to it.
     void check_faces(const Polygon& polygon, std::size_t& face) {
         const Vec3 normal = newell_normal(polygon.vertices);
         for (const std::vector<int>& corners : faces_of(polygon)) {
@@ -117,11 +117,11 @@ class JobCheck {
             const std::size_t at = packed_.job().objects.polygons_at + face++ * RAYA_POLYGON_WORDS;
             CHECK(packed_.vector(at + RAYA_PLANE_NORMAL) == fp32(normal.normalized()));
             CHECK(packed_.real(at + RAYA_PLANE_DISTANCE) == fp32(normal.normalized().dot(polygon.vertices[0])));
-            CHECK(packed_.index(at + RAYA_POLYGON_AXIS) == static_cast<std::uint32_t>(dropped_axis(normal)));
+            CHECK(packed_.word(at + RAYA_POLYGON_AXIS) == static_cast<std::uint32_t>(dropped_axis(normal)));
             check_surface(polygon.surface, at);
-            REQUIRE(packed_.index(at + RAYA_POLYGON_CORNERS) == corners.size());
-            check_outline(polygon, corners, packed_.index(at + RAYA_POLYGON_CORNERS_AT));
-            const std::size_t normals_at = packed_.index(at + RAYA_POLYGON_NORMALS_AT);
+            REQUIRE(packed_.word(at + RAYA_POLYGON_CORNERS) == corners.size());
+            check_outline(polygon, corners, packed_.word(at + RAYA_POLYGON_CORNERS_AT));
+            const std::size_t normals_at = packed_.word(at + RAYA_POLYGON_NORMALS_AT);
             REQUIRE((normals_at == 0) == polygon.normals.empty());
             if (normals_at != 0) check_normals(polygon, corners, normals_at);
         }
@@ -182,7 +182,7 @@ JobSettings settings_for(std::uint32_t width, std::uint32_t height, Sampling sam
     return settings;
 }
 
-/// A scene with a quad and a triangle with normals, a concave polygon without normals, and a checkered surface.
+/// Returns a scene of two patches (a quadrangle and a triangle), a concave polygon and a checkered surface.
 Scene patch_scene() {
     Scene scene;
     scene.view.from = {0, 0, -5};

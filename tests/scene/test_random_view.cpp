@@ -1,4 +1,4 @@
-// Random views: camera positions are uniform in the allowed zone, and nothing else in the scene changes.
+// Random views: only the camera moves, to positions that are uniform between the elevation limits.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -13,7 +13,7 @@ namespace {
 
 double sine(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
 
-TEST_CASE("a random view changes only the camera's position, at the same distance and within the zone", "[view]") {
+TEST_CASE("a random view moves only the camera, at the same distance and within the elevation limits", "[view]") {
     SplitMix random(3);
     for (std::uint64_t seed = 0; seed < 500; ++seed) {
         Scene scene = generate_random(3, seed);
@@ -34,7 +34,7 @@ TEST_CASE("a random view changes only the camera's position, at the same distanc
     }
 }
 
-TEST_CASE("random views are uniform over the zone of the sphere", "[view]") {
+TEST_CASE("random views are uniform in azimuth and height between the elevation limits", "[view]") {
     const Scene scene = generate_centre();
     constexpr int kViews = 4000, kParts = 8;
     int heights[kParts] = {}, azimuths[kParts] = {};
@@ -43,11 +43,11 @@ TEST_CASE("random views are uniform over the zone of the sphere", "[view]") {
         const View view = random_view(scene, seed).view;
         const Vec3 d = (view.from - view.at).normalized();
         x_components.insert(d.x);
-        const double zone_fraction =
+        const double height_fraction =
             (d.z - sine(kMinElevationDegrees)) / (sine(kMaxElevationDegrees) - sine(kMinElevationDegrees));
-        const double turn = std::atan2(d.y, d.x) / (2 * std::numbers::pi) + 0.5;
-        ++heights[std::min(kParts - 1, std::max(0, static_cast<int>(zone_fraction * kParts)))];
-        ++azimuths[std::min(kParts - 1, static_cast<int>(turn * kParts))];
+        const double azimuth_fraction = std::atan2(d.y, d.x) / (2 * std::numbers::pi) + 0.5;
+        ++heights[std::min(kParts - 1, std::max(0, static_cast<int>(height_fraction * kParts)))];
+        ++azimuths[std::min(kParts - 1, static_cast<int>(azimuth_fraction * kParts))];
     }
     CHECK(static_cast<double>(x_components.size()) > kViews * 0.99);
     for (int i = 0; i < kParts; ++i) {  // expected: 500 views per part, standard deviation 21

@@ -21,8 +21,8 @@ Vec3 doubled_area(const Outline& outline, const std::array<int, 3>& t) {
     return (corner(outline, t[1]) - corner(outline, t[0])).cross(corner(outline, t[2]) - corner(outline, t[0]));
 }
 
-/// Checks that an outline of n vertices gives n - 2 triangles with the outline's orientation, that their areas sum to
-/// the outline's area (so that the triangles cover the outline once), and that every vertex is used.
+/// Checks that an outline of n vertices gives n - 2 triangles that have its orientation and use every vertex. Their
+/// areas must add up to the outline's area, so that they cover the outline once.
 void check_triangulation(const Outline& outline) {
     const Vec3 normal = newell_normal(outline);
     const auto triangles = triangulate(outline, normal);

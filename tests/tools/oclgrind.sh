@@ -2,7 +2,7 @@
 # Runs every kernel under Oclgrind, an OpenCL implementation that detects data races, uninitialised values, wrong API calls, accesses outside a
 # buffer, and more than 32 KB of local memory.
 #   tests/tools/oclgrind.sh RAYA PATCH_KERNELS      the built program; tests/kernels/patch_kernels.cpp
-# Renders each scene of scenes/ with one and four lanes, one and four work-items, on different arrays, and one scene with anti-aliasing.
+# Renders each scene of scenes/ with one and four lanes and work-items, on several arrays, and one scene with antialiasing.
 # Oclgrind's log must stay empty (its exit code is always 0), and every image must be that of the default device. By default it runs one scene
 # and one injected fault of each kind; with RAYA_THOROUGH=1, all of them.
 set -euo pipefail
@@ -50,7 +50,7 @@ fail() { echo "FAILED: $*"; exit 1; }
 
 hash_of_report() { grep -o '"hash": "[0-9a-f]*"' "$scratch/report.json"; }
 
-check_run() {  # check_run SCENE OPTIONS OPTIONS_OF_THE_DEFAULT_DEVICE     SCENE: one of scenes/, or a file
+check_run() {  # check_run SCENE OPTIONS DEFAULT_OPTIONS: compares the image with that of the default device. SCENE: a name in scenes/, or a file
     local scene=$1 options=$2 file=$1 expected found
     [[ -e $file ]] || file=$root/scenes/$scene.nff
     local render=(render "$file" -o "$scratch/image.pfm" --report "$scratch/report.json" --quiet --size "$size")
@@ -94,18 +94,18 @@ if [[ -n $thorough ]]; then
 fi
 watch_values=
 for options in "${exchanges[@]}"; do
-    # The same method on one large array, with the default device.
+    # The expected image: the same antialiasing on one PE of the machine `grande`.
     method=$(sed -E 's/--(pes|offset|group|lanes|fold) [a-z0-9]+//g' <<<"$options")
     check_run "${scenes[0]}" "$options" "$method --machine grande --format spa22 --pes 1"
 done
 [[ -z $thorough ]] || check_fault torus/inject.cl $'*next = end;\n        node_barrier();' "*next = end;" "data race" --machine torus --nodes 2x1x1
 [[ -z $thorough ]] || check_fault torus/route.cl $'goal = RAYA_STAYS;\n        node_barrier();' "goal = RAYA_STAYS;" "data race" --machine torus --nodes 2x1x1
 check_fault torus/accept.cl $'vote(votes, goal);\n        node_barrier();' "vote(votes, goal);" "data race" --machine torus --nodes 2x1x1
-# Nodes with several work-items, rays that wait for free queue entries, both values of --inject.
+# Tests nodes with several work-items, rays that wait for free queue entries, and both values of --inject.
 size=6
 [[ -z $thorough ]] || check_run cones "--machine torus --nodes 2x2x1 --lanes 4 --group 3 --queue 200" "--machine grande"
 check_run planes "--machine torus --nodes 2x1x2 --lanes 1 --group 4 --inject root --links torus2d" "--machine grande"
-# A pool with the rays of several trees, from which idle lanes take the next ray.
+# Tests a ray pool, from which idle lanes take their next rays.
 size=4
 check_run glass "--machine grande --accel grid --lanes 4 --group 3 --pes 2" "--machine grande"
 echo "Oclgrind: ${#scenes[@]} scenes, ${#runs[@]} runs each, ${#exchanges[@]} of the exchange, the torus, the grid${thorough:+ and the BVH}: no reports, the same images"

@@ -10,8 +10,8 @@ import browser
 
 WIDTHS = (400, 820, 1400)
 
-# Returns complaints about the page, and counts of checked elements. A link to # with an = contains settings and is not an anchor. The colour of SVG
-# text is in `fill`, its background is that of the document.
+# Returns complaints about the page, and numbers of checked elements. A link that starts with # and contains = has settings, not an anchor. SVG text
+# has the colour of its `fill` and the background of the SVG's first path.
 INSPECT = r"""(() => {
   const wrong = [];
   const isVisible = (e) => e.checkVisibility() && e.getClientRects().length > 0;
@@ -34,10 +34,10 @@ INSPECT = r"""(() => {
     if (box.width < 300 || box.height < 150) complain(`a drawing of ${box.width} x ${box.height}`, figure);
     const ink = [...svg.querySelectorAll("path, use, text")].filter((e) => e.getBoundingClientRect().width > 0);
     if (ink.length < 20 || svg.querySelectorAll("text").length < 3) complain("an empty drawing", figure);
-    const words = (name) => (svg.getAttribute(name) || "").split(" ").map((id) => document.getElementById(id)?.textContent || "").join(" ");
+    const textsOf = (name) => (svg.getAttribute(name) || "").split(" ").map((id) => document.getElementById(id)?.textContent || "").join(" ");
     if (svg.getAttribute("role") !== "img") complain("a drawing without role=img", figure);
-    if (!(svg.getAttribute("aria-label") || words("aria-labelledby")).trim()) complain("a drawing without a name", figure);
-    if (!/Horizontal axis: .+ Vertical axis: .+ Series: .+/s.test(words("aria-describedby"))) complain("a drawing without a description", figure);
+    if (!(svg.getAttribute("aria-label") || textsOf("aria-labelledby")).trim()) complain("a drawing without a name", figure);
+    if (!/Horizontal axis: .+ Vertical axis: .+ Series: .+/s.test(textsOf("aria-describedby"))) complain("a drawing without a description", figure);
   }
   for (const img of document.querySelectorAll("img"))
     if (!img.alt.trim() || !img.complete || img.naturalWidth === 0) complain("an image without alternative text or pixels", img);
@@ -67,8 +67,8 @@ INSPECT = r"""(() => {
     if (!walker.currentNode.data.trim() || !isVisible(e) || e.closest("script, style")) continue;
     ++texts;
     const svg = e.closest("svg"), style = getComputedStyle(e);
-    const behind = svg ? rgb(getComputedStyle(svg.querySelector("path")).fill) : backgroundOf(e);
-    const ratio = contrast(rgb(svg ? style.fill : style.color), behind);
+    const background = svg ? rgb(getComputedStyle(svg.querySelector("path")).fill) : backgroundOf(e);
+    const ratio = contrast(rgb(svg ? style.fill : style.color), background);
     if (ratio < 4.5) complain(`a contrast of ${ratio.toFixed(2)}`, e);
   }
   const wide = document.scrollingElement.scrollWidth;
@@ -101,7 +101,7 @@ def main():
     with browser.Browser() as page:
         for width, dark, scripts in [(w, d, True) for w in WIDTHS for d in (False, True)] + [(WIDTHS[1], False, False)]:
             page.open(url, width, dark, scripts)
-            if scripts:  # wait until they have run
+            if scripts:  # waits until the scripts have run
                 page.value("new Promise((done) => setTimeout(done, 1500))")
             name = f"{width}-{'dark' if dark else 'light'}{'' if scripts else '-no-scripts'}"
             wrong += [f"{name}: {text}" for text in [*page.value(INSPECT)["wrong"], *complaints(page)]]

@@ -4,14 +4,14 @@ import copy, random, re
 # Optional members that are in all reports of this test by chance.
 OPTIONAL = {"tune.json: results[].configuration.local_words", "tune.json: results[].configuration.batch",
             "tune.json: results[].configuration.lanes", "tune.json: results[].configuration.group"}
-OPEN = re.compile(r"study\.json: (settings|tables\[\]\.rows\[\])")  # objects with any members, and lists of strings and numbers
-SIGNED = "length_exponent"  # may be negative; it is 0 in the test
+OPEN = re.compile(r"study\.json: (settings|tables\[\]\.rows\[\])")  # objects that accept any member, and lists of strings and numbers
+SIGNED = "length_exponent"  # this member may be negative; it is 0 in the test
 
 
 def object_kind(value):
     """Returns a text that identifies the kind of an object; the members of an object depend on its kind."""
-    words = [value[key] for key in ("kind", "method", "status") if isinstance(value.get(key), str)]
-    return f"<{words[0] if words else ''}{' torus' * ('torus' in value)}>"
+    kinds = [value[key] for key in ("kind", "method", "status") if isinstance(value.get(key), str)]
+    return f"<{kinds[0] if kinds else ''}{' torus' * ('torus' in value)}>"
 
 
 def values_of(value, path):

@@ -29,7 +29,7 @@ def open_end(namespace):
 
 def carry(ends, delay_s, lost_of, counts):
     """Forwards packets between the two ends until the process exits, and counts them in `counts`."""
-    others = dict(zip(ends, reversed(ends)))
+    opposite_ends = dict(zip(ends, reversed(ends)))
     under_way = collections.deque()  # (time of arrival, receiving end of the link, packet)
     while True:
         wait = max(0, under_way[0][0] - time.monotonic()) if under_way else None
@@ -39,7 +39,7 @@ def carry(ends, delay_s, lost_of, counts):
             if counts["carried"] % lost_of == 0:
                 counts["lost"] += 1
             else:
-                under_way.append((time.monotonic() + delay_s, others[end], packet))
+                under_way.append((time.monotonic() + delay_s, opposite_ends[end], packet))
         while under_way and under_way[0][0] <= time.monotonic():
             _, end, packet = under_way.popleft()
             try:

@@ -33,12 +33,12 @@ run_unpacked() {  # run_unpacked COMMAND...: sets code, out and loaded
 }
 run_unpacked "$top/raya" --version
 expect 0 "raya "
-others=$(grep -vE "^($top/lib/libOpenCL\.so\.1|.*/(libc|libm|ld-linux-x86-64)\.so\.[0-9]+)$" <<<"$loaded" || true)
-[[ -z $others ]] || fail "raya --version loads $others"
+other_libraries=$(grep -vE "^($top/lib/libOpenCL\.so\.1|.*/(libc|libm|ld-linux-x86-64)\.so\.[0-9]+)$" <<<"$loaded" || true)
+[[ -z $other_libraries ]] || fail "raya --version loads $other_libraries"
 grep -qF "$top/lib/libOpenCL.so.1" <<<"$loaded" || fail "raya does not load its own OpenCL loader: $loaded"
 run_unpacked "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.ppm"
 expect 0 "(474a384374e81c5144a0e5405232a750)"
-loaded=$(grep -vF "$POCL_CACHE_DIR/" <<<"$loaded")  # kernels
+loaded=$(grep -vF "$POCL_CACHE_DIR/" <<<"$loaded")  # without compiled kernels
 ! grep -E "$root|raya_|OpenImageIO|libmpi|libfmt|libxxhash" <<<"$loaded" || fail "a render loads these libraries"
 [[ $(head -c 15 "$scratch/home/centre.ppm") == $'P6\n256 256\n255' ]] || fail "the image is not a PPM"
 run_unpacked "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.png"

@@ -23,21 +23,21 @@ FAULTS = [("verify --quick", "verify --quik"), ("verify --quick", "verify --lane
 
 
 def commands(script):
-    """Yields (words, redirection targets) of the simple commands of a script."""
+    """Yields ([program, argument, ...], redirection targets) of the simple commands of a script."""
     for line in script.replace("\\\n", " ").splitlines():
         lexer = shlex.shlex(line, posix=True, punctuation_chars=True)
         lexer.whitespace_split = True
-        words, written = [], []
+        arguments, written = [], []
         for token in [*lexer, ";"]:
             if written and written[-1] is None:
                 written[-1] = token
             elif token in (">", ">>"):
                 written.append(None)
             elif token not in (";", "&&", "||"):
-                words += [token] if words or token not in ("if", "then", "else", "fi") else []
-            elif words:
-                yield words, written
-                words, written = [], []
+                arguments += [token] if arguments or token not in ("if", "then", "else", "fi") else []
+            elif arguments:
+                yield arguments, written
+                arguments, written = [], []
 
 
 def output_of(command, **more):
@@ -55,67 +55,68 @@ def optional_packages():
     return set(re.findall(r"\(Debian: ([\w-]+)\)", (ROOT / "tools/portability_implementations.py").read_text()))
 
 
-def junit_of(words):
-    return words[words.index("--output-junit") + 1] if "--output-junit" in words else None
+def junit_of(arguments):
+    return arguments[arguments.index("--output-junit") + 1] if "--output-junit" in arguments else None
 
 
-def wrong_with_raya(words, raya, scratch):
+def wrong_with_raya(arguments, raya, scratch):
     """Runs the command with an additional unknown option. raya parses all options, must complain about this one only, and renders nothing."""
-    code, output = output_of([raya, *words[1:], NO_SUCH], cwd=scratch)
-    return "" if code == 2 and f": no option {NO_SUCH}; see raya {words[1]} --help\n" in output else output.strip()
+    code, output = output_of([raya, *arguments[1:], NO_SUCH], cwd=scratch)
+    return "" if code == 2 and f": no option {NO_SUCH}; see raya {arguments[1]} --help\n" in output else output.strip()
 
 
-def wrong_with_tool(words):
-    tool = ROOT / words[0]
+def wrong_with_tool(arguments):
+    tool = ROOT / arguments[0]
     if not tool.exists():
         return "no such file"
     if "argparse" in tool.read_text():
-        code, output = output_of([tool, *words[1:], NO_SUCH])
+        code, output = output_of([tool, *arguments[1:], NO_SUCH])
         return "" if code == 2 and f"unrecognized arguments: {NO_SUCH}\n" in output else output.strip().splitlines()[-1]
-    return "" if set(words[1:]) <= ({"--print"} if words[0] == "tools/setup" else set()) else f"unknown options {words[1:]}"
+    return "" if set(arguments[1:]) <= ({"--print"} if arguments[0] == "tools/setup" else set()) else f"unknown options {arguments[1:]}"
 
 
-def wrong_with_cmake(words):
-    if words[1] == "--preset":
+def wrong_with_cmake(arguments):
+    if arguments[1] == "--preset":
         presets = {p["name"]: p for p in json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]}
-        return "" if words[2] in presets else f"no preset {words[2]}"
-    return "" if words[1:3] == ("--build", "build") and re.fullmatch(r"(-j\d+)?", "".join(words[3:])) else "differs from the build command of tools/test"
+        return "" if arguments[2] in presets else f"no preset {arguments[2]}"
+    is_right = arguments[1:3] == ("--build", "build") and re.fullmatch(r"(-j\d+)?", "".join(arguments[3:]))
+    return "" if is_right else "differs from the build command of tools/test"
 
 
-def wrong_with_ctest(words):
+def wrong_with_ctest(arguments):
     known = output_of(["ctest", "--help"])[1]
-    missing = [w for w in words[1:] if w.startswith("-") and not re.search(rf"(^|\s){re.sub(r'(?<=^-j)[0-9]+$', '', w)}\b", known)]
+    missing = [w for w in arguments[1:] if w.startswith("-") and not re.search(rf"(^|\s){re.sub(r'(?<=^-j)[0-9]+$', '', w)}\b", known)]
     wanted = junit_of(shlex.split(re.search(r"^ *ctest .*", (ROOT / "tools/test").read_text(), re.M)[0]))
     if missing:
         return f"ctest has no options {missing}"
-    return "" if junit_of(words) == wanted else f"writes another file than tools/test, which writes {wanted}"
+    return "" if junit_of(arguments) == wanted else f"writes another file than tools/test, which writes {wanted}"
 
 
-def wrong_with_packages(words):
-    if words[1] != "install":
-        return "" if words[1:] == ("update",) else f"unknown command of apt-get: {words[1:]}"
-    strange = {w for w in words[2:] if not w.startswith("-")} - packages_of_setup() - optional_packages()
+def wrong_with_packages(arguments):
+    if arguments[1] != "install":
+        return "" if arguments[1:] == ("update",) else f"unknown command of apt-get: {arguments[1:]}"
+    strange = {w for w in arguments[2:] if not w.startswith("-")} - packages_of_setup() - optional_packages()
     return f"packages that neither tools/setup nor tools/portability names: {strange}" if strange else ""
 
 
 @functools.cache  # most commands are the same with each injected fault
-def wrong_with(words, raya, scratch):
+def wrong_with(arguments, raya, scratch):
     """Returns a text that says what is wrong with one command; "" if the command is right."""
-    name = words[0]
+    name = arguments[0]
     if name == "build/raya":
-        return wrong_with_raya(words, raya, scratch)
+        return wrong_with_raya(arguments, raya, scratch)
     if name.startswith("tools/"):
-        return wrong_with_tool(words)
+        return wrong_with_tool(arguments)
     known = {"cmake": wrong_with_cmake, "ctest": wrong_with_ctest, "apt-get": wrong_with_packages}
     if name in known:
-        return known[name](words)
+        return known[name](arguments)
     return "" if name in SHELL and shutil.which(name) else "unknown command"
 
 
-def files_of(words, written):
+def files_of(arguments, written):
     """Files that a command writes, relative to the repository's root."""
-    reports = [after for word, after in zip(words, words[1:]) if word == "--report"]
-    return {*written, *reports, *([f"build/{junit_of(words)}"] if junit_of(words) else [])}
+    reports = [after for word, after in zip(arguments, arguments[1:]) if word == "--report"]
+    return {*written, *reports, *([f"build/{junit_of(arguments)}"] if junit_of(arguments) else [])}
 
 
 def faults_of(workflow, page, raya, scratch):
@@ -126,11 +127,12 @@ def faults_of(workflow, page, raya, scratch):
     # The page's commands: indented lines that start with a program.
     lines = [line.strip() for line in page.splitlines() if line.startswith("    ")]
     page_commands = [pair for line in lines if line.startswith(("build/raya", "tools/", "ctest", "cmake", "apt-get")) for pair in commands(line)]
-    faults = [f"{' '.join(words)}: {wrong}" for words, _ in workflow_commands + page_commands if (wrong := wrong_with(tuple(words), raya, scratch))]
+    checked = [(arguments, wrong_with(tuple(arguments), raya, scratch)) for arguments, _ in workflow_commands + page_commands]
+    faults = [f"{' '.join(arguments)}: {wrong}" for arguments, wrong in checked if wrong]
     written = set().union(*(files_of(*pair) for pair in workflow_commands))
     uploaded = [name for step in steps for name in step.get("with", {}).get("path", "").split() if "upload" in step.get("uses", "")]
     faults += [f"{name} is uploaded, but no step writes it" for name in uploaded if name not in written]
-    faults += [] if ["tools/setup"] in [words for words, _ in workflow_commands] else ["no step runs tools/setup"]
+    faults += [] if ["tools/setup"] in [arguments for arguments, _ in workflow_commands] else ["no step runs tools/setup"]
     return faults, len(workflow_commands + page_commands)
 
 

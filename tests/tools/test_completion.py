@@ -63,9 +63,7 @@ def in_fish(script, line):
     return [line.split("\t")[0] for line in output.split("\n")]
 
 
-class Zsh:
-    """zsh on a pseudo-terminal."""
-
+class Zsh:  # on a pseudo-terminal
     def __init__(self, script):
         folder = pathlib.Path(script).parent / "functions"
         folder.mkdir()

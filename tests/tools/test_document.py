@@ -32,7 +32,7 @@ What does `{scene}` show?
 
 
 def claim(lab, paper, place, statement, test, reason=""):
-    """A claim with its result. The verdict follows from the p values of `test`; None: untestable."""
+    """Returns a claim with its result. The verdict follows from the p values of `test`, which is None for an untestable claim."""
     kind = "test" if test else "untestable"
     return lab.Judgement(lab.Claim("id", paper, place, "原文", statement, "small", kind, f"Rule: {reason}"), f"Ensemble {reason}", reason, test)
 
@@ -48,7 +48,7 @@ def small_page(lab):
 
 
 def large_page(lab):
-    """A page with every colour, style and kind of axis, an interval band, error bars, and names that would be scripts if not escaped."""
+    """Returns a page with every colour, style and kind of axis, an interval band, error bars, and names that would be scripts if not escaped."""
     def series(number):
         x = range(1, 60 if number == 1 else 5)
         style = "steps" if number == 7 else "points" if number == 8 else "line" if number < 7 else "paper"
@@ -131,16 +131,16 @@ def undetected_faults(page, text, count, folder):
             yield f"{new!r} instead of {old!r} is not detected as '{expected}': {found[:3]}"
 
 
-def main(given):
+def main(package_or_html):
     if browser.program() is None:
         print("skipped: no Chromium (tools/setup --browser)")
         return 77
     with tempfile.TemporaryDirectory() as folder, browser.Browser() as page:
-        is_package = Path(given).is_dir()
+        is_package = Path(package_or_html).is_dir()
         if is_package:
             python = os.environ.get("RAYA_PYTHON", "/usr/bin/python3")  # as `raya study` chooses it
-            subprocess.run([python, __file__, str(Path(given).resolve()), folder], check=True)
-        index = Path(folder, "index.html") if is_package else Path(given).resolve()
+            subprocess.run([python, __file__, str(Path(package_or_html).resolve()), folder], check=True)
+        index = Path(folder, "index.html") if is_package else Path(package_or_html).resolve()
         text = index.read_text(errors="replace")
         count = text.count("<figure class=\"plot\">")
         wrong = list(check_views(page, index.as_uri(), count))

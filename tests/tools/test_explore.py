@@ -49,7 +49,7 @@ def start(page, url, **view):
 
 
 WIDTH, HEIGHT = 48, 36
-SQUARE = ["--size", "64x64", "--lanes", "4", "--format", "fp32"]  # on the SPA, which has a time model
+SQUARE_OPTIONS = ["--size", "64x64", "--lanes", "4", "--format", "fp32"]  # on the SPA, which has a time model
 # Cyclic mappings with both folds: as many PEs as columns; fewer PEs, whose number divides the number of columns or not; more PEs than columns. Then
 # every other static mapping.
 SETTINGS = [("cyclic:7", 48, "cyclic"), ("cyclic:13", 12, "cyclic"), ("cyclic:5", 20, "cyclic"), ("cyclic:5", 20, "block"), ("cyclic:40", 12, "block"),
@@ -128,7 +128,7 @@ def check_arithmetic(page):
       for (const [a, b] of [[3, 5], [5, 3], [4, 4], [1, 6]]) check({kind: "grid", pes: a * b, a, b}, 30);
       check({kind: "rows", pes: 7}, 30);
       for (const [fold, pes] of [["cyclic", 7], ["cyclic", 48], ["block", 12]])
-        if (vectorOf({kind: "slots", fold, offset: 3, pes}, {width: 24})) wrong.push(`${fold} ${pes} is no lattice`);
+        if (vectorOf({kind: "slots", fold, offset: 3, pes}, {width: 24})) wrong.push(`${fold} fold, ${pes} PEs: a vector, but the mapping is not a lattice`);
       for (const [offset, rotations] of [[0, 2], [8, 18], [16, 34]]) {
         const size = {width: 256, height: 256}, f = figuresOf({kind: "slots", fold: "cyclic", offset, pes: 256}, size, new Float64Array(65536).fill(1),
           {cycle_ns: 100, cycle_factor: 3, setup_ms: 2, link_words_per_s: 1e6, rotation_sync_ms: 0.25});
@@ -262,9 +262,9 @@ def check_controls(page, html):
     yield from expect("the button that shows all PEs", f"cyclic:{best_offset}", 63, "cyclic", None)
 
     mouse(page, "mouseMoved", "picture", (10 + 0.5) / 64, (20 + 0.5) / 64)
-    words, owner, cost = page.value("[document.getElementById('pointed').textContent, explorer.figures.owners[20 * 64 + 10], grouped(explorer.costs[20 * 64 + 10])]")
-    if not words.startswith(f"Row 20, column 10: {cost} cycles. PE {owner} owns"):
-        yield f"pointed at row 20, column 10: {words}"
+    description, owner, cost = page.value("[document.getElementById('pointed').textContent, explorer.figures.owners[20 * 64 + 10], grouped(explorer.costs[20 * 64 + 10])]")
+    if not description.startswith(f"Row 20, column 10: {cost} cycles. PE {owner} owns"):
+        yield f"pointed at row 20, column 10: {description}"
     mouse(page, "mousePressed", "picture", (10 + 0.5) / 64, (20 + 0.5) / 64, button="left", clickCount=1)
     mouse(page, "mouseReleased", "picture", (10 + 0.5) / 64, (20 + 0.5) / 64, button="left", clickCount=1)
     yield from expect("a click on a pixel", f"cyclic:{best_offset}", 63, "cyclic", owner)
@@ -366,13 +366,13 @@ def main():
             return html
 
         html = explore("scene.html", "--size", f"{WIDTH}x{HEIGHT}", "--machine", "grande", "--accel", "none", "--lanes", "4", "--format", "fp32")
-        square = explore("square.html", *SQUARE)
+        square = explore("square.html", *SQUARE_OPTIONS)
         cases = list(expected_figures(raya, folder, scene, settings))
         start(page, html.as_uri())
         wrong += [*figure_differences(page, cases), *check_arithmetic(page), *complaints(page), *check_costs(page, html, folder)]
         print(f"seed {SEED}: {len(cases)} settings, {len(wrong)} complaints")
         report = Path(folder, "square.json")
-        subprocess.run([raya, "render", scene, *SQUARE, "-o", Path(folder, "x.ppm"), "--report", report, "--quiet"], check=True)
+        subprocess.run([raya, "render", scene, *SQUARE_OPTIONS, "-o", Path(folder, "x.ppm"), "--report", report, "--quiet"], check=True)
         start(page, square.as_uri())
         time = page.value("explorer.texts.time")
         if not time.startswith(f"{json.loads(report.read_text())['modelled_ms']['compute']:.1f} ms to trace, "):

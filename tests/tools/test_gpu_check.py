@@ -33,7 +33,7 @@ def check(*options, code=0, path=None, texts=()):
 def patched(file, *changes):
     """Returns a folder with a copy of the kernels; each change (find, replace) is applied to the kernel `file`."""
     folder = SCRATCH / f"kernels{len(list(SCRATCH.iterdir()))}"
-    subprocess.run([BUILD / "tests" / "patch_kernels", folder, *[word for change in changes for word in (file, *change)]], check=True)
+    subprocess.run([BUILD / "tests" / "patch_kernels", folder, *[argument for change in changes for argument in (file, *change)]], check=True)
     return folder
 
 
@@ -89,15 +89,15 @@ for program in ("env", "python3"):
 check(code=3, path=program_folder, texts=["Debian: clang-15", "Debian: intel-opencl-icd", "tools/setup --gpu"])
 check("--libclc", "/nowhere", code=3, path=program_folder, texts=["Debian: libclc-15"])
 
-# The rest compiles kernels.
-few_kernels = ["--only", "torus/compose fp32"]
-done = subprocess.run([ROOT / "tools" / "gpu_check", "--build", BUILD, *few_kernels], capture_output=True, text=True)
+# The remaining checks compile kernels.
+only_compose = ["--only", "torus/compose fp32"]
+done = subprocess.run([ROOT / "tools" / "gpu_check", "--build", BUILD, *only_compose], capture_output=True, text=True)
 if done.returncode == 3:
     print("skipped: no compiler for GPUs (tools/setup --gpu); the checks that need none have passed")
     sys.exit(77)
 check("--only", "no such kernel", code=2, texts=["there are", "ring/trace"])
 check("--kernel-dir", "/nowhere", code=2, texts=["/nowhere"])
-report = first_report = check(*few_kernels)
+report = first_report = check(*only_compose)
 versions, kernels = report["versions"], report["kernels"]
 expect([k["target"] for k in kernels] == list(versions) and all(k["kernel"] == "torus/compose" and k["registers"] > 0 for k in kernels), kernels)
 
@@ -114,16 +114,16 @@ def budget_of(change=lambda row: None, change_version=lambda version: version):
     return "--budget", path
 
 
-check(*few_kernels, *budget_of())
+check(*only_compose, *budget_of())
 lower_budget = budget_of(lambda row: row.update(registers=int(row["registers"] / 1.06)))
-check(*few_kernels, *lower_budget, code=4, texts=[f"torus/compose fp32, {target}: registers: " for target in versions] + ["--write-budget"])
-check(*few_kernels, *lower_budget, "--write-budget")
-check(*few_kernels, "--budget", lower_budget[1])
+check(*only_compose, *lower_budget, code=4, texts=[f"torus/compose fp32, {target}: registers: " for target in versions] + ["--write-budget"])
+check(*only_compose, *lower_budget, "--write-budget")
+check(*only_compose, "--budget", lower_budget[1])
 other_budget = budget_of(lambda row: row.update(registers=1), lambda version: version + "x")
-check(*few_kernels, *other_budget, "--write-budget", code=2, texts=["would mix them"])
-check(*few_kernels, *other_budget, texts=[f"{target}: not compared: the budget is of other compilers" for target in versions])
+check(*only_compose, *other_budget, "--write-budget", code=2, texts=["would mix them"])
+check(*only_compose, *other_budget, texts=[f"{target}: not compared: the budget is of other compilers" for target in versions])
 only_amd = next((["--targets", target] for target in ("gfx90a", "pvc") if target in versions), [])
-check(*few_kernels, *only_amd, *budget_of(lambda row: row.update(variant="x")), code=4, texts=["has no budget"])
+check(*only_compose, *only_amd, *budget_of(lambda row: row.update(variant="x")), code=4, texts=["has no budget"])
 
 # A kernel with an injected fault is detected for every target.
 sum_line = "sum = vec_mad(vec_of(c.x, c.y, c.z), c.w, sum);"
@@ -131,7 +131,7 @@ head = "__kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))\nvoid c
 for text, changes in (("double precision", [(sum_line, "sum = vec_mad(vec_of((float)((double)c.x * c.y / 3.0), c.y, c.z), c.w, sum);")]),
                       ("nowhere", [(sum_line, "sum.x = nowhere(c.x);"), (head, "float nowhere(float x);\n" + head)]),
                       ("does not build", [(sum_line, "sum = vec_nad(sum);")])):
-    report = check(*few_kernels, "--kernel-dir", patched("torus/compose.cl", *changes), code=4, texts=[text])
+    report = check(*only_compose, "--kernel-dir", patched("torus/compose.cl", *changes), code=4, texts=[text])
     expect({fault["target"] for fault in report["faults"]} == set(versions), text, report["faults"])
 
 # A new spill: 600 numbers are read before the first is used.
@@ -145,22 +145,22 @@ reads = """    float many[600];
 last = "vstore3((float3)(sum.x, sum.y, sum.z), pixel, image);"
 fast_target = next((target for target in ("sm_90", "gfx90a") if target in versions), None)  # the one that compiles fastest
 if fast_target:
-    check(*few_kernels, "--targets", fast_target, *budget_of(), "--kernel-dir", patched("torus/compose.cl", (last, reads + last)), code=4,
+    check(*only_compose, "--targets", fast_target, *budget_of(), "--kernel-dir", patched("torus/compose.cl", (last, reads + last)), code=4,
           texts=[f"torus/compose fp32, {fast_target}: spills: "])
     kept = "__attribute__((noinline)) float kept(float x) { return x * x; }\n"
     not_inlined = patched("torus/compose.cl", (head, kept + head), (sum_line, "sum.x = kept(c.x);"))
-    check(*few_kernels, "--targets", fast_target, "--kernel-dir", not_inlined, code=4,
+    check(*only_compose, "--targets", fast_target, "--kernel-dir", not_inlined, code=4,
           texts=[f"torus/compose fp32, {fast_target}: a call is not inlined: "])
 
 # Unchanged kernels are not compiled again and have the same figures; a changed comment is not a change, any changed code is.
 compilations = len(versions) - ("sm_90" in versions and "sm_80" in versions)  # NVIDIA's targets are compiled together
 all_cached = f"{compilations} of {compilations} builds cached"
-expect(check(*few_kernels, "--anew", texts=["0 of 0 builds cached"]) == first_report == check(*few_kernels, texts=[all_cached]))
-check(*few_kernels, "--kernel-dir", patched("torus/compose.cl", (sum_line, "// a sum\n" + sum_line)), texts=[all_cached])
+expect(check(*only_compose, "--anew", texts=["0 of 0 builds cached"]) == first_report == check(*only_compose, texts=[all_cached]))
+check(*only_compose, "--kernel-dir", patched("torus/compose.cl", (sum_line, "// a sum\n" + sum_line)), texts=[all_cached])
 changed = "--kernel-dir", patched("torus/compose.cl", (sum_line, f"sum.x = c.x * {time.time_ns() % 10**9}.0f;"))  # differs from all earlier runs
-check(*few_kernels, *changed, texts=[f"0 of {compilations} builds cached"])
-check(*few_kernels, *changed, texts=[all_cached])
+check(*only_compose, *changed, texts=[f"0 of {compilations} builds cached"])
+check(*only_compose, *changed, texts=[all_cached])
 for _ in range(2):  # a build with a fault is not cached
-    check(*few_kernels, "--kernel-dir", patched("torus/compose.cl", (sum_line, "sum.x = (float)((double)c.x * c.y / 3.0);")), code=4,
+    check(*only_compose, "--kernel-dir", patched("torus/compose.cl", (sum_line, "sum.x = (float)((double)c.x * c.y / 3.0);")), code=4,
           texts=["; 0 of "])
 print(f"tools/gpu_check: as expected, for {', '.join(versions)}")

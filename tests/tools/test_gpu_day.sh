@@ -122,7 +122,7 @@ if (($# > 0)); then
     echo "tools/gpu_day: as expected"
     exit
 fi
-expect 4 "fp32, trace kernel | 5000 | 5120 | reached" "a third of that | 1706.67 | 2000.5 | reached" "1000 | 800 | missed"
+expect 4 "fp32, trace kernel | 5000 | 5120 | reached" "a third of the fp32 rate | 1706.67 | 2000.5 | reached" "1000 | 800 | missed"
 
 # Each fault in a new folder: the page names the failed step, and the other steps run.
 run_with_fault() { out=$scratch/$1; touch "$day/$1"; gpu_day "${@:2}"; rm "$day/$1"; }
@@ -152,9 +152,9 @@ expect 0 "OCL_ICD_VENDORS=$out/vendors"
 [[ $(<"$out/vendors/libamdocl64.icd") == libamdocl64.so ]] || fail "no entry for the driver"
 
 # Bad options.
-for words in --nonsense "--stage 6" --stage "--raya $scratch/none" "--expected $scratch/none"; do
+for bad_options in --nonsense "--stage 6" --stage "--raya $scratch/none" "--expected $scratch/none"; do
     # shellcheck disable=SC2086  # several words
-    gpu_day $words
+    gpu_day $bad_options
     expect 2 "gpu_day: "
 done
 code=0 page=$("$day/gpu_day" --all 2>"$scratch/err") || code=$?

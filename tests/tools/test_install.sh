@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests an installation by `cmake --install`: raya runs without the sources, from any folder, and finds its modules; other projects find the number layer.
+# Tests an installation by `cmake --install`: raya runs without the sources, from any folder, with its modules; pkg-config finds the number layer.
 #   test_install.sh BUILD
 set -euo pipefail
 build=$(readlink -f "$1")
@@ -62,9 +62,9 @@ options=$(pkg-config --cflags raya-number)
 mkdir "$scratch/other"
 cp "$doc"/kernels/number/example/harmonic.* "$scratch/other"
 [[ -z $(find "$prefix/include" -type f ! -name '*.clh') ]] || fail "include contains other files than headers"
-# shellcheck disable=SC2046  # words
+# shellcheck disable=SC2046  # several arguments
 (cd "$scratch/other" && ${CXX:-c++} -std=c++17 -O1 harmonic.cpp -o harmonic $(pkg-config --libs OpenCL))
-# shellcheck disable=SC2086  # words
+# shellcheck disable=SC2086  # several arguments
 code=0 out=$(cd "$scratch/other" && env POCL_CACHE_DIR="$POCL_CACHE_DIR" ./harmonic $options 2>&1) || code=$?
 expect 0 "8191 terms, sum 9.848633"
 [[ $out == *"64 terms, sum 5.0625"* && $out == *"512 terms, sum 7.085938"* ]] || fail "other sums: $out"

@@ -4,9 +4,9 @@
     tests/tools/test_memory.py RAYA FAULTS CL_FAULTS [--sample N] [--seed S] [--log FILE] [--results FILE]
 
 RAYA is the program, FAULTS and CL_FAULTS are the libraries made of tests/cli/memory_faults.cpp and cl_faults.cpp.
---sample N       N random allocations (default: every allocation site of raya once, in the first command that reaches it, and 200 allocations of
+--sample N       tests N random allocations (default: every allocation site of raya once, in the first command that reaches it, and 200 allocations of
                  libraries: about an hour on one core)
---seed S         of the random allocations (default: 1; with --sample: random)
+--seed S         seed of the random allocations (default: 1; with --sample: a random seed)
 --log FILE       records finished runs, so that an interrupted test resumes
 --results FILE   writes the summary that is committed as tests/limits/memory.csv
 Exit codes: 0 done; 1 a run ended with a wrong exit code or message, or left a damaged file.
@@ -29,15 +29,15 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SCENE = str(ROOT / "scenes" / "centre.nff")
-SMALL = ["render", SCENE, "--size", "16", "--lanes", "4", "--format", "fp32"]
-BANDS = ["render", SCENE, "--size", "16", "--lanes", "1", "--format", "fp32", "--pes", "4", "--group", "1",
+SMALL_RENDER = ["render", SCENE, "--size", "16", "--lanes", "4", "--format", "fp32"]
+BANDED_RENDER = ["render", SCENE, "--size", "16", "--lanes", "1", "--format", "fp32", "--pes", "4", "--group", "1",
          "-o", "x.ppm", "--checkpoint", "s.rst", "--checkpoint-every", "0"]
 COMMANDS = {
-    "render": SMALL + ["-o", "x.ppm", "--report", "x.json", "--cost", "x.pfm", "--trace", "x.trace.json"],
-    "png": SMALL + ["-o", "x.png"],
+    "render": SMALL_RENDER + ["-o", "x.ppm", "--report", "x.json", "--cost", "x.pfm", "--trace", "x.trace.json"],
+    "png": SMALL_RENDER + ["-o", "x.png"],
     "page": ["page", "saved.json", "-o", "x.html"],
-    "keep": BANDS,
-    "resume": BANDS + ["--resume"],
+    "keep": BANDED_RENDER,
+    "resume": BANDED_RENDER + ["--resume"],
 }
 INPUTS = {"page": ["saved.json"], "resume": ["s.rst"]}
 LIBRARY_ALLOCATIONS = 200  # number of tested allocations by libraries
@@ -60,7 +60,7 @@ class Trial:
         self.inputs.mkdir()
         self.cache = os.environ.get("POCL_CACHE_DIR")
         self.resumable = {}  # {hash of a checkpoint file that a run left: True if raya can resume it}
-        self.run_without_fault(SMALL + ["-o", "x.ppm", "--report", str(self.inputs / "saved.json")])
+        self.run_without_fault(SMALL_RENDER + ["-o", "x.ppm", "--report", str(self.inputs / "saved.json")])
         self.make_checkpoint(options.cl_faults)
         self.expected = {name: self.expect(name) for name in COMMANDS}
 
@@ -76,7 +76,7 @@ class Trial:
     def make_checkpoint(self, cl_faults):
         """Makes a checkpoint, by a render whose device fails after the checkpoint is written."""
         for launch in range(1, 50):
-            done, files = self.run_without_fault(BANDS, LD_PRELOAD=cl_faults, RAYA_FAULT=f"clEnqueueNDRangeKernel {launch} -5")
+            done, files = self.run_without_fault(BANDED_RENDER, LD_PRELOAD=cl_faults, RAYA_FAULT=f"clEnqueueNDRangeKernel {launch} -5")
             if done.returncode == 3 and "s.rst" in files:
                 (self.inputs / "s.rst").write_bytes(files["s.rst"])
                 return
@@ -98,7 +98,7 @@ class Trial:
 
     def run_with_fault(self, name, fault):
         """Runs a command in which one allocation fails. Returns (ending, exit code, message)."""
-        elsewhere = fault.startswith("+")
+        by_library = fault.startswith("+")
         with tempfile.TemporaryDirectory(dir=self.folder) as work:
             run_folder, failed_file, cache = Path(work, "run"), Path(work, "failed"), Path(work, "cache")
             run_folder.mkdir()
@@ -106,12 +106,12 @@ class Trial:
                 shutil.copy(self.inputs / file, run_folder)
             before = files_of(run_folder)
             variables = {"LD_PRELOAD": self.faults, "RAYA_MEMORY_FAULT": fault, "RAYA_MEMORY_FAILED": str(failed_file)}
-            if elsewhere and self.cache:  # a crashing driver may damage its cache
+            if by_library and self.cache:  # a crashing driver may damage its cache
                 shutil.copytree(self.cache, cache)
                 variables["POCL_CACHE_DIR"] = str(cache)
             code, output = self.run(COMMANDS[name], run_folder, variables)
             message = " | ".join(line for line in output.splitlines() if line.startswith("raya: "))
-            return self.classify(name, elsewhere, code, message, failed_file.exists(), before, files_of(run_folder)), code, message
+            return self.classify(name, by_library, code, message, failed_file.exists(), before, files_of(run_folder)), code, message
 
     def run(self, arguments, run_folder, variables):
         """Runs raya; returns (exit code, stderr). Terminates a run in which the driver waits for memory forever; its exit code is that of SIGTERM."""
@@ -128,8 +128,8 @@ class Trial:
                     _, output = process.communicate()
             return process.returncode, output.decode(errors="replace")
 
-    def classify(self, name, elsewhere, code, message, failed, before, after):
-        """Returns the outcome of a run as a text, which starts with BAD if raya is wrong. elsewhere: a library made the failed allocation."""
+    def classify(self, name, by_library, code, message, failed, before, after):
+        """Returns the ending of a run as a text, which starts with BAD if raya is wrong. `by_library`: a library made the failed allocation."""
         if code == 0:
             if {file: comparable(file, content) for file, content in after.items()} != self.expected[name]:
                 return "BAD: exit 0, other files"
@@ -141,7 +141,7 @@ class Trial:
             return f"BAD: damaged {damaged}, lost {lost}"
         if code in (2, 3) and "raya: " in message:
             return f"exit {code}" + (", files written before stay" if new_files else "")
-        if elsewhere and code != -signal.SIGKILL:
+        if by_library and code != -signal.SIGKILL:
             return "driver waits for ever" if code == -signal.SIGTERM else "driver's abort"
         return f"BAD: exit {code}"
 
@@ -180,18 +180,18 @@ def comparable(name, content):
 
 def faults_of(trial, seed, sample):
     """Returns [(command, fault)]: every allocation site once, in the first command that reaches it, and allocations by other libraries."""
-    seen, sites, elsewhere = set(), [], []
+    seen, sites, by_library = set(), [], []
     for name in COMMANDS:
         numbers, count = trial.sites(name)
         sites += [(name, number) for number in numbers if number not in seen]
         seen.update(numbers)
-        elsewhere += [(name, f"+{at}") for at in range(1, count + 1)]
-    print(f"{len(sites)} sites, {len(elsewhere)} allocations elsewhere, seed {seed}", flush=True)
+        by_library += [(name, f"+{at}") for at in range(1, count + 1)]
+    print(f"{len(sites)} allocation sites of raya, {len(by_library)} allocations by libraries, seed {seed}", flush=True)
     generator = random.Random(seed)
     if sample:
         library_count = max(1, sample // 5)
-        return generator.sample(sites, sample - library_count) + generator.sample(elsewhere, library_count)
-    return sites + generator.sample(elsewhere, LIBRARY_ALLOCATIONS)
+        return generator.sample(sites, sample - library_count) + generator.sample(by_library, library_count)
+    return sites + generator.sample(by_library, LIBRARY_ALLOCATIONS)
 
 
 def read_log(path, program):

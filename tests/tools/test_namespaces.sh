@@ -14,8 +14,8 @@ command -v ip >/dev/null || skip "the program ip is missing (Debian: iproute2)"
 (: <>/dev/net/tun) 2>/dev/null || skip "no /dev/net/tun"
 [[ -e $(dirname "$raya")/raya_mpi.so ]] || skip "raya was built without MPI"
 mpirun=$(command -v "${2:-mpirun}") || skip "no ${2:-mpirun}"
-# `--version` of Open MPI's mpirun prints "Open MPI", that of its mpiexec "OpenRTE". MPICH 4.0 sometimes hangs over TCP: in MPI_Finalize one rank waits in a barrier while
-# another rank needs its answer (pmodels/mpich pull request 6596).
+# Open MPI's mpirun --version prints "Open MPI", its mpiexec --version "OpenRTE". MPICH is not tested, because MPICH 4.0 sometimes hangs over TCP: in
+# MPI_Finalize, one rank waits in a barrier while another rank needs its answer (pmodels/mpich pull request 6596).
 [[ $("$mpirun" --version) == *Open* ]] || skip "$mpirun is not Open MPI's"
 
 hosts=("raya-$$-a" "raya-$$-b")  # unique, because this script may run several times at once

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks pages of reports in a browser: they send no requests, fit their window, and are readable at three widths, light and dark, printed, without
-scripts, with a screen reader and by keyboard; their columns sort. No text of a report becomes markup. A page of a damaged report says so. Injected
-faults test the checks.
+scripts, with a screen reader and by keyboard; their columns sort. No text of a report becomes markup. The page of a damaged report names the parts
+that it cannot show. Injected faults test the checks.
 
     tests/tools/test_pages.py RAYA [FOLDER]      FOLDER: for screenshots of all views
 RAYA_PAGE_SEED: seed of the damage; RAYA_THOROUGH=1: all views, and more damage. Exit code 77: no Chromium.
@@ -17,7 +17,7 @@ WIDTHS = (400, 820, 1400)
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 RAYA = sys.argv[1]
 SEED, THOROUGH = int(os.environ.get("RAYA_PAGE_SEED", "20")), os.environ.get("RAYA_THOROUGH") == "1"
-DAMAGE = 8 if THOROUGH else 2
+DAMAGED_REPORTS = 8 if THOROUGH else 2
 VIEWS = [(w, d, True, "") for w in WIDTHS for d in (False, True)] + [(820, False, False, ""), (700, False, True, "print")]
 VIEWS = VIEWS if THOROUGH else [VIEWS[0], VIEWS[-3]]
 
@@ -247,14 +247,14 @@ def main():
         for name, html in pages.items():
             wrong += check_views(page, name, html, pictures)
             wrong += check_escaping(page, name, html, folder)
-            wrong += check_damaged_reports(page, name, html, folder, DAMAGE)
+            wrong += check_damaged_reports(page, name, html, folder, DAMAGED_REPORTS)
         wrong += check_sorting(page, pages["ring"])
         for name in ("ring", "torus"):
             wrong += check_map(page, name, pages[name])
         explore = Path(folder, "explore.html")
         subprocess.run([raya, "explore", SCENES / "planes.nff", "--size", "48x32", "--lanes", "4", "-o", explore, "--quiet"], check=True)
         wrong += check_escaping(page, "explore", explore, folder)
-        wrong += check_damaged_reports(page, "explore", explore, folder, DAMAGE)
+        wrong += check_damaged_reports(page, "explore", explore, folder, DAMAGED_REPORTS)
         wrong += undetected_faults(page, pages["ring"], folder)
     print("\n".join(wrong))
     print(f"{len(pages)} pages in {len(VIEWS)} views: {len(wrong)} complaints; {len(FAULTS)} injected faults checked")

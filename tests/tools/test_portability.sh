@@ -9,7 +9,7 @@ build=$(mktemp -d)
 trap 'rm -rf "$build"' EXIT
 mkdir "$build/tests"
 
-# Every implementation has a device; PoCL's basic device renders a wrong image; an unexpected defect occurs without the optimiser.
+# Mock programs: every implementation has a device; PoCL's basic device renders a wrong image; an unexpected defect occurs without the optimiser.
 cat >"$build/raya" <<'RAYA'
 #!/usr/bin/env bash
 case $1 in
@@ -119,7 +119,7 @@ expect "| PoCL -cl-opt-disable | toy | OpenCL 3.0, driver 1 | 1 right | - | - | 
 expect "| PoCL basic | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | FAIL 24/24 |"
 expect "basic; right: 5a5a5a5a"
 
-# Matrices without a right cell: every case is skipped, or too slow. A check that passes and then crashes.
+# Tests matrices without a right cell, where every check is skipped or too slow; then a check that passes and then crashes.
 matrix --only "PoCL loopvec" --checks image,machine
 ((code == 1)) || fail "exit code $code where nothing was decided"
 expect "2 cells: 0 right, 0 FAIL, 2 undecided. No right cell: PoCL loopvec."

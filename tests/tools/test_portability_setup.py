@@ -57,14 +57,14 @@ def check_setting_up(scratch):
 
     code, output = set_up(build, packages, wheels)
     expect(code == 0 and "intel-cpu: fetching intel-stand-in==1.0" in output and "MB fetched" in output, f"set up: {code} {output}")
-    here = build / "implementations"
+    installed = build / "implementations"
     for name, driver in (("intel-cpu", "lib/libintelocl.so"), ("pocl-3.0", "pyopencl/.libs/libpocl-21.so")):
-        expect((here / f"{name}.icd").read_text() == f"{here / name / driver}\n", f"{name}.icd")
-        expect((here / name / driver).exists(), f"no {driver}")
-    inodes = [(here / "intel-cpu" / "lib" / name).stat().st_ino for name in ("libintelocl.so", "libintelocl.so.1")]
+        expect((installed / f"{name}.icd").read_text() == f"{installed / name / driver}\n", f"wrong content of {name}.icd")
+        expect((installed / name / driver).exists(), f"no {driver}")
+    inodes = [(installed / "intel-cpu" / "lib" / name).stat().st_ino for name in ("libintelocl.so", "libintelocl.so.1")]
     expect(inodes[0] == inodes[1], "equal members are not hard links")
     listed = subprocess.run([ROOT / "tools" / "portability", "--list", "--build", build, "--raya", "/bin/true"], capture_output=True, text=True).stdout
-    expect("Intel CPU: here\n" in listed and "PoCL 3.0 (PyPI): here\n" in listed, listed)
+    expect("Intel CPU: available\n" in listed and "PoCL 3.0 (PyPI): available\n" in listed, listed)
 
     code, output = set_up(build, packages, empty)
     expect(code == 0 and "intel-cpu: already set up" in output and "pocl-3.0: already set up" in output, f"again, without packages: {output}")
@@ -73,13 +73,13 @@ def check_setting_up(scratch):
     (packages / "intel-cpu.txt").write_text(wrong)
     code, output = set_up(build, packages, wheels)
     expect(code == 3 and "intel-cpu" in output, f"a wrong hash: {code} {output}")
-    expect((here / "intel-cpu.icd").exists() and (here / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 1",
+    expect((installed / "intel-cpu.icd").exists() and (installed / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 1",
            "the old driver is gone")
 
     library["{data}/lib/libintelocl.so"] = b"driver 2"
     (packages / "intel-cpu.txt").write_text(make_wheel(wheels, "intel-stand-in", "2.0", library))
     code, output = set_up(build, packages, wheels)
-    expect(code == 0 and (here / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 2", f"a newer version: {output}")
+    expect(code == 0 and (installed / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 2", f"a newer version: {output}")
 
     (packages / "intel-cpu.txt").write_text(make_wheel(wheels, "intel-stand-in", "3.0", {"{data}/lib/other.so": b""}))
     code, output = set_up(build, packages, wheels)
@@ -88,11 +88,11 @@ def check_setting_up(scratch):
 
 def check_naming_the_cpu(scratch):
     substitute = portability_setup.llvm_14_substitute
-    expect(substitute(ZEN5) == "skylake-avx512", "AMD's family 26")
-    expect(substitute(ZEN5.replace("avx512vl", "")) == "haswell", "AMD's family 26 without AVX-512")
-    expect(substitute(ZEN5.replace("26", "25")) == "skylake-avx512", "AMD's family 25 with AVX-512, Zen 4")
-    expect(substitute(ZEN5.replace("26", "25").replace("avx512vl", "")) is None, "AMD's family 25 without AVX-512, Zen 3, which LLVM 14 knows")
-    expect(substitute(ZEN5.replace("AuthenticAMD", "GenuineIntel")) is None and substitute("") is None, "other makers")
+    expect(substitute(ZEN5) == "skylake-avx512", "wrong CPU name for AMD's family 26")
+    expect(substitute(ZEN5.replace("avx512vl", "")) == "haswell", "wrong CPU name for AMD's family 26 without AVX-512")
+    expect(substitute(ZEN5.replace("26", "25")) == "skylake-avx512", "wrong CPU name for AMD's family 25 with AVX-512, Zen 4")
+    expect(substitute(ZEN5.replace("26", "25").replace("avx512vl", "")) is None, "a substitute for AMD's Zen 3, which LLVM 14 knows")
+    expect(substitute(ZEN5.replace("AuthenticAMD", "GenuineIntel")) is None and substitute("") is None, "a substitute for a CPU of another maker")
     library = scratch / "libpocl.so"
     library.write_bytes(DRIVER)
     portability_setup.patch_cpu_name(library, "skylake-avx512")

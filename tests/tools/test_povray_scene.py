@@ -87,7 +87,7 @@ def area(a, b, c):
 class Reading(unittest.TestCase):
     scene = translation.parse_nff(SCENE)
 
-    def test_every_kind_with_its_numbers(self):
+    def test_every_kind_of_object_is_read_with_its_numbers(self):
         scene = self.scene
         self.assertEqual(scene.view["from"], (0.5, -9, 4.6))
         self.assertEqual((scene.view["angle"], scene.background), ((40,), (0.4, 0.5, 0.7)))
@@ -97,7 +97,7 @@ class Reading(unittest.TestCase):
         self.assertEqual([len(polygon[0]) for polygon in scene.polygons], [4, 4, 6, 3])
         self.assertEqual([cone[:4] for cone in scene.cones][1], ((-2.4, 0.8, 0.6), 1, (-2.4, 0.8, 1.9), 0))
 
-    def test_surfaces_and_their_checkers(self):
+    def test_surfaces_have_their_checkers(self):
         matt, glass = translation.Surface((0.8, 0.75, 0.65), 0.85, 0, 0, 0, 1), self.scene.spheres[1][2]
         self.assertEqual((glass.transmittance, glass.refraction, glass.shine), (0.85, 1.5, 100))
         self.assertEqual([surface.axis for *_, surface in self.scene.planes + self.scene.polygons], [2, 0, 1, None, None])
@@ -130,7 +130,7 @@ class Triangles(unittest.TestCase):
         self.assertEqual(len(found), len(vertices) - 2)
         self.assertAlmostEqual(sum(area(*(vertices[i] for i in corners)) for corners in found), expected_area)  # no overlaps, nothing outside
 
-    def test_concave_outlines_on_all_axes_either_way_round(self):
+    def test_concave_outlines_on_all_axes_in_both_orientations(self):
         for place in (lambda u, v: (1.0, u, v), lambda u, v: (v, 1.0, u), lambda u, v: (u, v, 1.0), lambda u, v: (u, v, u + v)):
             slope = 3 ** 0.5 if place(1, 1) == (1, 1, 2) else 1
             outline = [place(u, v) for u, v in self.comb]
@@ -138,7 +138,7 @@ class Triangles(unittest.TestCase):
                 self.cut(outline[shift:] + outline[:shift], 14 * slope)
                 self.cut((outline[shift:] + outline[:shift])[::-1], 14 * slope)
 
-    def test_a_hole_joined_to_the_outline_by_a_cut(self):
+    def test_a_hole_joined_to_the_outline_is_not_covered(self):
         outline = [(0, 0), (4, 0), (4, 4), (0, 4), (0, 0), (1, 1), (1, 2), (2, 2), (2, 1), (1, 1)]
         self.cut([(u, v, 0.0) for u, v in outline], 15)
 

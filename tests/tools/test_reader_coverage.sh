@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The files of tests/fuzz/corpus reach at least 95 % of the branches of raya's file readers:
+# Checks that the files of tests/fuzz/corpus reach at least 95 % of the branches of raya's file readers.
 #   tests/tools/test_reader_coverage.sh BUILD      BUILD: a build of raya. The readers are compiled again in BUILD/reader_coverage.
-# Prints the figures of each file. Branches are clang's branches of the source: gcov, even with gcovr's --exclude-throw-branches, counts several for
-# each destructor call, which do not depend on the input. Exit code 77: clang-15 or llvm-cov-15 is missing.
+# Prints the figures of each file. Counts clang's branches of the source. gcov, even with gcovr's --exclude-throw-branches, would also count branches
+# of destructor calls, which do not depend on the input. Exit code 77: clang-15 or llvm-cov-15 is missing.
 set -euo pipefail
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
 build=$(readlink -f "$1")

@@ -102,7 +102,7 @@ class Reports:
         self.made = []  # (file of the schema, command, report)
 
     def run(self, *command, code=0, stdout=subprocess.DEVNULL, **variables):
-        command = [str(word) for word in command]
+        command = [str(argument) for argument in command]
         done = subprocess.run(command, cwd=self.folder, env={**os.environ, **self.environment, **variables}, stdout=stdout,
                               stderr=subprocess.PIPE, text=True)
         assert done.returncode == code, f"{' '.join(command)}: exit code {done.returncode}\n{done.stderr}"
@@ -124,13 +124,13 @@ class Reports:
         path.write_text((SCENES / "planes.nff").read_text() + "p 3\n0 0 0\n0 0 0\n1 1 1\ntt 1\n")
         return path
 
-    def renders(self):
+    def make_renders(self):
         odd = self.odd_scene()
-        few = ["--size", "16", "--lanes", "1", "--format", "fp32", "--quiet", "--report", "r.json"]  # few kernels, whose builds take most of the time
+        quick_options = ["--size", "16", "--lanes", "1", "--format", "fp32", "--quiet", "--report", "r.json"]  # building kernels takes most of the time
         spheres, ring = SCENES / "spheres.nff", ["--pes", "8"]
 
         def render(scene, *options, output="x.ppm", launcher=()):
-            self.make("render", "render", scene, *options, *few, "-o", output, launcher=launcher)
+            self.make("render", "render", scene, *options, *quick_options, "-o", output, launcher=launcher)
 
         render(spheres, *ring, "--page", "r.html")
         render(odd, *ring, "--mapping", "rows", "--light", "1,2,3", output="x.pfm")
@@ -140,7 +140,7 @@ class Reports:
         render(spheres, *ring, "--mapping", "hybrid:4,10,0.5", "--exposure", "-1")
         for accel in ("grid", "bvh"):
             render(spheres, "--accel", accel, "--machine", "grande")
-        self.make("frames", "render", spheres, *ring, *few[:-2], "--frames", "1:2", "--turn", "90", "-o", "t.ppm", file="t-frames.json")
+        self.make("frames", "render", spheres, *ring, *quick_options[:-2], "--frames", "1:2", "--turn", "90", "-o", "t.ppm", file="t-frames.json")
         torus = ["--machine", "torus", "--nodes", "2x2x2", "--returns", "rays"]
         render(spheres, *torus, "--async", "--packets", "p.csv.gz")
         if self.mpirun:
@@ -149,20 +149,20 @@ class Reports:
             render(spheres, *torus, "--profile", launcher=launcher)
             self.take("ping", "ping", self.run(*launcher, self.raya, "ping", stdout=subprocess.PIPE))
 
-    def others(self):
+    def make_other_reports(self):
         scene = SCENES / "spheres.nff"
-        few = ["--format", "fp32", "--size", "16", "--lanes", "1", "--samples", "1", "--report"]
-        self.make("bench", "bench", scene, *few, "base.json", file="base.json")
-        self.make("bench", "bench", scene, "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *few, "r.json")
-        self.make("bench", "bench", scene, "--variants", "none", *few, "r.json")
-        self.make("bench", "bench", scene, "--build", "--variants", "none,torus", *few, "r.json")
+        quick_options = ["--format", "fp32", "--size", "16", "--lanes", "1", "--samples", "1", "--report"]
+        self.make("bench", "bench", scene, *quick_options, "base.json", file="base.json")
+        self.make("bench", "bench", scene, "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *quick_options, "r.json")
+        self.make("bench", "bench", scene, "--variants", "none", *quick_options, "r.json")
+        self.make("bench", "bench", scene, "--build", "--variants", "none,torus", *quick_options, "r.json")
         self.tune(scene)
         check = ["verify", "--brief", "--lanes", "1", "--only", "machine mapping: rows", "--report", "r.json"]
         self.make("verify", *check)
         self.run(self.patch_kernels, "kernels", *FAULT)
         self.make("verify", *check, "--kernel-dir", "kernels", code=4)
-        for words in ((self.odd_scene(), "--accel", "grid"), (SCENES / "centre.nff", "--offset", "3")):
-            self.take("info", f"info {words[0]}", self.run(self.raya, "info", *words, "--json", stdout=subprocess.PIPE))
+        for arguments in ((self.odd_scene(), "--accel", "grid"), (SCENES / "centre.nff", "--offset", "3")):
+            self.take("info", f"info {arguments[0]}", self.run(self.raya, "info", *arguments, "--json", stdout=subprocess.PIPE))
         self.take("gpu_day", "tools/gpu_day", gpu_day(self.raya, self.folder / "day")[0].read_text())
         for mapping in ("cyclic:3", "rows"):
             self.run(self.raya, "explore", scene, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "1", "--format", "fp32", "-o", "e.html")
@@ -266,7 +266,7 @@ def main(raya, patch_kernels, mpirun=""):
     with tempfile.TemporaryDirectory() as folder:
         generators = [Reports(Path(raya).resolve(), Path(patch_kernels).resolve(), mpirun, Path(folder, name)) for name in ("renders", "others")]
         with ThreadPoolExecutor() as pool:
-            for done in [pool.submit(generators[0].renders), pool.submit(generators[1].others)]:
+            for done in [pool.submit(generators[0].make_renders), pool.submit(generators[1].make_other_reports)]:
                 done.result()
     start, made = time.monotonic(), generators[0].made + generators[1].made
     wrong = [f"{schema_name}, {name}: {line}" for schema_name, name, report in made for line in rules.wrong(schema_name, report)]

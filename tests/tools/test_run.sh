@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests tools/run with mock cmake and setup: it prints the progress of a build, on a terminal and otherwise; nothing if few steps are needed.
+# Tests tools/run with mock cmake and setup: it prints the progress of a build, to a terminal and to a file, but not if the build has few steps.
 set -euo pipefail
 tools=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../tools")
 scratch=$(mktemp -d)

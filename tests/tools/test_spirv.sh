@@ -20,13 +20,13 @@ module() {
 
 modules=0
 for kernel in "$root"/kernels/*/*.cl; do
-    words_local=1 accels=(0) widths=(1 16)
+    words_local=1 accels=(0) lane_counts=(1 16)
     case $kernel in
         */ring/trace.cl) accels=(0 1 2) ;;
         */checks/hits.cl) accels=(0 1 2) words_local=0 ;;
-        */ring/filter.cl | */ring/contrast.cl | */torus/compose.cl) widths=(1) ;;  # one pixel at a time
+        */ring/filter.cl | */ring/contrast.cl | */torus/compose.cl) lane_counts=(1) ;;  # one pixel at a time
     esac
-    for lanes in "${widths[@]}"; do
+    for lanes in "${lane_counts[@]}"; do
         for format in "8 23" "6 15"; do
             for accel in "${accels[@]}"; do
                 module "$kernel" -DRAYA_LANES="$lanes" -DRAYA_EXPONENT_BITS="${format% *}" -DRAYA_FRACTION_BITS="${format#* }" \

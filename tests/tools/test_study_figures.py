@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 SCENE = ROOT / "scenes" / "glass.nff"
 SIZE = 48
 # Ratio of the filter's time, 7 ms (FILTER_ARITHMETIC_MS of tools/lab/papers.py), to its budget: 42 cycles of 100 ns for each of 256 pixels.
-FACTOR = 7 / (256 * 42 * 100e-6)
+TIME_PER_BUDGET = 7 / (256 * 42 * 100e-6)
 
 
 def run(*arguments):
@@ -107,18 +107,18 @@ class Figures(unittest.TestCase):
 
     def test_times_with_one_clock(self):
         total = sum(map(sum, self.cost))
-        self.assertAlmostEqual(our_figure(self.pages["table2"], "1 PE: compute"), FACTOR * total * 100e-6, delta=1e-6)
+        self.assertAlmostEqual(our_figure(self.pages["table2"], "1 PE: compute"), TIME_PER_BUDGET * total * 100e-6, delta=1e-6)
         speedup = total / max(loads(self.cost, 16))
-        other_ms = 2 + 140 + 1130
+        other_ms = 2 + 140 + 1130  # transfers of objects and image, display (Table 2)
         self.assertAlmostEqual(our_figure(self.pages["table2"], "speed-up of the whole job"),
                                (64800 + other_ms) / (64800 / speedup + other_ms), delta=1e-9)
-        rotation = 10 / 32 - 768 / 6e3 + 3 * SIZE / 6e3
+        rotation = 10 / 32 - 768 / 6e3 + 3 * SIZE / 6e3  # ms, at 6,000 words per ms; a rotation of 768 words takes 10/32 ms
         for row in table(self.pages["table3"], "table3"):
             p = row["p"]
             ring = 1.375 + 2 * (min(p, SIZE - p) + 1) * rotation
             self.assertAlmostEqual(row["communication"], ring, delta=1e-9)
-            tracing = FACTOR * max(loads(self.cost, p)) * 100e-6
-            self.assertAlmostEqual(row["total"], tracing + FACTOR * 42 * SIZE * 100e-6 + ring, delta=1e-6)
+            tracing = TIME_PER_BUDGET * max(loads(self.cost, p)) * 100e-6
+            self.assertAlmostEqual(row["total"], tracing + TIME_PER_BUDGET * 42 * SIZE * 100e-6 + ring, delta=1e-6)
 
     def test_means_have_student_intervals(self):
         for row in table(self.pages["fig8"], "fig8")[:20]:

@@ -4,11 +4,11 @@
 #include "kernels/shared/node.h"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void voxel_hits(__global const uint* restrict memories,  // the words of all nodes
+void voxel_hits(__global const uint* restrict memories,  // words of all nodes' memories
                 __global const float* restrict rays,
-                const uint start,                        // offset of the node's words
-                const uint voxel,                        // index of the voxel in the node; if equal to the number of
-                                                         // the node's voxels, the kernel tests planes only
+                const uint start,                        // offset of the node's memory, in words
+                const uint voxel,                        // index of the voxel in the node; the node's number of
+                                                         // voxels: the kernel tests only planes
                 __global uint* restrict objects,         // [ray]: object number in the voxel; RAYA_NO_OBJECT: miss
                 __global float* restrict distances,      // [ray]: t; for a miss the ray's limit
                 __global float* restrict places)         // [ray][3][3]: geometric normal, normal, colour; undefined

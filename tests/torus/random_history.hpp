@@ -21,8 +21,8 @@ class HistoryBuilder {
                                  .first_message = static_cast<std::uint32_t>(history.messages.size())});
         return static_cast<std::uint32_t>(history.tasks.size()) - 1;
     }
-    /// add_ray() and add_return() add a message that the last task sends: a ray to node `to`, or a return to the root.
-    /// They return the message's number.
+    /// add_ray() adds a ray that the last task sends to node `destination`; add_return() adds a return to the root.
+    /// Both return the message's number.
     std::uint32_t add_ray(std::uint32_t destination) { return send(destination, RAYA_PACKET_WORDS, RAYA_KIND_PRIMARY); }
     std::uint32_t add_return() { return send(RAYA_ROOT, RAYA_RETURN_WORDS, RAYA_KIND_RETURN); }
 
@@ -35,18 +35,18 @@ class HistoryBuilder {
     }
 };
 
-/// Returns a history of about `max_tasks` tasks of fewer than 4,000 cycles. Either all injected tasks start at the
-/// root, or each starts at a random node. Rays have 8, 16 or 24 words and any destination, including their sender.
+/// Returns a history of about `max_tasks` tasks, each of fewer than 4,000 cycles. Either all injected tasks start at
+/// the root, or each starts at a random node. Rays have 8, 16 or 24 words and any destination, including their sender.
 inline History random_history(SplitMix& random, const raya_torus& torus, std::uint32_t max_tasks) {
     struct PendingTask {
         std::uint32_t node, cause;
     };
     const std::uint32_t nodes = raya_nodes(torus), injected_tasks = 1 + random_below(random, max_tasks / 4);
-    const bool at_root = random.next() % 3 == 0;
+    const bool starts_at_root = random.next() % 3 == 0;
     const std::uint32_t max_cycles = 1 + random_below(random, 4000);
     std::deque<PendingTask> pending;
     for (std::uint32_t i = 0; i < injected_tasks; ++i)
-        pending.push_back({at_root ? RAYA_ROOT : random_below(random, nodes), HistoryTask::kNoCause});
+        pending.push_back({starts_at_root ? RAYA_ROOT : random_below(random, nodes), HistoryTask::kNoCause});
     HistoryBuilder builder;
     while (!pending.empty()) {
         const PendingTask next = pending.front();

@@ -78,8 +78,8 @@ inline Partition random_partition(SplitMix& random, const PackedJob& job, const 
                                   std::uint32_t max_copies) {
     std::vector<std::set<std::uint32_t>> lists(divisions[0] * divisions[1] * divisions[2]);
     for (const std::uint32_t object : finite_objects(job)) {
-        const std::uint32_t times = random.next() % 2 ? 1 : 1 + random_below(random, max_copies);
-        for (std::uint32_t i = 0; i < times; ++i) lists[random_below(random, lists.size())].insert(object);
+        const std::uint32_t copies = random.next() % 2 ? 1 : 1 + random_below(random, max_copies);
+        for (std::uint32_t i = 0; i < copies; ++i) lists[random_below(random, lists.size())].insert(object);
     }
     return partition_of(divisions, lists);
 }

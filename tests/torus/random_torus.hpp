@@ -12,8 +12,8 @@
 
 namespace raya {
 
-/// Returns three random sides of 1..`max_side` nodes. At least a quarter of the sides have one node, so that their
-/// links lead back to their own node.
+/// Returns three random sides of 1..`max_side` nodes. On average, at least a quarter of the sides have one node. The
+/// links along such a side lead back to the same node.
 inline std::array<std::uint32_t, 3> random_sides(SplitMix& random, std::uint32_t max_side) {
     const auto side = [&] { return random.next() % 4 == 0 ? 1 : 1 + random_below(random, max_side); };
     const std::uint32_t first = side(), second = side();
@@ -26,7 +26,7 @@ inline raya_torus random_torus(SplitMix& random, std::uint32_t max_side) {
     return make_torus(random_sides(random, max_side), links);
 }
 
-/// Returns numbers of nodes and torus sides as text for failure messages: "3x4x6 on 6x12x1".
+/// Returns the nodes and the sides of a torus as text for failure messages: "3x4x6 on 6x12x1".
 inline std::string torus_text(const raya_torus& t) {
     return sides_text({t.nodes[0], t.nodes[1], t.nodes[2]}) + " on " + sides_text({t.sides[0], t.sides[1], t.sides[2]});
 }

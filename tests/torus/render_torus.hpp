@@ -18,7 +18,7 @@
 
 namespace raya {
 
-/// Settings of a render.
+/// Settings of a render on the torus.
 struct TorusCase {
     std::uint32_t width = 20, height = 16;
     std::array<std::uint32_t, 3> nodes = {2, 2, 2};
@@ -92,8 +92,8 @@ inline std::string image_and_counts(const Image& image, const EventCounts& e) {
 
 inline std::string image_and_counts(const TorusResult& r) { return image_and_counts(r.image, r.events); }
 
-/// Returns image_and_counts() of a render on the ring with the same size, format and bounces, which tests every ray
-/// against every object.
+/// Returns image_and_counts() of a render on the ring, with the size, format and bounces of `c`. The ring tests every
+/// ray against every object.
 inline std::string ring_image_and_counts(const Scene& scene, const TorusCase& c) {
     const RingCase ring{.width = c.width,
                         .height = c.height,
@@ -107,8 +107,8 @@ inline std::string ring_image_and_counts(const Scene& scene, const TorusCase& c)
     return image_and_counts(r.image, r.all.events);
 }
 
-/// Adds the packet's number of words to `words`, [node][link], for each link of the packet's route according to the
-/// routing rules.
+/// Adds the packet's number of words to words[node][link] for each link of the packet's route. The routing rules define
+/// this route.
 inline void add_route(std::vector<std::uint64_t>& words, const raya_torus& torus, const PacketRecord& p) {
     for (std::uint32_t node = p.source; node != p.destination;) {
         const bool is_return = raya_state_kind(p.head.state) == RAYA_KIND_RETURN;
@@ -141,19 +141,19 @@ inline Scene random_view_scene(std::uint64_t seed) {
 /// Seeds with which random_view_scene() has many rays of every kind and some lit points.
 inline constexpr std::array<std::uint64_t, 11> kSceneSeeds = {27, 41, 53, 63, 14, 19, 35, 8, 21, 29, 69};
 
-/// Returns a scene with objects of every kind, seen in a mirror so far away that rays reflected by the mirror are wide
-/// (is_wide(), kernels/grid/traversal.clh).
+/// Returns a scene with objects of every kind, seen in a distant mirror. The mirror is so far away that the rays that
+/// it reflects are wide (is_wide(), kernels/grid/traversal.clh).
 inline Scene far_mirror_scene(std::uint64_t seed, const std::string& format) {
     Scene scene = mixed_scene(seed);
     SplitMix random(seed ^ 0xfa5);
-    // Rays are wide if their origin is 1024 times the scene's size away in fp32, a few times that size in formats of
-    // fewer bits.
+    // In fp32, rays are wide if their origin is 1024 scene sizes away; in formats of fewer bits, if it is a few scene
+    // sizes away.
     const double distance = (format == "fp32" ? 20'000 : 500) * (1 + random_below(random, 3));
     scene.surfaces.push_back({.colour = {0.9, 1, 0.9}, .diffuse = 0.5, .specular = 0.5, .shine = 5});
     scene.planes = {{{-1, 0, 0}, -distance, static_cast<int>(scene.surfaces.size()) - 1}};
     scene.view.from = {kSceneReach + 1, random.uniform(-1, 1), random.uniform(-1, 1)};
     scene.view.at = scene.view.from + Vec3{1, 0, 0};
-    scene.view.angle_degrees = 200 / distance;  // mirror images are twice as far away
+    scene.view.angle_degrees = 200 / distance;  // the mirror image is twice as far away as the mirror
     return scene;
 }
 

@@ -12,19 +12,19 @@
 namespace raya {
 namespace {
 
-// Times in ms. kCycle: one cycle. kRayEnd: work of a processor for a ray at one end of a link; kReturnEnd: for a
-// return. kRay: transfer of a ray over a link with traffic in one direction; kReturn: of a return. kRayBoth: transfer
-// of a ray over a link with traffic in both directions.
+// Times in ms. kCycle: one cycle. kRayEnd, kReturnEnd: a processor's work for a ray or a return at one end of a link.
+// kRay, kReturn: transfer of a ray or a return over a link with traffic in one direction. kRayBoth: transfer of a ray
+// over a link with traffic in both directions.
 constexpr double kCycle = 40e-6, kRayEnd = 51 * kCycle, kReturnEnd = 35 * kCycle;
 constexpr double kRay = 64 / 1.7e3, kReturn = 32 / 1.7e3, kRayBoth = 64 / 1.2e3;
 
 Approx about(double value) { return Approx(value).epsilon(1e-9); }
 
-raya_torus ring_of(std::uint32_t nodes) { return make_torus({nodes, 1, 1}, Links::kTorus3d); }
+raya_torus torus_of(std::uint32_t nodes) { return make_torus({nodes, 1, 1}, Links::kTorus3d); }
 
-double total(const std::vector<AsyncNode>& nodes, double AsyncNode::*figure) {
+double total(const std::vector<AsyncNode>& nodes, double AsyncNode::*time_ms) {
     return std::accumulate(nodes.begin(), nodes.end(), 0.0,
-                           [&](double sum, const AsyncNode& node) { return sum + node.*figure; });
+                           [&](double sum, const AsyncNode& node) { return sum + node.*time_ms; });
 }
 
 TEST_CASE("a ray crosses the links of its route one after another, and so does its return", "[torus]") {
@@ -33,7 +33,7 @@ TEST_CASE("a ray crosses the links of its route one after another, and so does i
     h.add_task(0, 1000);
     h.add_task(hops, 2000, h.add_ray(hops));
     h.add_return();
-    const AsyncResult r = simulate(ring_of(7), h.history);
+    const AsyncResult r = simulate(torus_of(7), h.history);
     const double transfer_ms = hops * (2 * kRayEnd + kRay) + hops * (2 * kReturnEnd + kReturn);
     CHECK(r.finish_ms == about(3000 * kCycle + transfer_ms));
     CHECK(r.delivered == 2);
@@ -49,7 +49,7 @@ TEST_CASE("a link carries one message at a time in each direction, and both dire
     one_way.add_task(2, 10, first);
     one_way.add_task(2, 20, second);
     // The input thread holds one ray, so the transfer of the second ray starts when the first has been received.
-    CHECK(simulate(ring_of(4), one_way.history).finish_ms == about(520 * kCycle + 4 * kRayEnd + 2 * kRay));
+    CHECK(simulate(torus_of(4), one_way.history).finish_ms == about(520 * kCycle + 4 * kRayEnd + 2 * kRay));
 
     HistoryBuilder both;
     both.add_task(1, 500);
@@ -58,14 +58,14 @@ TEST_CASE("a link carries one message at a time in each direction, and both dire
     const std::uint32_t down = both.add_ray(1);
     both.add_task(2, 10, up);
     both.add_task(1, 10, down);
-    CHECK(simulate(ring_of(4), both.history).finish_ms == about(510 * kCycle + 2 * kRayEnd + kRayBoth));
+    CHECK(simulate(torus_of(4), both.history).finish_ms == about(510 * kCycle + 2 * kRayEnd + kRayBoth));
     // The second transfer starts when half of the first is done. Both transfers continue at the lower rate until the
     // first is done; then the second continues alone.
     const auto delay_cycles = static_cast<std::uint64_t>(kRay / 2 / kCycle);
     both.history.tasks[1].cycles = 500 + delay_cycles;
     const double first_ms = static_cast<double>(delay_cycles) * kCycle, both_ms = (1 - first_ms / kRay) * kRayBoth;
     const double second_ms = (1 - both_ms / kRayBoth) * kRay;
-    CHECK(simulate(ring_of(4), both.history).finish_ms ==
+    CHECK(simulate(torus_of(4), both.history).finish_ms ==
           about(510 * kCycle + 2 * kRayEnd + first_ms + both_ms + second_ms));
 }
 
@@ -76,7 +76,7 @@ TEST_CASE("messages preempt the main task and delay its end by their processor t
     h.add_task(2, 10, h.add_ray(2));  // passes through node 1
     h.add_task(3, 10);
     h.add_return();  // takes the other direction
-    const AsyncResult r = simulate(ring_of(5), h.history);
+    const AsyncResult r = simulate(torus_of(5), h.history);
     CHECK(r.finish_ms == about(100'000 * kCycle + 2 * kRayEnd));
     CHECK(r.nodes[1].messages_ms == about(2 * kRayEnd));
 }
@@ -90,21 +90,21 @@ TEST_CASE("a full port makes the main task wait", "[torus]") {
     for (const std::uint32_t message : sent) h.add_task(2, 0, message);
     h.add_task(1, 1000);
     const AsyncMachine machine{.buffer = 5};
-    const AsyncResult r = simulate(ring_of(4), h.history, machine);
-    // A ray enters the port if two of its five slots are free: four rays enter at once, each further ray when a ray has
-    // left the port.
+    const AsyncResult r = simulate(torus_of(4), h.history, machine);
+    // A ray enters the port if two of the port's five slots are free. So four rays enter at once, and each further ray
+    // enters when a ray has left the port.
     CHECK(r.nodes[1].port_ms == about((kRays - 4) * (2 * kRayEnd + kRay) - kRayEnd));
     CHECK(r.finish_ms == about(kRays * (2 * kRayEnd + kRay)));
     CHECK(r.nodes[2].queue_max == 1);
-    const AsyncResult large_buffer = simulate(ring_of(4), h.history, {.buffer = kRays + 1});
+    const AsyncResult large_buffer = simulate(torus_of(4), h.history, {.buffer = kRays + 1});
     CHECK(large_buffer.nodes[1].port_ms == 0);
     CHECK(large_buffer.finish_ms == r.finish_ms);
-    CHECK_THROWS_AS(simulate(ring_of(4), h.history, {.buffer = 1}), UserError);
+    CHECK_THROWS_AS(simulate(torus_of(4), h.history, {.buffer = 1}), UserError);
 }
 
-// Every node of a ring sends many rays to the opposite node, and each ray waits for a free slot in the next port.
-TEST_CASE("a ring whose ports may all fill up deadlocks; with one slot kept free it does not", "[torus]") {
-    const raya_torus torus = ring_of(6);
+// Every node sends many rays to the opposite node, and each ray waits for a free slot in the next node's port.
+TEST_CASE("a torus deadlocks if all its ports may fill up, but not if one slot of each port stays free", "[torus]") {
+    const raya_torus torus = torus_of(6);
     HistoryBuilder h;
     std::vector<std::uint32_t> sent;
     for (std::uint32_t node = 0; node < 6; ++node) {
@@ -123,7 +123,7 @@ TEST_CASE("a ring whose ports may all fill up deadlocks; with one slot kept free
 // A node processes rays in order of arrival. So a ray on which no task depends may delay a ray on which other tasks
 // depend. Therefore the asynchronous machine is not always faster than supersteps, although it is faster for renders
 // (test_history.cpp).
-TEST_CASE("supersteps can be faster than asynchronous execution, because they order the tasks", "[torus]") {
+TEST_CASE("a long task delays the tasks that depend on a later ray of its node", "[torus]") {
     constexpr std::uint64_t kLong = 10'000'000;
     HistoryBuilder h;
     h.add_task(0, 10);
@@ -132,11 +132,11 @@ TEST_CASE("supersteps can be faster than asynchronous execution, because they or
     h.add_task(1, 100'000, ray_to_1);    // superstep 2 of node 1
     h.add_task(0, 10, h.add_ray(0));     // superstep 3 of node 0
     h.add_task(2, kLong, h.add_ray(2));  // superstep 4 of node 2, after the task above
-    const double unordered_ms = simulate(ring_of(4), h.history).finish_ms;
-    h.history.tasks[1].cycles = 0;
-    const double ordered_ms = simulate(ring_of(4), h.history).finish_ms;
-    CHECK(unordered_ms > 2 * kLong * kCycle);
-    CHECK(ordered_ms + 0.1 < kLong * kCycle + 10);
+    const double delayed_ms = simulate(torus_of(4), h.history).finish_ms;
+    h.history.tasks[1].cycles = 0;  // the long task of node 0
+    const double undelayed_ms = simulate(torus_of(4), h.history).finish_ms;
+    CHECK(delayed_ms > 2 * kLong * kCycle);
+    CHECK(undelayed_ms + 0.1 < kLong * kCycle + 10);
 }
 
 TEST_CASE("random histories: every message is delivered once, within the time bounds, for any buffer size", "[torus]") {

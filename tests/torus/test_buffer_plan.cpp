@@ -36,15 +36,15 @@ NodeMemories nodes_with_spheres(const std::vector<std::uint32_t>& counts, const 
 constexpr std::uint64_t padded_to_rows(std::uint64_t bytes) { return (bytes + 15) / 16 * 16; }
 
 // Returns the size in bytes of the words of a node that nodes_with_spheres() makes: header, one voxel, one surface, and
-// six words per sphere. The words before the spheres and the spheres are each padded to whole rows.
+// six words per sphere. The words before the spheres, and the words of the spheres, are each padded to whole rows.
 constexpr std::uint64_t node_words_bytes(std::uint32_t spheres) {
     return padded_to_rows(padded_to_rows(sizeof(raya_node) + sizeof(raya_voxel_memory) + 4 * RAYA_SURFACE_WORDS) +
                           24ull * spheres);
 }
 
 // Returns the size of queue and mailboxes in bytes. The queue holds `queue` rays of 64 bytes. A mailbox holds a quarter
-// of that number, at least 1. Each link has an outbox and an inbox of rays, and an inbox of returns of 32 bytes. The
-// node has one outbox of returns, towards the root.
+// of that number, at least 1. Each link has an outbox of rays, an inbox of rays, and an inbox of returns of 32 bytes.
+// The node has one outbox of returns, towards the root.
 std::uint64_t packet_bytes(std::uint64_t queue, std::uint64_t links) {
     const std::uint64_t box = queue < 8 ? 1 : queue / 4;
     return 64 * (queue + 2 * links * box) + 32 * (links > 0 ? links + 1 : 0) * box;
@@ -285,7 +285,7 @@ TEST_CASE("each larger machine that is tried doubles the shortest side, up to 65
             }
             CHECK(doubled == 1);
         }
-        const std::uint32_t last = raya_nodes(make_torus(tried.back(), Links::kTorus3d));
-        CHECK((last <= kMaxNodes && 2 * last > kMaxNodes));
+        const std::uint32_t last_nodes = raya_nodes(make_torus(tried.back(), Links::kTorus3d));
+        CHECK((last_nodes <= kMaxNodes && 2 * last_nodes > kMaxNodes));
     }
 }

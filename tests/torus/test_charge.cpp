@@ -11,9 +11,9 @@
 namespace raya {
 namespace {
 
-// Returns the number of pixels in all windows. This is also the number of discarded rays: each node makes the rays of
-// the pixels in its window and in its rows of the image, the rows contain every pixel once, and the nodes together keep
-// one ray per pixel.
+// Returns the number of pixels in all windows, which is also the number of discarded rays. Each node makes the rays of
+// the pixels in its window and in its rows of the image. The rows of all nodes contain every pixel once, and all nodes
+// together keep one ray per pixel.
 std::uint64_t pixels_of_windows(const Scene& scene, const TorusSettings& s) {
     const PackedJob job = pack_job(scene, job_settings(s, length_scale(scene, s.format)));
     std::uint64_t pixels = 0;
@@ -27,8 +27,8 @@ std::uint64_t pixels_of_windows(const Scene& scene, const TorusSettings& s) {
 using RayKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;  // pixel, path, level
 RayKey key_of(const PacketRecord& p) { return {p.head.pixel, p.head.path, raya_state_level(state_of(p))}; }
 
-// Checks that a ray has at most one return, and that the return leaves from the node in which the shadow ray to the
-// last light that the surface faces ends.
+// Checks that each ray has at most one return. The return must leave from the node in which the ray's last shadow ray
+// ends: the ray to the last light that the surface faces.
 void check_last_lights(const RecordedRender& r) {
     std::map<RayKey, PacketRecord> last_records;  // by ray: last record of its last shadow ray
     for (const PacketRecord& p : r.records) {

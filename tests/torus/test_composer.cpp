@@ -129,23 +129,23 @@ TEST_CASE("a duplicate contribution, or one outside the image, is an error", "[t
         for (std::uint32_t pixel = 0; pixel < 4; ++pixel) RandomRayTree(random, returns, pixel).add_ray(0, 0, 3);
         CHECK_NOTHROW(sort_contributions(returns, 4));
         CHECK_THROWS_AS(sort_contributions(returns, 3), std::logic_error);
-        raya_head twice = returns[random_below(random, returns.size())];
-        twice.state ^= RAYA_STATE_FRESH;  // not part of the contribution's identity
-        twice.weight += 1;
-        returns.push_back(twice);
+        raya_head copy = returns[random_below(random, returns.size())];
+        copy.state ^= RAYA_STATE_FRESH;  // not part of the contribution's identity
+        copy.weight += 1;
+        returns.push_back(copy);
         shuffle(returns, random);
         CHECK_THROWS_AS(sort_contributions(returns, 4), std::logic_error);
     }
 }
 
 TEST_CASE("an image without contributions is black", "[torus]") {
-    const Contributions none = sort_contributions({}, 7);
-    CHECK(none.colours.empty());
-    CHECK(none.starts == std::vector<std::uint32_t>(8, 0));
+    const Contributions no_contributions = sort_contributions({}, 7);
+    CHECK(no_contributions.colours.empty());
+    CHECK(no_contributions.starts == std::vector<std::uint32_t>(8, 0));
     Session session(choose_device(""));
     Kernels kernels(session, {});
     Composer composer(kernels);
-    CHECK(composer.compose(none) == std::vector<float>(21, 0));
+    CHECK(composer.compose(no_contributions) == std::vector<float>(21, 0));
 }
 
 TEST_CASE("pixels are sums in which each multiply-add rounds once", "[torus]") {

@@ -45,14 +45,14 @@ void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t light
     CHECK(r.made[RAYA_KIND_REFRACTED] == e[RAYA_REFRACTED]);
     CHECK(r.made[RAYA_KIND_SHADOW] == e[RAYA_SHADOW]);
     CHECK(e[RAYA_SHADOW] == e[RAYA_SHADOW_HITS] + e[RAYA_LIT]);
-    // Every ray returns an ambient term or the background, and each unblocked light adds a term. If the terms
-    // of a ray travel in one return, its last shadow ray sends that return even if it is blocked. With one light, each
-    // shadow ray is the last one of its ray.
+    // Every ray returns an ambient term or the background, and each unblocked light adds a term. If one return carries
+    // all terms of a ray, the ray's last shadow ray sends that return even if this shadow ray is blocked. With one
+    // light, each shadow ray is the last one of its ray.
     const std::uint64_t rays = pixels + e[RAYA_REFLECTED] + e[RAYA_REFRACTED], terms = rays + e[RAYA_LIT];
-    const std::uint64_t stopped = one_return_per_ray ? e[RAYA_SHADOW_HITS] : 0;
+    const std::uint64_t blocked_rays = one_return_per_ray ? e[RAYA_SHADOW_HITS] : 0;
     CHECK(r.returns == (one_return_per_ray ? rays : terms));
-    CHECK(r.made[RAYA_KIND_RETURN] >= terms + (lights > 1 ? 0 : stopped));
-    CHECK(r.made[RAYA_KIND_RETURN] <= terms + stopped);
+    CHECK(r.made[RAYA_KIND_RETURN] >= terms + (lights > 1 ? 0 : blocked_rays));
+    CHECK(r.made[RAYA_KIND_RETURN] <= terms + blocked_rays);
 }
 
 // Checks that each packet crosses as many links as the torus distance between its source and destination, and that the
@@ -82,7 +82,7 @@ void check_traffic(const RecordedRender& r, const TorusSettings& s) {
     CHECK(r.result.supersteps.back().live <= r.result.made[RAYA_KIND_RETURN]);  // returns not yet read by the host
 }
 
-std::uint32_t number_of(const raya_grid& grid, const PacketRecord& p) {
+std::uint32_t voxel_number(const raya_grid& grid, const PacketRecord& p) {
     const raya_place at = raya_unpack_place(p.head.voxel);
     return raya_voxel(grid, at.at[0], at.at[1], at.at[2]);
 }
@@ -99,8 +99,8 @@ bool is_walk(const std::vector<PacketRecord>& stages) {
             const int step = static_cast<int>(b.at[axis]) - static_cast<int>(a.at[axis]);
             steps += static_cast<std::uint32_t>(std::abs(step));
             const raya_place first = raya_unpack_place(stages[0].head.voxel);
-            const int so_far = static_cast<int>(a.at[axis]) - static_cast<int>(first.at[axis]);
-            is_valid = is_valid && step * so_far >= 0;
+            const int steps_before = static_cast<int>(a.at[axis]) - static_cast<int>(first.at[axis]);
+            is_valid = is_valid && step * steps_before >= 0;
         }
         is_valid = is_valid && steps == 1;
     }
@@ -117,7 +117,7 @@ bool is_tour(const std::vector<PacketRecord>& stages, const raya_torus& torus, c
     bool is_valid = visits < voxels && (visits == voxels - 1 || kind_of(stages[0]) == RAYA_KIND_SHADOW);
     for (std::size_t i = 0; i < stages.size(); ++i) {
         number = (number + 1) % voxels;
-        is_valid = is_valid && (i >= visits || number_of(grid, stages[i]) == number);
+        is_valid = is_valid && (i >= visits || voxel_number(grid, stages[i]) == number);
         is_valid = is_valid && (i < visits) == !(state_of(stages[i]) & RAYA_STATE_FOUND);
     }
     return is_valid;
@@ -236,7 +236,7 @@ TEST_CASE("recording the packets changes no result", "[torus]") {
     CHECK(recorded.supersteps.size() == unrecorded.supersteps.size());
 }
 
-TEST_CASE("the busiest node or link of each superstep, summed, is between the busiest one's total and the total of all",
+TEST_CASE("the supersteps' maxima add up to at least the maximum over nodes or links and at most the sum over them",
           "[torus]") {
     const TorusResult r =
         render_torus(random_view_scene(kSceneSeeds[2]), TorusCase{.nodes = {3, 2, 3}, .lanes = 4, .group = 1});

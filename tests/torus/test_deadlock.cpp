@@ -91,8 +91,8 @@ TEST_CASE("the minimum queue suffices if one node processes all rays", "[torus]"
                 CHECK(r.events[RAYA_PRIMARY_HITS] == c.width * c.height);
                 CHECK(r.events[RAYA_REFLECTED] > 2 * c.width * c.height);
                 const auto& loads = r.load.per_pe;
-                const auto all = std::accumulate(loads.begin(), loads.end(), std::uint64_t{0});
-                CHECK(*std::max_element(loads.begin(), loads.end()) > all / 4 * 3);
+                const auto total_load = std::accumulate(loads.begin(), loads.end(), std::uint64_t{0});
+                CHECK(*std::max_element(loads.begin(), loads.end()) > total_load / 4 * 3);
             }
 }
 
@@ -103,12 +103,12 @@ TEST_CASE("a queue below the minimum length is refused, and the message names th
         Scene scene = random_view_scene(5);
         scene.lights.resize(random_below(random, 5), scene.lights[0]);
         TorusCase c{.lanes = 4, .group = 1, .bounces = random_below(random, 32)};
-        const std::uint32_t shortest = min_queue_of(scene, c);
-        c.queue = 1 + random_below(random, shortest - 1);
-        if (i % 2) c.queue = shortest - 1;
-        CAPTURE(i, case_text(c), shortest);
+        const std::uint32_t min_queue = min_queue_of(scene, c);
+        c.queue = 1 + random_below(random, min_queue - 1);
+        if (i % 2) c.queue = min_queue - 1;
+        CAPTURE(i, case_text(c), min_queue);
         const std::string refusal = user_error_message([&] { render_torus(session, scene, c); });
-        CHECK_THAT(refusal, Catch::Contains("--queue") && Catch::Contains(std::to_string(shortest)));
+        CHECK_THAT(refusal, Catch::Contains("--queue") && Catch::Contains(std::to_string(min_queue)));
     }
 }
 
@@ -158,17 +158,17 @@ TEST_CASE("the queue that the search finds fits a node's memory", "[torus]") {
     TorusCase c{.width = 24, .height = 24, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
     c.format = "spa22";
     c.bounces = 8;
-    const std::uint32_t shortest = min_queue_of(scene, c);
-    c.queue = shortest;
+    const std::uint32_t min_queue = min_queue_of(scene, c);
+    c.queue = min_queue;
     TorusSettings settings = settings_of(c);
-    settings.memory_bytes = 16384;  // less than twice the memory of the shortest queue
+    settings.memory_bytes = 16384;  // less than twice the memory of the minimum queue
     TorusRenderer renderer(session, scene, settings);
     REQUIRE(render_outcome(renderer).deadlock);
-    const QueueSearchResult found = search(renderer, shortest);
+    const QueueSearchResult found = search(renderer, min_queue);
     CHECK((found.completes && found.fits));
     CHECK(found.bytes <= 16384);
-    REQUIRE(found.queue > shortest);
-    CHECK(found.queue < 2 * shortest);
+    REQUIRE(found.queue > min_queue);
+    CHECK(found.queue < 2 * min_queue);
     settings.queue = found.queue;  // as a user would set it
     CHECK(image_and_counts(TorusRenderer(session, scene, settings).render()) == ring_image_and_counts(scene, c));
 }
@@ -179,7 +179,7 @@ TEST_CASE("with a queue one packet shorter than the shortest sufficient queue, t
     TorusCase c{.width = 24, .height = 24, .nodes = {4, 4, 4}, .links = Links::kTorus2d, .lanes = 4, .group = 1};
     c.format = "spa22";
     const std::string expected = ring_image_and_counts(scene, c);
-    const std::uint32_t shortest = min_queue_of(scene, c);
+    const std::uint32_t min_queue = min_queue_of(scene, c);
     const auto outcome = [&](std::uint32_t queue) {
         c.queue = queue;
         std::string image;
@@ -187,12 +187,12 @@ TEST_CASE("with a queue one packet shorter than the shortest sufficient queue, t
             user_error_message([&] { image = image_and_counts(render_torus(session, scene, c)); });
         return image.empty() ? refusal : image;
     };
-    std::uint32_t queue = shortest;
+    std::uint32_t queue = min_queue;
     std::string previous, current = outcome(queue);
-    for (; current != expected && queue < 4 * shortest; current = outcome(++queue)) previous = current;
-    CAPTURE(shortest, queue, previous);
+    for (; current != expected && queue < 4 * min_queue; current = outcome(++queue)) previous = current;
+    CAPTURE(min_queue, queue, previous);
     CHECK(current == expected);
-    REQUIRE(queue > shortest);  // otherwise the test checks nothing
+    REQUIRE(queue > min_queue);  // otherwise the test checks nothing
     CHECK_THAT(previous, Catch::Contains("deadlock") && Catch::Contains("are full at " + std::to_string(queue - 1)));
 }
 

@@ -15,7 +15,7 @@ TEST_CASE("no lane of the torus's kernels computes with denormals", "[.][denorma
         TorusCase c;
         c.sources.more_options = {"-cl-opt-disable"};
         TorusRenderer renderer(session, project_scene(name), settings_of(c));
-        renderer.render();  // PoCL compiles here
+        renderer.render();  // PoCL compiles the kernels in the first render
         CHECK_FALSE(uses_denormals([&] { renderer.render(); }));
     }
 }

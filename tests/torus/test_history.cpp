@@ -96,10 +96,10 @@ TEST_CASE("the cost of discarded rays is charged to the rays that a node keeps",
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     HistoryRecorder recorder(torus);
     const auto primary = [](std::uint32_t pixel) { return raya_processed{pixel, RAYA_KIND_PRIMARY, 0, 100}; };
-    const std::vector<raya_processed> two = {primary(4), primary(5)};
+    const std::vector<raya_processed> two_rays = {primary(4), primary(5)};
     recorder.add({.node = 0, .injection_cycles = 70});
     recorder.add({.node = 1, .injection_cycles = 20});
-    recorder.add({.node = 0, .injection_cycles = 31, .processed = two, .queue = std::vector<raya_packet>(2)});
+    recorder.add({.node = 0, .injection_cycles = 31, .processed = two_rays, .queue = std::vector<raya_packet>(2)});
     recorder.add({.node = 0, .injection_cycles = 5});
     const History h = recorder.finish();
     std::vector<std::uint64_t> cycles;

@@ -1,5 +1,5 @@
-// Image and counts do not change if each launch does little work. They do not change either if a kernel instead of copy
-// commands transfers the packets over the links.
+// Two settings change neither the image nor the counts: little work per launch, and a kernel instead of copy commands
+// that transfers the packets over the links.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -111,7 +111,6 @@ TEST_CASE("bounded launches and exchanges by a kernel give the image and counts 
     CHECK(bounded_launches > 4 * single_launches);
 }
 
-// Group sizes up to a GPU's default and the maximum.
 TEST_CASE("work-groups of many work-items give the same image", "[torus][slow]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kSceneSeeds[0]);
@@ -139,8 +138,8 @@ TEST_CASE("the method of link exchange is tuned for the device unless an option 
     const TorusResult untuned = rendered(LinkMove::kAutomatic);
     CHECK(untuned.links_origin == (cpu ? "defaults" : "measured"));
     if (cpu) CHECK(untuned.links_by_kernel);
-    const ScopedTunedSource use([](const DeviceInfo& device, const TuningKey& what) {
-        TunedValues values = default_values(device, what);
+    const ScopedTunedSource tuned_source([](const DeviceInfo& device, const TuningKey& key) {
+        TunedValues values = default_values(device, key);
         values.link_exchange = static_cast<std::uint32_t>(LinkMove::kCopies);
         return std::optional(TunedChoice{values, "FILE, DATE"});
     });
@@ -166,7 +165,7 @@ TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterati
     };
     NodeStatus status(2);
     status.words[RAYA_STATUS_QUEUE] = 1000;
-    status.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 500;  // may arrive at node 0
+    status.words[RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = 500;  // packets that may arrive at node 0
 
     LaunchPlan few_spheres = plan_of(100), many_spheres = plan_of(1'000'000);
     CHECK(many_spheres.trace_voxel().single_launch);  // the queue is empty

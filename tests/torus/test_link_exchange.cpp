@@ -61,7 +61,7 @@ class Mailboxes {
                 ++visits_[packet.pixel];
                 CHECK(sources_[packet.pixel] == node);
             });
-        const std::vector<std::uint32_t> before = in_;
+        const std::vector<std::uint32_t> inboxes_before = in_;
         std::vector<std::uint64_t> words(std::size_t{nodes_} * RAYA_LINKS, 5), expected = words;
         session_.write("test", device_status_, status_.words);
         session_.clear_profile();
@@ -76,11 +76,12 @@ class Mailboxes {
                 const std::uint32_t end = raya_link_end(torus_, node, link), packets = outbox(link, node);
                 const bool occupied = inbox(link, end) > 0, sends = packets > 0 && !occupied;
                 wrong_flags += sent[link * nodes_ + node] != sends;
-                const std::size_t to = at(link * nodes_ + node);
+                const std::size_t box = at(link * nodes_ + node);
                 if (occupied)
-                    changed_inboxes += !std::equal(&in_[to], &in_[to] + (1 + capacity_) * words_, &before[to]);
+                    changed_inboxes +=
+                        !std::equal(&in_[box], &in_[box] + (1 + capacity_) * words_, &inboxes_before[box]);
                 if (!occupied && !sends)
-                    changed_inboxes += in_[to] != 0;  // an empty inbox stays empty; only its header counts
+                    changed_inboxes += in_[box] != 0;  // an empty inbox stays empty; only its header counts
                 if (!sends) continue;
                 expected[node * RAYA_LINKS + link] += std::uint64_t{packets} * words_;
                 check_arrival(link, node, end);
@@ -90,13 +91,14 @@ class Mailboxes {
         CHECK(words == expected);
     }
 
-    /// Removes a random number of packets from each inbox, often all or none, as the nodes would.
+    /// Removes packets from the inboxes, as the nodes would: all packets of about half of the inboxes, and some packets
+    /// of the other inboxes with probability 1 / `rareness`.
     void remove_packets(SplitMix& random, std::uint32_t rareness) {
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) {
-            std::uint32_t& left = inbox(box / nodes_, raya_link_end(torus_, box % nodes_, box / nodes_));
-            left = random_below(random, rareness) == 0 ? random_below(random, left + 1) : left;
-            if (random_below(random, 2)) left = 0;
-            in_[at(box)] = left;
+            std::uint32_t& packets = inbox(box / nodes_, raya_link_end(torus_, box % nodes_, box / nodes_));
+            packets = random_below(random, rareness) == 0 ? random_below(random, packets + 1) : packets;
+            if (random_below(random, 2)) packets = 0;
+            in_[at(box)] = packets;
         }
         session_.write("test", links_.inboxes(), in_);
     }
@@ -245,9 +247,9 @@ TEST_CASE("a link's words are those of the charged messages, not of all packets 
     links.exchange(status, words);
     CHECK(words == expected);
     CHECK(links.packets()[RAYA_LINKS + 1] == 3);
-    CHECK(links.moved() == 5);
+    CHECK(links.moved_packets() == 5);
     links.clear();
-    CHECK(links.moved() == 0);
+    CHECK(links.moved_packets() == 0);
 }
 
 TEST_CASE("links are named by direction and axis", "[torus]") {

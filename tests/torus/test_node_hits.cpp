@@ -94,8 +94,8 @@ VoxelHits job_hits(KernelRunner& runner, const PackedJob& job, const std::vector
     const ProbedPlaces probed = find_places(runner, job.words(), rays);
     std::vector<float> places;
     for (std::size_t i = 0; i < hits.objects.size(); ++i)
-        for (const auto which : {ProbedPlaces::kGeometric, ProbedPlaces::kNormal, ProbedPlaces::kColour})
-            for (int axis = 0; axis < 3; ++axis) places.push_back(static_cast<float>(probed.vector(i, which)[axis]));
+        for (const auto vector : {ProbedPlaces::kGeometric, ProbedPlaces::kNormal, ProbedPlaces::kColour})
+            for (int axis = 0; axis < 3; ++axis) places.push_back(static_cast<float>(probed.vector(i, vector)[axis]));
     return {hits.objects, hits.distances, places};
 }
 

@@ -42,14 +42,14 @@ class NodeCheck {
     // the rows.
     void spheres(const raya_objects& node_objects, const Words& numbers) {
         const raya_objects& all = header_.objects;
-        const std::uint32_t own_surfaces = raya_sphere_surfaces_at(node_objects.spheres_at, node_objects.spheres);
-        const std::uint32_t all_surfaces = raya_sphere_surfaces_at(all.spheres_at, all.spheres);
+        const std::uint32_t node_surfaces_at = raya_sphere_surfaces_at(node_objects.spheres_at, node_objects.spheres);
+        const std::uint32_t job_surfaces_at = raya_sphere_surfaces_at(all.spheres_at, all.spheres);
         CHECK(node_objects.spheres_at % 4 == 0);
         for (std::uint32_t i = 0; i < numbers.size(); ++i) {
             const Words row = node_.section(node_objects.spheres_at + i * RAYA_SPHERE_WORDS, RAYA_SPHERE_WORDS);
             if (row != job_section(all.spheres_at + numbers[i] * RAYA_SPHERE_WORDS, RAYA_SPHERE_WORDS))
                 FAIL("the words of sphere " << numbers[i] << " differ from the job's");
-            surface(node_.section(own_surfaces + i, 1)[0], job_section(all_surfaces + numbers[i], 1)[0]);
+            surface(node_.section(node_surfaces_at + i, 1)[0], job_section(job_surfaces_at + numbers[i], 1)[0]);
         }
     }
 
@@ -204,9 +204,9 @@ TEST_CASE("a node holds only the surfaces of its own objects and of the planes",
     };
     const auto in_rows = [](std::size_t words) { return (words + 3) / 4 * 4; };
     const auto node_of = [&](std::size_t spheres, std::size_t surfaces, std::size_t planes) {
-        const std::size_t before = (sizeof(raya_node) + sizeof(raya_voxel_memory)) / 4 + surfaces * RAYA_SURFACE_WORDS +
-                                   planes * RAYA_PLANE_WORDS;
-        return in_rows(in_rows(before) +
+        const std::size_t words_before_spheres = (sizeof(raya_node) + sizeof(raya_voxel_memory)) / 4 +
+                                                 surfaces * RAYA_SURFACE_WORDS + planes * RAYA_PLANE_WORDS;
+        return in_rows(in_rows(words_before_spheres) +
                        spheres * (RAYA_SPHERE_WORDS + 2));  // each sphere also has words for its surface and its number
     };
     CHECK(words_of(scene) == std::vector<std::size_t>{node_of(3, 3, 0), node_of(1, 1, 0)});

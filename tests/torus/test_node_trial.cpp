@@ -23,10 +23,10 @@ struct PartitionedJob {
     }
 };
 
-// Returns the value of an option in a message, such as "16x16x8"; `otherwise` if the message does not name the option.
-Divisions sides_in(const std::string& message, const std::string& option, const Divisions& otherwise) {
+// Returns the value of an option in a message, such as "16x16x8"; `default_sides` if the option is missing.
+Divisions sides_in(const std::string& message, const std::string& option, const Divisions& default_sides) {
     std::smatch m;
-    if (!std::regex_search(message, m, std::regex(option + " (\\d+)x(\\d+)x(\\d+)"))) return otherwise;
+    if (!std::regex_search(message, m, std::regex(option + " (\\d+)x(\\d+)x(\\d+)"))) return default_sides;
     const auto side = [&](int i) { return static_cast<std::uint32_t>(std::stoul(m[i])); };
     return {side(1), side(2), side(3)};
 }

@@ -28,21 +28,21 @@ TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
     while (c.nodes[0] * c.nodes[1] * c.nodes[2] > kMaxTestNodes);
     const std::uint32_t voxel_choice = random_below(random, 4);
     for (std::size_t axis = 0; axis < 3; ++axis)
-        c.voxels[axis] = voxel_choice == 0 ? c.nodes[axis]
-                         : voxel_choice == 1
-                             ? 1 + random_below(random, c.nodes[axis])  // at most as many voxels as nodes
-                         : voxel_choice == 2 ? c.nodes[axis] * (1 + random_below(random, 3))  // a multiple of the nodes
-                                             : 1 + random_below(random, 9);
+        c.voxels[axis] =
+            voxel_choice == 0   ? c.nodes[axis]
+            : voxel_choice == 1 ? 1 + random_below(random, c.nodes[axis])        // at most as many voxels as nodes
+            : voxel_choice == 2 ? c.nodes[axis] * (1 + random_below(random, 3))  // a multiple of the number of nodes
+                                : 1 + random_below(random, 9);
     c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
     c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
     c.packets = random_charge(random);
-    const std::uint32_t shortest = raya_min_queue(lights_of(scene), c.bounces);
-    const std::uint32_t queues[] = {shortest, shortest + random_below(random, 20), 3 * shortest, 20 * shortest, 0};
+    const std::uint32_t min_queue = raya_min_queue(lights_of(scene), c.bounces);
+    const std::uint32_t queues[] = {min_queue, min_queue + random_below(random, 20), 3 * min_queue, 20 * min_queue, 0};
     c.queue = queues[random_below(random, 5)];
     return c;
 }
 
-// Returns a render. If the machine deadlocks, searches for a queue that is long enough and renders with that queue.
+// Renders the scene. If the machine deadlocks, searches for a queue that is long enough and renders with that queue.
 TorusResult render_without_deadlock(Session& session, const Scene& scene, const TorusCase& c) {
     TorusRenderer renderer(session, scene, settings_of(c));
     try {
@@ -61,7 +61,7 @@ TEST_CASE("at least ten scenes on several machines and queue lengths: the image 
         Divisions voxels;
         Links links;
         Injection inject;
-        std::uint32_t queue;  // in multiples of the shortest queue (one ray tree); 0: the default
+        std::uint32_t queue;  // in multiples of the minimum queue (one ray tree); 0: the default
     };
     const Row rows[] = {{{1, 1, 1}, {1, 1, 1}, Links::kTorus3d, Injection::kAll, 1},
                         {{2, 1, 1}, {2, 1, 1}, Links::kTorus3d, Injection::kRoot, 2},
@@ -93,7 +93,7 @@ TEST_CASE("at least ten scenes on several machines and queue lengths: the image 
             c.inject = row.inject;
             c.queue = row.queue * raya_min_queue(lights_of(scene), c.bounces);
             if (row.queue == 1 && scenes_done % 4)
-                c.queue = 0;  // renders with the shortest queue take very many supersteps
+                c.queue = 0;  // renders with the minimum queue take very many supersteps
             CAPTURE(scene.name, case_text(c));
             CHECK(image_and_counts(render_without_deadlock(session, scene, c)) == expected);
         }
@@ -130,7 +130,7 @@ TEST_CASE("lanes and group size change no bit of the torus's image and no packet
                         {4, 3, "fp32"},  {16, 1, "fp32"}, {8, 1, "fp32"}};
     Session session(choose_device(""));
     std::map<std::string, std::string> expected;
-    std::map<std::pair<std::string, Injection>, TorusResult> first;
+    std::map<std::pair<std::string, Injection>, TorusResult> first_results;
     for (const Row& row : quick_of(3, rows)) {
         TorusCase c{.lanes = row.lanes, .group = row.group, .format = row.format};
         if (!expected.contains(row.format)) expected[row.format] = ring_image_and_counts(scene, c);
@@ -142,12 +142,12 @@ TEST_CASE("lanes and group size change no bit of the torus's image and no packet
                 CAPTURE(case_text(c));
                 const TorusResult r = render_without_deadlock(session, scene, c);
                 CHECK(image_and_counts(r) == expected[row.format]);
-                const TorusResult& before = first.try_emplace({row.format, inject}, r).first->second;
-                CHECK(r.made == before.made);
-                CHECK(r.ended == before.ended);
-                CHECK(r.events[RAYA_DISCARDED] == before.events[RAYA_DISCARDED]);
-                CHECK(r.link_packets == before.link_packets);
-                CHECK(r.link_words == before.link_words);
+                const TorusResult& expected_result = first_results.try_emplace({row.format, inject}, r).first->second;
+                CHECK(r.made == expected_result.made);
+                CHECK(r.ended == expected_result.ended);
+                CHECK(r.events[RAYA_DISCARDED] == expected_result.events[RAYA_DISCARDED]);
+                CHECK(r.link_packets == expected_result.link_packets);
+                CHECK(r.link_words == expected_result.link_words);
             }
     }
 }
@@ -189,10 +189,10 @@ TEST_CASE("a subset without pixels gives a black image", "[torus]") {
     TorusCase c{.width = 5, .height = 3, .lanes = 4, .group = 1};
     c.pixels = {20, 15};
     c.inject = GENERATE(Injection::kAll, Injection::kRoot);
-    const TorusResult none = render_torus(scene, c);
-    CHECK(none.image.rgb == std::vector<float>(45, 0));
-    CHECK(none.made == PacketCounts{});
-    CHECK(none.hops == 0);
+    const TorusResult black = render_torus(scene, c);
+    CHECK(black.image.rgb == std::vector<float>(45, 0));
+    CHECK(black.made == PacketCounts{});
+    CHECK(black.hops == 0);
 }
 
 TEST_CASE("512 nodes with few pixels each give the ring's image", "[torus]") {

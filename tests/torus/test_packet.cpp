@@ -72,7 +72,7 @@ TEST_CASE("contributions sort into the depth-first order of the ray tree, reflec
     CHECK(largest > 100);
 }
 
-TEST_CASE("the contributions of a complete tree of ten levels sort into its order", "[torus]") {
+TEST_CASE("the contributions of a complete tree of ten levels sort into the tree's order", "[torus]") {
     struct CompleteTree {
         std::vector<Contribution> contributions{};
         void add_subtree(std::uint32_t path, std::uint32_t level) {

@@ -44,7 +44,7 @@ class NamedRayTree {
             if (below(2) == 0) break;
         }
         if (level == depth) return;
-        // Bit 0: reflected ray, bit 1: refracted ray. Both only below level 3, because there are up to 31 levels.
+        // Bit 0: reflected ray, bit 1: refracted ray. Only levels 0 to 2 have both, so that the tree stays small.
         const std::uint32_t children = 1 + below(level < 3 ? 3 : 2);
         if (children & 1) grow(pixel, raya_path_reflected(path), level + 1, name + "R", depth);
         if (children & 2) grow(pixel, raya_path_refracted(path, level), level + 1, name + "T", depth);
@@ -58,7 +58,7 @@ class NamedRayTree {
     std::uint32_t below(std::uint32_t limit) { return static_cast<std::uint32_t>(random_.next() % limit); }
 
   private:
-    // RAYA_STATE_WIDE, _FOUND, _FRESH and _CHARGED are not part of a ray's identity.
+    // Returns random values of RAYA_STATE_WIDE, _FOUND, _FRESH and _CHARGED, which do not identify a ray.
     std::uint32_t flags() { return below(16) * RAYA_STATE_WIDE; }
 
     void send(std::uint32_t pixel, std::uint32_t path, std::uint32_t state, const std::string& name,

@@ -56,14 +56,14 @@ TEST_CASE("the longest queue that fits a node's memory is tried before longer on
 TEST_CASE("if no queue that fits is long enough, the remedy also names the memory", "[torus]") {
     SimulatedMachine machine{.sufficient_queue = 500, .node_memory = 10 * 100};
     CHECK(machine.remedy(30) ==
-          "no queue that fits a node's memory is long enough, --queue 800 --pe-memory 8192 is (tried)");
+          "no queue that fits a node's memory is long enough; use --queue 800 --pe-memory 8192 (tried)");
     CHECK(machine.tried == Queues{60, 100, 200, 400, 800});
 }
 
 TEST_CASE("if the queue that deadlocked is the longest that fits, it is not tried again", "[torus]") {
     SimulatedMachine machine{.sufficient_queue = 101, .node_memory = 10 * 100};
     CHECK(machine.remedy(100) ==
-          "no queue that fits a node's memory is long enough, --queue 200 --pe-memory 2048 is (tried)");
+          "no queue that fits a node's memory is long enough; use --queue 200 --pe-memory 2048 (tried)");
     CHECK(machine.tried == Queues{200});
 }
 

@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-std::size_t number_of(const std::string& text, const std::string& part) {
+std::size_t count_of(const std::string& text, const std::string& part) {
     std::size_t number = 0;
     for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++number;
     return number;
@@ -18,10 +18,10 @@ TEST_CASE("a platform has a host per node, two directions and a wire per link, a
         const raya_torus torus = make_torus({4, 4, 4}, links);
         const std::size_t neighbour_pairs = 64 * links_of_node(torus);
         const std::string xml = simgrid_platform(torus, {});
-        CHECK(number_of(xml, "<host id=") == 64);
-        CHECK(number_of(xml, "bandwidth=\"1700000Bps\"") == neighbour_pairs);
-        CHECK(number_of(xml, "bandwidth=\"2400000Bps\"") == neighbour_pairs / 2);
-        CHECK(number_of(xml, "<route src=") == neighbour_pairs);
+        CHECK(count_of(xml, "<host id=") == 64);
+        CHECK(count_of(xml, "bandwidth=\"1700000Bps\"") == neighbour_pairs);
+        CHECK(count_of(xml, "bandwidth=\"2400000Bps\"") == neighbour_pairs / 2);
+        CHECK(count_of(xml, "<route src=") == neighbour_pairs);
         CHECK_THAT(xml, Catch::Contains(links == Links::kTorus2d ? "<route src=\"0\" dst=\"7\""
                                                                  : "<route src=\"0\" dst=\"3\""));
         for (const char* part : {"<host id=\"63\" speed=\"25000000f\"/>", "<link_ctn id=\"0-x\"/><link_ctn id=\"wire "})
@@ -29,10 +29,10 @@ TEST_CASE("a platform has a host per node, two directions and a wire per link, a
     }
     // On a side of 2 nodes, two links join the nodes, one in each direction round the side. Each link has a separate
     // wire.
-    const std::string two = simgrid_platform(make_torus({2, 1, 1}, Links::kTorus3d), {.one_way = 0});
-    CHECK(number_of(two, "<route src=") == 2);
-    CHECK_THAT(two, Catch::Contains("\"0+x\"/><link_ctn id=\"wire 0+x\"") &&
-                        Catch::Contains("\"1+x\"/><link_ctn id=\"wire 1+x\"") && !Catch::Contains("2400000"));
+    const std::string two_nodes = simgrid_platform(make_torus({2, 1, 1}, Links::kTorus3d), {.one_way = 0});
+    CHECK(count_of(two_nodes, "<route src=") == 2);
+    CHECK_THAT(two_nodes, Catch::Contains("\"0+x\"/><link_ctn id=\"wire 0+x\"") &&
+                              Catch::Contains("\"1+x\"/><link_ctn id=\"wire 1+x\"") && !Catch::Contains("2400000"));
 }
 
 TEST_CASE("a replay file has tasks, their causes, and the routes of messages", "[torus]") {

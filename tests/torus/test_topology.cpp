@@ -17,11 +17,11 @@ constexpr std::uint32_t kLinks[] = {0, 1, 2, 3, 4, 5};
 
 bool same(const raya_place& a, const raya_place& b) { return std::equal(a.at, a.at + 3, b.at); }
 
-// Returns [node]: distance from the node `from`. A breadth-first search over the links finds the distances
+// Returns [node]: distance from the node `source`. A breadth-first search over the links finds the distances
 // independently of the torus's sides and of routing.
-std::vector<std::uint32_t> searched_distances(const raya_torus& torus, std::uint32_t from) {
-    std::vector<std::uint32_t> distances(raya_nodes(torus), UINT32_MAX), front = {from};
-    distances[from] = 0;
+std::vector<std::uint32_t> searched_distances(const raya_torus& torus, std::uint32_t source) {
+    std::vector<std::uint32_t> distances(raya_nodes(torus), UINT32_MAX), front = {source};
+    distances[source] = 0;
     for (std::uint32_t steps = 1; !front.empty(); ++steps) {
         std::vector<std::uint32_t> next;
         for (const std::uint32_t node : front)
@@ -104,7 +104,7 @@ TEST_CASE("4 x 4 x 4 nodes are a torus of 8 x 8 with four slabs of equal k", "[t
     }
     CHECK(torus_text(make_torus({4, 4, 4}, Links::kTorus3d)) == "4x4x4 on 4x4x4");
     CHECK(torus_text(make_torus({2, 8, 4}, Links::kTorus2d)) == "2x8x4 on 8x8x1");
-    CHECK(torus_text(make_torus({1, 1, 2}, Links::kTorus2d)) == "1x1x2 on 1x2x1");  // 2x1 has no advantage
+    CHECK(torus_text(make_torus({1, 1, 2}, Links::kTorus2d)) == "1x1x2 on 1x2x1");  // 2x1x1 is equally square
     CHECK(torus_text(make_torus({8, 8, 1}, Links::kTorus2d)) == "8x8x1 on 8x8x1");
     CHECK(torus_text(make_torus({8, 2, 3}, Links::kTorus2d)) == "8x2x3 on 8x6x1");
 }
@@ -114,19 +114,19 @@ TEST_CASE("a 2-D torus has sides as close to square as its nodes allow", "[torus
         SplitMix random(seed);
         const auto nodes = random_sides(random, 24);
         const raya_torus torus = make_torus(nodes, Links::kTorus2d);
-        CAPTURE(seed, torus_text(torus), torus.slabs);
+        CAPTURE(seed, torus_text(torus), torus.slabs);  // of equal ratios, the one with the fewest slabs is chosen
         REQUIRE(torus.sides[2] == 1);
         REQUIRE(nodes[2] % torus.slabs == 0);
         REQUIRE(torus.sides[0] == nodes[0] * torus.slabs);
         REQUIRE(torus.sides[1] == nodes[1] * (nodes[2] / torus.slabs));
-        for (std::uint32_t c = 1; c <= nodes[2]; ++c) {
-            if (nodes[2] % c != 0) continue;
+        for (std::uint32_t slabs = 1; slabs <= nodes[2]; ++slabs) {
+            if (nodes[2] % slabs != 0) continue;
             const auto ratio = [&](std::uint64_t x, std::uint64_t y) {
                 return double(std::max(x, y)) / double(std::min(x, y));
             };
-            const double chosen = ratio(torus.sides[0], torus.sides[1]);
-            const double other = ratio(nodes[0] * c, nodes[1] * (nodes[2] / c));
-            CHECK((c < torus.slabs ? chosen < other : chosen <= other));
+            const double chosen_ratio = ratio(torus.sides[0], torus.sides[1]);
+            const double slabs_ratio = ratio(nodes[0] * slabs, nodes[1] * (nodes[2] / slabs));
+            CHECK((slabs < torus.slabs ? chosen_ratio < slabs_ratio : chosen_ratio <= slabs_ratio));
         }
     }
 }
@@ -205,17 +205,18 @@ TEST_CASE("packets take the documented route, which is a shortest route", "[toru
         const raya_torus t = random_torus(random, 6);
         CAPTURE(seed, torus_text(t));
         std::set<std::uint64_t> sums;
-        for (std::uint32_t from = 0; from < raya_nodes(t); ++from) {
-            const std::vector<std::uint32_t> distances = searched_distances(t, from);
+        for (std::uint32_t source = 0; source < raya_nodes(t); ++source) {
+            const std::vector<std::uint32_t> distances = searched_distances(t, source);
             std::uint64_t sum = 0;
-            for (std::uint32_t to = 0; to < raya_nodes(t); ++to) {
-                const std::vector<std::uint32_t> links = route_of(t, from, to);
-                if (links.size() != distances[to])
-                    FAIL("not a shortest route: " << links.size() << " links from " << from << " to " << to);
-                if (raya_node_distance(t, from, to) != distances[to])
-                    FAIL("wrong raya_node_distance() from " << from << " to " << to);
-                if (links != defined_route(t, from, to)) FAIL("not the documented route from " << from << " to " << to);
-                sum += raya_node_distance(t, from, to);
+            for (std::uint32_t end = 0; end < raya_nodes(t); ++end) {
+                const std::vector<std::uint32_t> links = route_of(t, source, end);
+                if (links.size() != distances[end])
+                    FAIL("not a shortest route: " << links.size() << " links from " << source << " to " << end);
+                if (raya_node_distance(t, source, end) != distances[end])
+                    FAIL("wrong raya_node_distance() from " << source << " to " << end);
+                if (links != defined_route(t, source, end))
+                    FAIL("not the documented route from " << source << " to " << end);
+                sum += raya_node_distance(t, source, end);
             }
             sums.insert(sum);
         }

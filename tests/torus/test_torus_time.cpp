@@ -48,24 +48,24 @@ TEST_CASE("a node's processor time is the time for computing, sending and receiv
 TEST_CASE("both directions share a link, wrap-around links included", "[torus]") {
     const raya_torus torus = make_torus({2, 3, 1}, Links::kTorus3d);
     TorusResult result = result_of(torus);
-    const std::uint32_t from = raya_node_of(torus, 0, 2, 0), to = raya_node_of(torus, 0, 0, 0);
-    send(result, from, 2, 100, 16);  // up along y from the last row to the first
-    send(result, to, 3, 100, 16);    // and in the opposite direction over the same link
+    const std::uint32_t last_row = raya_node_of(torus, 0, 2, 0), first_row = raya_node_of(torus, 0, 0, 0);  // nodes
+    send(result, last_row, 2, 100, 16);   // up along y from the last row to the first
+    send(result, first_row, 3, 100, 16);  // in the opposite direction over the same link
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
-    send(result, to, 2, 90, 16);  // another link
+    send(result, first_row, 2, 90, 16);  // another link
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
-    send(result, from, 2, 100, 16);
+    send(result, last_row, 2, 100, 16);
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs + 1600 * kWordMs));
     // Two links join two nodes along x, one in each direction round the side. The links do not share bandwidth.
-    TorusResult two = result_of(torus);
-    send(two, 0, 0, 100, 16);
-    send(two, 1, 0, 100, 16);
-    CHECK(torus_time(torus, two).links_ms == about_ms(1600 * kWordMs));
-    send(two, 1, 1, 100, 16);
-    CHECK(torus_time(torus, two).links_ms == about_ms(1600 * kBothWaysWordMs));
+    TorusResult two_nodes = result_of(torus);
+    send(two_nodes, 0, 0, 100, 16);
+    send(two_nodes, 1, 0, 100, 16);
+    CHECK(torus_time(torus, two_nodes).links_ms == about_ms(1600 * kWordMs));
+    send(two_nodes, 1, 1, 100, 16);
+    CHECK(torus_time(torus, two_nodes).links_ms == about_ms(1600 * kBothWaysWordMs));
 }
 
-TEST_CASE("stepwise time sums each superstep's busiest node and busiest link", "[torus]") {
+TEST_CASE("stepwise time is the sum of the times of each superstep's busiest node and busiest link", "[torus]") {
     const raya_torus torus = make_torus({2, 2, 2}, Links::kTorus2d);
     TorusResult result = result_of(torus);
     result.supersteps = {{1000, 16, 0}, {5000, 0, 0}, {0, 320, 0}};
@@ -77,11 +77,11 @@ TorusResult random_render(SplitMix& random, const raya_torus& torus) {
     TorusResult result = result_of(torus);
     std::vector<std::uint64_t> cycles(raya_nodes(torus));
     const auto below = [&](std::uint64_t limit) { return random.next() % limit; };
-    const std::uint64_t work = 1 + below(100'000), traffic = 1 + below(200), idle = 1 + below(4);
+    const std::uint64_t work = 1 + below(100'000), traffic = 1 + below(200), idle_ratio = 1 + below(4);
     for (std::uint64_t step = 1 + below(20); step-- > 0;) {
         Superstep superstep;
         for (std::uint32_t node = 0; node < cycles.size(); ++node) {
-            const std::uint64_t cost = below(idle) == 0 ? below(work) : 0;
+            const std::uint64_t cost = below(idle_ratio) == 0 ? below(work) : 0;
             cycles[node] += cost;
             superstep.max_node_cycles = std::max(superstep.max_node_cycles, cost);
             for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {

@@ -111,16 +111,16 @@ TEST_CASE("recording every fourth superstep gives the same packets of these supe
                          .packets_every = every});
         return packets;
     };
-    const std::vector<std::string> all = record_packets(1);
-    CHECK(all.size() > 100);
-    CHECK(record_packets(4) == all);
+    const std::vector<std::string> all_packets = record_packets(1);
+    CHECK(all_packets.size() > 100);
+    CHECK(record_packets(4) == all_packets);
 }
 
 TEST_CASE("the packet sample has kMaxPackets packets and is uniform over time", "[torus]") {
     const raya_torus torus = make_torus({1, 2, 1}, Links::kTorus3d);
     TorusTrace torus_trace(torus);
-    const std::uint32_t all = 5 * TorusTrace::kMaxPackets;
-    for (std::uint32_t i = 0; i < all; ++i) {
+    const std::uint32_t packets = 5 * TorusTrace::kMaxPackets;
+    for (std::uint32_t i = 0; i < packets; ++i) {
         PacketRecord p{.superstep = i / 1000, .source = 0, .destination = 1};
         p.head.state = RAYA_KIND_SHADOW;
         torus_trace.add_packet(p);
@@ -128,7 +128,7 @@ TEST_CASE("the packet sample has kMaxPackets packets and is uniform over time", 
     TorusResult result;
     result.load = load_of({1, 1});
     const std::vector<std::uint64_t> words(2 * RAYA_LINKS);
-    for (std::uint32_t step = 0; step < all / 1000 + 2; ++step) {
+    for (std::uint32_t step = 0; step < packets / 1000 + 2; ++step) {
         result.supersteps.push_back({.max_node_cycles = 100});
         torus_trace.add_superstep({result.supersteps.back(), {100, 50}, words});
     }
@@ -149,8 +149,8 @@ TEST_CASE("the work of the torus's kernels agrees with the counts", "[torus]") {
     const TracedRender t = render(random_view_scene(27), {.lanes = 4}, 0);
     const auto works = torus_kernel_work(t.settings, t.result);
     REQUIRE(works.size() == 5);
-    const Operations all = operations_of(t.result.events);
-    CHECK(works[0].operations + works[1].operations == all.multiply_accumulates);
+    const Operations all_operations = operations_of(t.result.events);
+    CHECK(works[0].operations + works[1].operations == all_operations.multiply_accumulates);
     CHECK(works[0].rays == t.result.events[RAYA_PRIMARY]);
     CHECK(works[1].rays == t.result.made[RAYA_KIND_PRIMARY] + t.result.made[RAYA_KIND_REFLECTED] +
                                t.result.made[RAYA_KIND_REFRACTED] + t.result.made[RAYA_KIND_SHADOW]);

@@ -146,14 +146,14 @@ TEST_CASE("a node's window holds every pixel whose ray enters the box at its vox
             CHECK((raya_node_voxels(torus, grid, node) > 0 || empty));
             CHECK(w.rows[1] <= camera.job.mapping.height);
             CHECK(w.columns[1] <= camera.job.mapping.width);
-            const EntryBounds m = entry_bounds(camera, grid, torus, node, 1);
-            if (!m.is_nonempty()) continue;
+            const EntryBounds bounds = entry_bounds(camera, grid, torus, node, 1);
+            if (!bounds.is_nonempty()) continue;
             ++entered_nodes;
             partial_windows += w.rows[1] - w.rows[0] < camera.job.mapping.height;
-            CHECK(m.low[0] >= w.rows[0]);
-            CHECK(m.high[0] < w.rows[1]);
-            CHECK(m.low[1] >= w.columns[0]);
-            CHECK(m.high[1] < w.columns[1]);
+            CHECK(bounds.low[0] >= w.rows[0]);
+            CHECK(bounds.high[0] < w.rows[1]);
+            CHECK(bounds.low[1] >= w.columns[0]);
+            CHECK(bounds.high[1] < w.columns[1]);
         }
     }
     CHECK(entered_nodes > 1000);
@@ -171,18 +171,19 @@ TEST_CASE("a window exceeds the projection of the node's outer faces by at most 
         const auto windows = pixel_windows(camera.job, grid, torus, camera.format);
         for (std::uint32_t node = 0; node < windows.size(); ++node) {
             const PixelWindow& w = windows[node];
-            const EntryBounds m = entry_bounds(camera, grid, torus, node, 4);
-            CAPTURE(seed, i, node, w.rows[0], w.rows[1], w.columns[0], w.columns[1], m.low[0], m.high[0], m.low[1],
-                    m.high[1]);
+            const EntryBounds bounds = entry_bounds(camera, grid, torus, node, 4);
+            CAPTURE(seed, i, node, w.rows[0], w.rows[1], w.columns[0], w.columns[1], bounds.low[0], bounds.high[0],
+                    bounds.low[1], bounds.high[1]);
             // If the image's edge clips the projection, the window may exceed the bounds by more than five pixels.
-            const bool clipped = m.low[0] <= 0 || m.low[1] <= 0 || m.high[0] > camera.job.mapping.height - 1.5 ||
-                                 m.high[1] > camera.job.mapping.width - 1.5;
-            if (!m.is_nonempty() || clipped) continue;
+            const bool clipped = bounds.low[0] <= 0 || bounds.low[1] <= 0 ||
+                                 bounds.high[0] > camera.job.mapping.height - 1.5 ||
+                                 bounds.high[1] > camera.job.mapping.width - 1.5;
+            if (!bounds.is_nonempty() || clipped) continue;
             ++unclipped;
-            CHECK(w.rows[0] + 4 >= m.low[0]);
-            CHECK(w.rows[1] <= m.high[0] + 5);
-            CHECK(w.columns[0] + 4 >= m.low[1]);
-            CHECK(w.columns[1] <= m.high[1] + 5);
+            CHECK(w.rows[0] + 4 >= bounds.low[0]);
+            CHECK(w.rows[1] <= bounds.high[0] + 5);
+            CHECK(w.columns[0] + 4 >= bounds.low[1]);
+            CHECK(w.columns[1] <= bounds.high[1] + 5);
         }
     }
     CHECK(unclipped > 100);

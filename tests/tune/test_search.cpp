@@ -100,7 +100,7 @@ SearchQuality search_quality(const Space& space, const Cost& cost, std::mt19937&
         return cost(candidate) / cost(best) * (1 + error(random));
     };
     const SearchResult result = search(space, measure, kNeverStop);
-    CHECK(result.ended);
+    CHECK(result.complete);
     CHECK(result.tried == measurements.size());
     return {cost(result.best) / minimum_cost(space, cost),
             static_cast<double>(result.tried) / static_cast<double>(space.size())};
@@ -163,7 +163,7 @@ TEST_CASE("search: ends when ShouldStop returns true, with the best candidate so
         };
         const SearchResult result = search(space, measure, [&] { return measured >= limit; });
         CHECK(result.tried == limit);
-        CHECK_FALSE(result.ended);
+        CHECK_FALSE(result.complete);
         CHECK(cost(result.best) <= cost(space.start));
     }
 }
@@ -203,9 +203,9 @@ TEST_CASE("search_all: finds the minimum", "[tune]") {
     const MeasureRatio measure = [&](const Candidate& best, const Candidate& candidate) {
         return std::optional(cost(candidate) / cost(best));
     };
-    const SearchResult all = search_all(space, space.start, measure, kNeverStop);
-    CHECK(all.tried == space.size() - 1);
-    CHECK(cost(all.best) <= minimum_cost(space, cost) / kMaxWinRatio);
+    const SearchResult exhaustive = search_all(space, space.start, measure, kNeverStop);
+    CHECK(exhaustive.tried == space.size() - 1);
+    CHECK(cost(exhaustive.best) <= minimum_cost(space, cost) / kMaxWinRatio);
 }
 
 TEST_CASE("space_of: starts at the defaults, and has only values that the device supports", "[tune]") {

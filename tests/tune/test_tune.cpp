@@ -1,4 +1,4 @@
-// Tests of the T4 report of trials, and of the decision whether a candidate is faster.
+// Tests of the report of trials in Kernel Tuner's T4 format, and of the decision whether a candidate is faster.
 #include <catch2/catch.hpp>
 #include <set>
 

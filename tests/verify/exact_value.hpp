@@ -123,7 +123,7 @@ inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const N
         note("just above a number");
     else
         note(half ? "upper half" : "lower half");
-    // Does rounding to fp32 first give another result?
+    // Rounding to fp32 first may give another result.
     mpfr_set(as_fp32, exact, MPFR_RNDN);
     mpfr_set(via_fp32, as_fp32, format.truncates ? MPFR_RNDZ : MPFR_RNDN);
     if (bits < 24 && mpfr_get_flt(via_fp32, MPFR_RNDN) != expected) features.insert(kDoubleRounding);

@@ -1,5 +1,5 @@
-// Injected faults: patches of kernels that simulate faults of a device or compiler. Except kBarrierFault, they change
-// the code under test, not the checks.
+// Injected faults: patches of kernels that simulate faults of a device or compiler. All except kBarrierFault
+// change the code under test; kBarrierFault changes a check.
 #pragma once
 #include <fmt/core.h>
 
@@ -37,7 +37,7 @@ inline const SourcePatch kExchangeFault{"torus/exchange.cl", "target[i] = source
 inline const SourcePatch kResumedLaunchFault{"torus/accept.cl", "already_sent = !resume && (root",
                                              "already_sent = (root"};
 
-/// A fault at a place where a kernel counts an event: it counts another event, nothing, or the event twice.
+/// A fault at a place where a kernel counts an event: the kernel counts another event, nothing, or the event twice.
 struct CountFault {
     const char* event;  // name of the counter in raya verify
     SourcePatch patch;

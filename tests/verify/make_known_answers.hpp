@@ -161,7 +161,7 @@ inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const
             all.push_back({rounded(1 - std::ldexp(random.uniform(0, 1), -i)), rounded(random.uniform(1, 30)), 1});
         return all;
     }
-    // Random operands come first, because a row of them has more features. Special numbers add the missing features.
+    // Random operands come first, because their rows have more features. Special numbers add the missing features.
     const NumberFormat operand_format =
         operation == kRound ? NumberFormat{} : format;  // the operand of num_round is an fp32 number
     const NumberRows rows = RandomOperands(operand_format, kSeed).rows(kRandomRows);

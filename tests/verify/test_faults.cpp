@@ -105,7 +105,7 @@ TEST_CASE("faults of arithmetic, hits and grid: image checks fail too", "[verify
         {kContractionFault, "image glass fp32: cyclic:8 on 20", {"glass fp32: cyclic:8 on 20"}},
         {kDivisionFault,
          "image ties fp32: blocks on 5, global words, division refined",
-         {}},  // the patched code is not compiled
+         {}},  // the build options exclude the patched code
         {kDivisionFault,
          "image glass fp32: cyclic:8 on 7",
          {"glass fp32: cyclic:8 on 7, block fold, launches of 40 tests"}},

@@ -3,9 +3,9 @@
 //
 //   embree_peer SCENE.nff WxH BOUNCES centres|corners SAMPLES
 //
-// Prints "METHOD RAYS SECONDS..." for each of two methods, one time per sample, and "build SECONDS". `single`
-// traces single rays; `sixteen` traces the ray trees of 16 pixels, 4 x 4, in lockstep, in packets of 16 rays.
-// Only the loop over the pixels is timed. RAYS: number of rays; SECONDS: of one render. Exit codes: 0 done; 2 an error.
+// Prints for each of two methods "METHOD RAYS SECONDS...", with the seconds of each render, and "mean METHOD R G B",
+// the image's mean colour; then "build SECONDS". `single` traces single rays; `sixteen` traces the ray trees of 4 x 4
+// pixels in lockstep, in packets of 16 rays. Only the loop over the pixels is timed. Exit codes: 0 done; 2 an error.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

@@ -38,8 +38,8 @@ void cone_bounds(const RTCBoundsFunctionArguments* args) {
 
 // Returns t of the ray's nearest hit between `near` and `far`; kNoHit if there is none.
 float cone_hit(const PeerCone& c, V3 origin, V3 direction, float near, float far, V3& normal) {
-    // Starts from the point of the ray nearest to the cone's base: otherwise, through rounding, a ray that starts on
-    // the cone would hit it.
+    // `start` is the ray's point nearest to the cone's base. With the origin instead, rounding would let a ray that
+    // starts on the cone hit the cone there.
     const float moved = dot(c.base - origin, direction);
     const V3 start = (origin - c.base) + moved * direction;
     const float z = dot(start, c.axis), dz = dot(direction, c.axis);
@@ -50,7 +50,7 @@ float cone_hit(const PeerCone& c, V3 origin, V3 direction, float near, float far
     constexpr float kNoHit = 1e30f;
     if (!(discriminant > 0)) return kNoHit;
     const float square_root = std::sqrt(discriminant), q = b > 0 ? -(b + square_root) : square_root - b;
-    const float by_a = q / a, by_q = constant / q;
+    const float by_a = q / a, by_q = constant / q;                    // the two solutions of the quadratic equation
     const float in = b > 0 ? by_a : by_q, out = b > 0 ? by_q : by_a;  // t where the ray enters and leaves the cone
     for (const float t : {std::min(in, out), std::max(in, out)}) {
         if (c.inside && t != out) continue;

@@ -45,7 +45,7 @@ struct PeerCone {
 /// The nearest hit of a ray.
 struct PeerHit {
     float t = 0;
-    V3 geometric, normal;  // normals of the object, not turned towards the ray
+    V3 geometric, normal;  // geometric and shading normal, not turned towards the ray
     int surface = -1;      // -1: no hit
 };
 
@@ -64,7 +64,7 @@ class EmbreeScene {
     /// Returns the hit that Embree found, or the hit of a plane if that is nearer.
     PeerHit hit(V3 origin, V3 direction, float t, unsigned geometry, unsigned primitive, V3 normal, float u,
                 float v) const;
-    /// Returns true if a plane lies between the origin and t.
+    /// Returns true if the ray hits a plane at less than `t`.
     bool plane_blocks(V3 origin, V3 direction, float t) const;
 
   private:

@@ -1,5 +1,4 @@
-// Renders a picture with Embree on all cores: with single rays, or with packets of 16 rays for the ray trees of 16
-// pixels.
+// Renders a picture with Embree on all cores, with single rays or with packets of 16 rays, one for each of 16 pixels.
 #pragma once
 #include <embree3/rtcore.h>
 #include <pmmintrin.h>
@@ -33,7 +32,7 @@ class Picture {
     Picture(const Whitted& whitted, const Camera& camera)
         : whitted_(whitted), camera_(camera), pixels_(static_cast<std::size_t>(camera.width) * camera.height) {}
 
-    /// Calls trace_row(row), which returns a number of rays, for all rows, on all cores. Returns the sum.
+    /// Calls trace_row(row) for all rows, on all cores. Returns the sum of its results, the number of rays.
     template <class Row>
     long trace_rows(int rows, const Row& trace_row) {
         std::atomic<int> next = 0;
@@ -148,8 +147,7 @@ class Picture {
         return rays;
     }
 
-    // Traces the next ray of each lane's tree. Returns the number of traced rays; adds the number of shadow rays to
-    // `rays`.
+    // Traces the next ray of each lane. Returns their number; adds the number of shadow rays to `rays`.
     long trace_next_rays(std::array<Lane, kPacketRays>& lanes, RTCIntersectContext& context, long& rays) const {
         alignas(64) std::array<int, kPacketRays> valid{};
         alignas(64) RTCRayHit16 q;

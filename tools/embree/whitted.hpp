@@ -9,7 +9,7 @@
 namespace raya {
 
 struct Camera {
-    V3 eye, gaze, right, top;  // right and top: from the image's centre to its sides, at distance 1
+    V3 eye, gaze, right, top;  // right, top: from the image's centre to its edges; the image is at distance 1
     int width, height;
     bool corners;  // sample the pixels' corners instead of their centres
 

@@ -6,7 +6,7 @@ thread. For a group of `group` work-items:
     warps of a group  = group / width, rounded up
     groups            = warps for which there are registers (the vendor's module) / warps of a group; at most the core's maximum of warps and groups;
                         if the kernel uses local memory, at most the core's local memory / the kernel's
-    local memory left = local memory of a group up to which the registers, not local memory, limit the number of groups
+    local memory left = largest local memory of a group with which the registers, not local memory, still limit the number of groups
 """
 from dataclasses import dataclass
 
@@ -29,7 +29,7 @@ class Figures:
     local: int
     scalar_spills: int = 0  # AMD: scalar registers spilled to lanes of vector registers
     warps: int = 0          # maximum number of warps that fit in a core at the same time
-    local_left: int = 0     # local memory of a group up to which registers limit the number of groups
+    local_left: int = 0     # largest local memory of a group with which registers still limit the number of groups
 
     @property
     def name(self):

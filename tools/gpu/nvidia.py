@@ -12,7 +12,7 @@ from gpu.figures import Core, Fault, Figures, first_line, kernel_name, rounded_u
 KB = 1024
 CORES = {"sm_80": Core(64, 32, 164 * KB, 163 * KB, 128, KB), "sm_90": Core(64, 32, 228 * KB, 227 * KB, 128, KB)}
 LIBRARY = "nvptx64--nvidiacl.bc"
-OPTIONS = ["-target", "nvptx64-nvidia-nvcl", "-Xclang", "-target-cpu", "-Xclang", "sm_80"]  # the newest that clang 15 has; PTX is the same
+OPTIONS = ["-target", "nvptx64-nvidia-nvcl", "-Xclang", "-target-cpu", "-Xclang", "sm_80"]  # the newest target of clang 15; sm_90 gets the same PTX
 # Each of these instructions must round once, to nearest (.rn), and keep denormals. Without .rn ptxas may fuse two instructions.
 ARITHMETIC = re.compile(r"^\s*(?:@\S+\s+)?(?:add|sub|mul|mad|fma|div|sqrt|rcp|rsqrt|sin|cos|lg2|ex2|tanh)(\.[a-z0-9_]+)*\.f32\b.*$", re.M)
 FORBIDDEN = {"double precision": re.compile(r"\.f64\b"), "denormals are flushed": re.compile(r"\.ftz\b"),

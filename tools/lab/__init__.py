@@ -20,6 +20,6 @@ from raya.lab.claims import Claim, Judgement, decide, judged
 from raya.lab.laboratory import Costs, Ensemble, Laboratory, first_scene, mean_seconds, time_calls
 from raya.lab.page import Comparison, Page, Picture, Plot, Series, Table, format_value, series_by, with_paper
 from raya.lab.statistics import (COMPATIBLE, NOT_REPRODUCED, REPRODUCED, UNTESTABLE, Estimate, Test, above, below, bonferroni_confidence, counted,
-                                 estimate, estimates, every, fitted_exponent, one_more, prediction_interval, prediction_text, proportion, range_text,
-                                 tail_where, within)
+                                 estimate, estimates, every, fitted_exponent, next_value_within, prediction_interval, prediction_text, proportion,
+                                 range_text, tail_where, within)
 from raya.lab.study import study

@@ -47,8 +47,8 @@ def selected_studies(name):
         if known[name].missing():
             raise ValueError(f"study {name}: {known[name].missing()}")
         return [known[name]], []
-    left_out = [f"study {study.name} is skipped: {study.missing()}" for study in known.values() if study.missing()]
-    return [study for study in known.values() if not study.missing()], left_out
+    skip_notes = [f"study {study.name} is skipped: {study.missing()}" for study in known.values() if study.missing()]
+    return [study for study in known.values() if not study.missing()], skip_notes
 
 
 def command_of(study, options):
@@ -87,11 +87,11 @@ def make_folder(path):
     return missing
 
 
-def run_all(options, chosen, left_out, scenes):
-    """Runs the chosen studies and writes their results. Appends a sentence to left_out for each study that fails on the device.
+def run_all(options, chosen, skip_notes, scenes):
+    """Runs the chosen studies and writes their results. Appends a sentence to skip_notes for each study that fails on the device.
     Returns the exit code."""
     folder, worker, pages, drawings, code = Path(options.output), Worker(), [], {}, 0
-    missing = make_folder(folder)
+    created_folders = make_folder(folder)
     with tempfile.TemporaryDirectory(prefix="raya-lab-") as cache:
         try:
             bar = tqdm(chosen, disable=options.verbosity < 0 or not sys.stderr.isatty(), unit="study", leave=False)
@@ -103,8 +103,8 @@ def run_all(options, chosen, left_out, scenes):
                 except raya.DeviceError as error:
                     if len(chosen) == 1:
                         raise
-                    left_out.append(f"study {study.name} is skipped: {error}")
-                    print(f"raya: {left_out[-1]}", file=sys.stderr)
+                    skip_notes.append(f"study {study.name} is skipped: {error}")
+                    print(f"raya: {skip_notes[-1]}", file=sys.stderr)
                     code = EXIT_DEVICE
                     continue
                 page.run = {"command": command_of(study, options), "version": f"raya {raya.__version__}",
@@ -117,11 +117,11 @@ def run_all(options, chosen, left_out, scenes):
                     print_page(page, folder)
         finally:
             worker.close()
-            for created in missing if not pages else []:
+            for created in created_folders if not pages else []:
                 if created.exists() and not any(created.iterdir()):
                     created.rmdir()
     if pages:
-        write_document(folder, pages, drawings, left_out)
+        write_document(folder, pages, drawings, skip_notes)
         if options.verbosity >= 0:
             print(folder / "index.html")
     return code
@@ -130,14 +130,14 @@ def run_all(options, chosen, left_out, scenes):
 def main(arguments):
     options = settings_of(arguments)
     warn_as_raya(options)
-    chosen, left_out = selected_studies(options.study)
-    for line in left_out:
+    chosen, skip_notes = selected_studies(options.study)
+    for line in skip_notes:
         print(f"raya: {line}", file=sys.stderr)
     if len(chosen) == 1 and chosen[0].one_scene and len(options.scenes) > 1:
         raise ValueError(f"study {chosen[0].name} takes one scene, {len(options.scenes)} were given: run it for each, "
                          "into a folder of its own")
     scenes = [raya.load(file, strict=options.strict).renamed(file) for file in options.scenes]
-    return run_all(options, chosen, left_out, scenes)
+    return run_all(options, chosen, skip_notes, scenes)
 
 
 class Terminated(BaseException):

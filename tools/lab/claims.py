@@ -17,15 +17,15 @@ KINDS = "test", "counted", "derived", "untestable"
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of a paper, in its own words (`original`) and in English. `rule` decides the verdict, or is the reason why there is none."""
+    """A statement of a paper, in its own words (`original`) and in English. `rule` decides the verdict, or says why there is none."""
 
     id: str
-    paper: str  # its authors and year
-    place: str
+    paper: str  # authors and year
+    place: str  # section, table or figure
     original: str
     statement: str
     study: str
-    kind: str  # of KINDS
+    kind: str  # one of KINDS
     rule: str
 
     def __post_init__(self):
@@ -39,7 +39,7 @@ CLAIMS = {key: Claim(key, getattr(papers, entry.pop("paper")), **entry)
 
 @dataclass
 class Judgement:
-    """A claim with our result. `test` is None for a claim that no study decides."""
+    """A claim with our result. `test` is None for a derived or untestable claim."""
 
     claim: Claim
     ensemble: str = ""  # the pictures that the test uses
@@ -49,10 +49,10 @@ class Judgement:
 
     @property
     def power(self):
-        """Sentence on the deviation that the test would have detected; empty for a claim without a statistical test."""
+        """Sentence on the deviation that the test can detect; empty for a claim without a statistical test."""
         if self.test is None or np.isnan(self.test.detectable):
             return ""
-        return f"A deviation of {self.test.detectable:.2g} from the bound would be seen with {100 * POWER:.0f} %."
+        return f"A deviation of {self.test.detectable:.2g} from the bound would be detected with a probability of {100 * POWER:.0f} %."
 
 
 def judged(key, test, ensemble="", reason=""):
@@ -60,22 +60,22 @@ def judged(key, test, ensemble="", reason=""):
 
 
 def undecided_claims(study):
-    """Judgements of the study's claims that no study decides: untestable ones and derived ones."""
+    """Returns judgements, without a test, of the study's derived and untestable claims."""
     return [Judgement(claim) for claim in CLAIMS.values() if claim.study == study and claim.kind in ("derived", "untestable")]
 
 
 def decide(judgements):
     """Sets the verdicts, with Holm's correction over all judgements."""
-    found = verdicts({id(one): one.test for one in judgements if one.test is not None})
-    for one in judgements:
-        one.verdict = found.get(id(one)) or (UNTESTABLE if one.claim.kind == "untestable" else one.claim.kind)
+    found = verdicts({id(judgement): judgement.test for judgement in judgements if judgement.test is not None})
+    for judgement in judgements:
+        judgement.verdict = found.get(id(judgement)) or (UNTESTABLE if judgement.claim.kind == "untestable" else judgement.claim.kind)
 
 
 def errors_sentence(judgements):
-    """Sentence on the number of wrong verdicts to expect."""
-    tests = [one for one in judgements if one.claim.kind == "test"]
+    """Returns a sentence on the expected number of wrong verdicts; empty without a statistical test."""
+    tests = [judgement for judgement in judgements if judgement.claim.kind == "test"]
     if not tests:
         return ""
     return (f"{len(tests)} of the claims are decided by statistical tests. With Holm's correction the probability that one or more of their "
-            f"verdicts \"reproduced\" and \"not reproduced\" are wrong is at most {100 * LEVEL:.0f} %; without the correction "
-            f"{LEVEL * len(tests):.1f} wrong ones would be expected if no claim could be decided.")
+            f"verdicts \"reproduced\" and \"not reproduced\" are wrong is at most {100 * LEVEL:.0f} %. Without the "
+            f"correction, {LEVEL * len(tests):.1f} wrong ones would be expected if every tested quantity were exactly at the bound of its rule.")

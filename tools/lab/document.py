@@ -34,8 +34,8 @@ ABOUT = {
         "counts are compared with theirs.",
         "Both machines are models that run as OpenCL kernels. Every machine and every mapping gives the same image, bit for bit. "
         "The kernels count loads, packets and tests. Times are modelled from these counts unless a page calls them measured.",
-        "A claim is a statement of a paper; claims.toml has each once, with a rule that was fixed before the result. Reproduced: the "
-        "interval fulfils the rule. Not reproduced: it contradicts the rule. Compatible: it does neither, because the test has too little "
+        "A claim is a statement of a paper. claims.toml has each claim once, with a rule that was fixed before the result. Reproduced: the "
+        "interval fulfils the rule. Not reproduced: the interval contradicts the rule. Compatible: neither, because the test has too little "
         "power. Untestable: no study can decide it. Claims that follow from another claim or from figures that scenes were matched to are "
         "derived and have no verdict. Holm's correction covers all tests of this document.",
         "\"Derived\" marks a figure that follows by arithmetic from figures that the paper prints. \"[D]\" marks such a figure in a "
@@ -89,7 +89,7 @@ def json_of(page):
     comparisons = [{**json_value(c), "ratio": json_value(ratio(c))} for c in page.comparisons]
     drawn = [{**json_value(p), "description": plots.description(p)} for p in page.plots]
     members = {f.name: getattr(page, f.name) for f in dataclasses.fields(page) if f.name not in ("name", "placeholders")}
-    claims = [record_of(one) for one in page.claims]
+    claims = [record_of(judgement) for judgement in page.claims]
     return {"study": page.name, **json_value({**members, "tables": tables, "pictures": pictures, "claims": claims,
                                          "comparisons": comparisons, "plots": drawn})}
 
@@ -171,15 +171,15 @@ def verdict_sentences(pages):
     if not claims:
         return ["This study tests no claim of a paper."] if len(pages) == 1 else ["These studies test no claim of a paper."]
 
-    def sentence(some, source):
-        count = Counter(one.verdict for one in some)
-        return (f"Of {len(some)} claim{'' if len(some) == 1 else 's'} {source}: "
+    def sentence(counted_claims, source):
+        count = Counter(judgement.verdict for judgement in counted_claims)
+        return (f"Of {len(counted_claims)} claim{'' if len(counted_claims) == 1 else 's'} {source}: "
                 + ", ".join(f"{count[verdict]} {verdict}" for verdict in (REPRODUCED, COMPATIBLE, NOT_REPRODUCED, UNTESTABLE, "derived")) + ".")
 
-    papers = list(dict.fromkeys(one.claim.paper for one in claims))
+    papers = list(dict.fromkeys(judgement.claim.paper for judgement in claims))
     sentences = [sentence(claims, f"of {papers[0]}" if len(papers) == 1 else f"of {len(papers)} papers")]
     if len(papers) > 1:
-        sentences += [sentence([one for one in claims if one.claim.paper == paper], f"of {paper}") for paper in papers]
+        sentences += [sentence([judgement for judgement in claims if judgement.claim.paper == paper], f"of {paper}") for paper in papers]
     return [*sentences, *filter(None, [errors_sentence(claims)])]
 
 
@@ -255,18 +255,18 @@ def texts_of(page):
             f"{page.name}.md": environment().get_template("page.md.j2").render(page=page)}
 
 
-def write_document(folder, pages, drawings, left_out=()):
+def write_document(folder, pages, drawings, skip_notes=()):
     """Writes index.html; for several pages also index.md and claims.csv, and again the pages' verdicts, which now take all claims into account.
-    `left_out`: sentences on studies that did not run."""
-    decide([one for page in pages for one in page.claims])
+    `skip_notes`: sentences on studies that did not run."""
+    decide([judgement for page in pages for judgement in page.claims])
     if len(pages) > 1:
-        claims = pd.DataFrame([record_of(one) for page in pages for one in page.claims])
+        claims = pd.DataFrame([record_of(judgement) for page in pages for judgement in page.claims])
         write_atomically(folder / "claims.csv", claims.to_csv(index=False, na_rep="-"))
         for name, content in (item for page in pages for item in texts_of(page).items()):
             write_atomically(folder / name, content)
     jinja_environment = environment()
-    body = jinja_environment.get_template("document.html.j2").render(pages=pages, drawings=drawings, left_out=left_out,
+    body = jinja_environment.get_template("document.html.j2").render(pages=pages, drawings=drawings, skip_notes=skip_notes,
                                                         references=REFERENCES)
     write_atomically(folder / "index.html", body)
     if len(pages) > 1:
-        write_atomically(folder / "index.md", jinja_environment.get_template("index.md.j2").render(pages=pages, left_out=left_out))
+        write_atomically(folder / "index.md", jinja_environment.get_template("index.md.j2").render(pages=pages, skip_notes=skip_notes))

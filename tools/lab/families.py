@@ -4,28 +4,28 @@ import raya
 
 
 def view_of(scene):
-    """Function(seed) that returns a random view of the scene: another direction from the same distance, 5 to 75 degrees above its target."""
+    """Returns a function(seed) -> scene. The camera looks at its target from a random direction, 5 to 75 degrees above it, at the same distance."""
     return lambda seed: scene.random_view(seed).renamed(f"{scene.name}, view {seed}")
 
 
-def _scattered(scene):
-    """The scene's spheres at random places, from a random view. `scene`: function that returns it."""
-    def make(seed):
-        one = scene()
-        return one.scattered(seed).random_view(seed).renamed(f"{one.name}, scattered, seed {seed}")
-    return make
+def _scattered(make_scene):
+    """Returns a function(seed) -> scene: the spheres of make_scene() at random places, from a random view."""
+    def make_scattered(seed):
+        scene = make_scene()
+        return scene.scattered(seed).random_view(seed).renamed(f"{scene.name}, scattered, seed {seed}")
+    return make_scattered
 
 
-def _random(low, high):
-    """Random spheres: another scene and another view for each seed."""
-    def scene(seed):
-        count = low + seed % (high - low + 1)
+def _random(min_spheres, max_spheres):
+    """Returns a function(seed) -> scene: random spheres from a random view."""
+    def make_random(seed):
+        count = min_spheres + seed % (max_spheres - min_spheres + 1)
         return raya.generate.random(count, seed).random_view(seed).renamed(f"random-{count}, seed {seed}")
-    return scene
+    return make_random
 
 
 def cluster(seed):
-    """A scene with its objects in the middle, as that of Fig. 6."""
+    """Returns a scene with its objects in the middle of the image, as in Fig. 6."""
     return raya.generate.cluster(seed).renamed(f"cluster, seed {seed}")
 
 
@@ -34,4 +34,4 @@ FAMILIES = {"cluster": cluster,
             **{f"{name}, scattered": _scattered(lambda name=name: raya.example(name)) for name in ("centre", "spheres", "mirrors", "glass")},
             "balls-1, scattered": _scattered(lambda: raya.generate.balls(1).renamed("balls-1")),
             "random, 6 to 13": _random(6, 13), "random, 14 to 21": _random(14, 21), "random, 22 to 30": _random(22, 30)}
-CROWDED = {"cluster": cluster}  # scenes with their objects in the middle
+CROWDED = {"cluster": cluster}  # the families with their objects in the middle of the image

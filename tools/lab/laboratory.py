@@ -13,7 +13,8 @@ from raya.lab.families import FAMILIES, view_of
 MACHINES = {machine["name"]: machine for machine in raya.machines()}
 SPA = MACHINES["spa"]
 VIEWS = 108  # default number of pictures of an ensemble
-SEEDS, FAMILY_SEEDS = 100_000, 1000  # seeds of each part of a study; of each family of a part, as a seed gives all families the same view
+# Numbers of seeds reserved for each part of a study, and for each family of a part. A seed would give two families the same view.
+SEEDS, FAMILY_SEEDS = 100_000, 1000
 TESTS = tuple(f"{kind}_tests" for kind in ("sphere", "plane", "polygon", "cone"))
 
 
@@ -51,8 +52,8 @@ class Ensemble:
     families: list  # family of each picture
     description: str  # the families and seeds, for the method of a study
 
-    def of(self, measure):
-        """Array [picture, ...] of measure(costs)."""
+    def map(self, measure):
+        """Returns an array [picture, ...] of measure(costs)."""
         return np.array([measure(costs) for costs in self.pictures])
 
 
@@ -64,7 +65,7 @@ def format_for(scene):
 class Laboratory:
     """Renders scenes. Cost images are cached in `folder`, by scene and settings, so that the studies of one run share them.
 
-    size: pixels per side; None: each study's default. views: pictures of an ensemble; seed: seed of the first one. network: (seconds per message,
+    size: pixels per side; None: each study's default. views: pictures of an ensemble; seed: seed of the first picture. network: (seconds per message,
     seconds per byte) or None. options: `device`, and options of every render.
     """
 
@@ -101,18 +102,17 @@ class Laboratory:
         return costs
 
     def ensemble(self, scenes, size, antialias="none", views=None, families=FAMILIES, part=0):
-        """Cost images (`Ensemble`) of `views` pictures, equally many of each family; of random views of the scenes if there are any. An expensive
-        scene has fewer views, so that views x pixels x objects is at most 2^29, but at least 4. part: numbers the ensembles of a study that must
-        not share a picture; each has seeds of its own."""
+        """Returns an Ensemble of `views` pictures, equally many of each family. If there are scenes, each is a family of random views. A family has
+        at most max(4, 2^29 / (pixels x objects)) pictures. part: ensembles of different parts of a study share no picture."""
         if scenes:
             families = {scene.name: view_of(scene) for scene in scenes}
         objects = max(make(1).objects for make in families.values())
         limit = max(4, 2**29 // (size * size * max(objects, 1)))
-        each = max(2, min(limit, -(-(views or self.views) // len(families))))
-        first = {name: self.seed + part * SEEDS + i * FAMILY_SEEDS for i, name in enumerate(families)}
-        pictures = [(name, self.costs(make(first[name] + i), size, antialias)) for name, make in families.items() for i in range(each)]
-        return Ensemble([costs for _, costs in pictures], [name for name, _ in pictures],
-                        f"{len(pictures)} pictures: " + "; ".join(f"seeds {seed}..{seed + each - 1} of {name}" for name, seed in first.items()))
+        views_each = max(2, min(limit, -(-(views or self.views) // len(families))))
+        first_seeds = {name: self.seed + part * SEEDS + i * FAMILY_SEEDS for i, name in enumerate(families)}
+        pictures = [(name, self.costs(make(first_seeds[name] + i), size, antialias)) for name, make in families.items() for i in range(views_each)]
+        seeds_text = "; ".join(f"seeds {seed}..{seed + views_each - 1} of {name}" for name, seed in first_seeds.items())
+        return Ensemble([costs for _, costs in pictures], [name for name, _ in pictures], f"{len(pictures)} pictures: {seeds_text}")
 
 
 def first_scene(scenes):
@@ -135,8 +135,8 @@ def time_calls(run, runs, sampling_s, warm=True):
 
 
 def mean_seconds(run, minimum_s=0.02):
-    """Returns the mean of the seconds that run() returns, over as many calls as take minimum_s seconds, because clock and launch overhead distort
-    shorter times."""
+    """Returns the mean of the seconds that run() returns, over as many calls as take minimum_s seconds together. The overhead of clock and
+    launch would distort shorter times."""
     total = calls = 0
     while total < minimum_s:
         total += run()

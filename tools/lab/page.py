@@ -45,8 +45,8 @@ class Series:
 def series_by(rows, label, x, y, half=None, style="line"):
     """[Series]: one for each value of column `label`, in order of first occurrence. x, y, half: names of the columns of the points and of the half
     widths of their intervals."""
-    return [Series(str(value), some[x], some[y], style, some[half] if half else [])
-            for value, some in rows.groupby(label, sort=False)]
+    return [Series(str(value), group[x], group[y], style, group[half] if half else [])
+            for value, group in rows.groupby(label, sort=False)]
 
 
 @dataclass
@@ -88,7 +88,7 @@ class Comparison:
 
 def with_paper(in_paper, comparisons):
     """Returns the comparisons, without the paper's figures unless in_paper: the study uses the paper's scene and size."""
-    return comparisons if in_paper else [replace(one, paper=None) for one in comparisons]
+    return comparisons if in_paper else [replace(comparison, paper=None) for comparison in comparisons]
 
 
 @dataclass
@@ -98,7 +98,7 @@ class Page:
     settings: dict  # values of {names} in the prose, written to the JSON report
     findings: list = field(default_factory=list)  # sentences, the most important one first
     comparisons: list = field(default_factory=list)
-    claims: list = field(default_factory=list)  # judged(...): our results for claims of papers
+    claims: list = field(default_factory=list)  # of Judgement, made by judged()
     tables: list = field(default_factory=list)
     plots: list = field(default_factory=list)
     news: list = field(default_factory=list)  # sentences on results that go beyond the papers
@@ -126,14 +126,14 @@ class Page:
         self.title, _, question = head.strip().partition("\n")
         self.question, *self.method = (" ".join(text.split()) for text in (question, *items))
         for kind in (self.tables, self.plots + self.pictures):
-            names = [one.name for one in kind]
+            names = [output.name for output in kind]
             if len(names) != len(set(names)):
                 raise ValueError(f"study {name}: two files have the same name: {', '.join(sorted(names))}")
         return self
 
 
 def format_value(value):
-    """Text of a number on a page, with five significant digits."""
+    """Returns text of a number on a page, with five significant digits."""
     if isinstance(value, str):
         return value
     if value is None or (isinstance(value, float) and np.isnan(value)):

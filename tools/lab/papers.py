@@ -24,14 +24,14 @@ RECOMPUTED_MIN, RECOMPUTED_MAX = 0.16, 0.18
 SPEEDUP_16 = 229  # printed in the abstracts
 SPEEDUP_0 = 99.2
 IMBALANCE_0, IMBALANCE_16 = 1.58, 0.118  # u(0), u(16); Figs 7 and 8 print no u
-IMBALANCE_16_ROUNDING = "the paper's lies in 0.115 .. 0.121, as its times are rounded"
+IMBALANCE_16_ROUNDING = "the paper's u(16) lies in 0.115 .. 0.121, because its times are rounded"
 EFFICIENCY_0, EFFICIENCY_16 = 0.388, 0.895
 CAP_RATIO = 3.86  # text next to Fig. 9: speed-up of CAP with 256 PEs over CAP with 64 PEs
 PIXEL_MACHINE_SPEEDUP = 60  # text next to Fig. 9: 64 nodes, "60 or more"
 
 # Yoshitani & Yamazaki, about 1995.
 RAY_WORDS = 22  # [D] Table 1: scalars of a ray packet, without the data for the voxel search and the data of the object hit
-FEW_DIVISIONS, MANY_DIVISIONS = 32, 1024  # Fig. 3: 1024 objects on one machine
+FEW_DIVISIONS, MANY_DIVISIONS = 32, 1024  # numbers of divisions in Fig. 3, for 1024 objects on one machine
 FEW_DIVISIONS_S, MANY_DIVISIONS_S = 313, 60
 DIVISIONS_FALL = FEW_DIVISIONS_S / MANY_DIVISIONS_S  # [D]
 TESTS_FALL = 5  # tests fall "to about 1/5"

@@ -27,16 +27,16 @@ class RingModel:
         self.arguments = [file, "--machine", "grande", "--accel", "none", "--antialias", "filter", "--format",
                           format_for(scene), "--size", str(size)]
         self.ranks = powers_of_two(min(MAX_RANKS, size * size))
-        self.parts = []
+        self.counts = []
         for ranks in self.ranks:
             pes = max(size, ranks)
             offset = (round(pes**0.5) if ranks > size else 16) % size
             loads = np.bincount(raya.ranks_of_pes(pes, ranks), raya.loads(costs.trace, pes=pes, offset=offset))
-            self.parts.append({"pes": pes, "u": loads.max() / loads.mean() - 1,
-                               "rotations": raya.exchange_rotations(size, size, pes=pes, offset=offset),
-                               "block": 12 * raya.largest_share(size, size, pes=pes, offset=offset),
-                               "image": 12 * size * size, "scene": 4 * costs.job_words})
-        self.arrays = [f"{part['pes']} PEs" for part in self.parts]
+            self.counts.append({"pes": pes, "u": loads.max() / loads.mean() - 1,
+                                "rotations": raya.exchange_rotations(size, size, pes=pes, offset=offset),
+                                "block": 12 * raya.largest_share(size, size, pes=pes, offset=offset),
+                                "image": 12 * size * size, "scene": 4 * costs.job_words})
+        self.arrays = [f"{counts['pes']} PEs" for counts in self.counts]
 
     def weak(self, ranks):
         """Returns the arguments of a render with `ranks` times as many pixels (weak scaling)."""
@@ -45,13 +45,13 @@ class RingModel:
     def predict(self, i, one_rank, network, processors):
         """Returns {part: predicted seconds} for PARTS, on self.ranks[i] ranks. one_rank: measured seconds of one rank, by part; network: (alpha,
         beta)."""
-        part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
+        counts, ranks, (alpha, beta) = self.counts[i], self.ranks[i], network
         parts = dict.fromkeys(PARTS, 0.0)
-        parts.update(compute=(one_rank["trace"] * (1 + part["u"]) + one_rank["rest"]) / processors, host=one_rank["host"])
+        parts.update(compute=(one_rank["trace"] * (1 + counts["u"]) + one_rank["rest"]) / processors, host=one_rank["host"])
         if ranks > 1:
-            parts["exchange"] = part["rotations"] * (alpha + beta * part["block"])
-            parts["collect"] = 2 * (ranks - 1) * alpha + beta * part["image"] * (1 - 1 / ranks)
-            parts["broadcast"] = rounds(ranks) * (alpha + beta * part["scene"])
+            parts["exchange"] = counts["rotations"] * (alpha + beta * counts["block"])
+            parts["collect"] = 2 * (ranks - 1) * alpha + beta * counts["image"] * (1 - 1 / ranks)
+            parts["broadcast"] = rounds(ranks) * (alpha + beta * counts["scene"])
         return parts
 
 
@@ -72,7 +72,7 @@ class TorusModel:
         status, words = 4 * raya.STATUS_WORDS * nodes, 4 * result.copied_words
         counted = {ranks: {**count_on_bricks(result, ranks), "status": status, "scene": words, "host": 1}
                    for ranks in powers_of_two(nodes)}
-        self.parts = [counted[r] if r <= nodes else extrapolate_counts(counted[nodes], r // nodes) for r in self.ranks]
+        self.counts = [counted[r] if r <= nodes else extrapolate_counts(counted[nodes], r // nodes) for r in self.ranks]
         self.arrays = [f"{sides} nodes" if r <= nodes else f"{sides_text(near_cube(r))} nodes, assumed"
                        for r in self.ranks]
         self.objects = scene.objects
@@ -84,15 +84,15 @@ class TorusModel:
         return [file, *self.arguments[1:]]
 
     def predict(self, i, one_rank, network, processors):
-        part, ranks, (alpha, beta) = self.parts[i], self.ranks[i], network
-        busiest_rank_s = one_rank["trace"] * part["cycles"] / part["total_cycles"] + one_rank["rest"] * part["max_nodes"] / part["nodes"]
+        counts, ranks, (alpha, beta) = self.counts[i], self.ranks[i], network
+        busiest_rank_s = one_rank["trace"] * counts["cycles"] / counts["total_cycles"] + one_rank["rest"] * counts["max_nodes"] / counts["nodes"]
         parts = dict.fromkeys(PARTS, 0.0)
-        parts.update(compute=busiest_rank_s * ranks / processors, host=one_rank["host"] * part["host"])
+        parts.update(compute=busiest_rank_s * ranks / processors, host=one_rank["host"] * counts["host"])
         if ranks > 1:
             remote_fraction = 1 - 1 / ranks
-            parts["exchange"] = part["messages"] * alpha + part["bytes"] * beta
-            parts["collect"] = part["supersteps"] * (rounds(ranks) * alpha + beta * part["status"] * remote_fraction)
-            parts["broadcast"] = (ranks - 1) * alpha + beta * part["scene"] * remote_fraction
+            parts["exchange"] = counts["messages"] * alpha + counts["bytes"] * beta
+            parts["collect"] = counts["supersteps"] * (rounds(ranks) * alpha + beta * counts["status"] * remote_fraction)
+            parts["broadcast"] = (ranks - 1) * alpha + beta * counts["scene"] * remote_fraction
         return parts
 
 
@@ -116,9 +116,9 @@ def count_on_bricks(result, ranks):
             "cycles": float(by_rank.max(1).sum()), "total_cycles": float(cycles.sum()), **maxima}
 
 
-def extrapolate_counts(part, times):
+def extrapolate_counts(counts, times):
     """Extrapolates the counts to a torus with `times` as many nodes and one rank per node: every node is divided into `times` smaller nodes."""
     side = times ** (1 / 3)
     change = {"nodes": times, "supersteps": side, "cycles": 1 / times, "messages": side, "bytes": 1 / side**2,
               "status": times, "host": side * times}
-    return {name: value * change.get(name, 1) for name, value in part.items()}
+    return {name: value * change.get(name, 1) for name, value in counts.items()}

@@ -9,7 +9,7 @@ from raya.lab import papers
 from raya.lab.laboratory import SPA, first_scene, format_for
 
 ROUNDING = 0.5  # ms: the tables print whole milliseconds
-FACTORS = list(range(1, 9))  # of the clock model: the range for which conclusions are shown
+FACTORS = list(range(1, 9))  # factors of the clock model for which conclusions are shown
 
 
 FACTOR = SPA["cycle_factor"]

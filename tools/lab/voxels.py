@@ -49,7 +49,7 @@ MEMBERS = {
 
 
 class Run:
-    """Figures of one render: on the torus, with modelled times (time: None), or on one PE, with modelled times and the measured `time` (Timing)."""
+    """Figures of one render: on the torus with modelled times (time: None), or on one PE with a modelled time and the measured `time` (Timing)."""
 
     def __init__(self, scene, result, voxels, time=None):
         e, report = result.events, result.report
@@ -90,7 +90,7 @@ def run_cases(cases, run, columns):
 
 def run_on_torus(lab, scene, size, nodes, voxels, queue=None, **options):
     """Renders on the torus without a memory limit; returns a Run. If the render deadlocks because queues are too short, repeats it with queues of
-    twice the length, up to the default of 8192 packets. Raises raya.Deadlock if the render deadlocks with that length (queue None: at once)."""
+    twice the length, up to the default of 8192 packets. Raises raya.Deadlock if the render deadlocks with that length, or with queue=None."""
     while True:
         try:
             result = lab.render(scene, machine="torus", size=size, nodes=sides_text(nodes), voxels=sides_text(voxels),

@@ -4,9 +4,9 @@
 //
 //   simgrid_replay PLATFORM.xml REPLAY [--cfg=...]
 //
-// Prints "finish_ms T", the simulated time in ms, and "delivered N", the number of messages. --cfg: options of SimGrid.
-// Exit codes: 0 done; 2 bad arguments, or a file that cannot be read; 4 deadlock.
-// REPLAY is text, written by `raya render --machine torus --packets FILE.csv.gz --replay simgrid` (docs/packets.md):
+// Prints "finish_ms T", the simulated time in ms, and "delivered N", the number of delivered messages. --cfg: options
+// of SimGrid. Exit codes: 0 done; 2 bad arguments, or a file that cannot be read; 4 deadlock. REPLAY is text, written
+// by `raya render --machine torus --packets FILE.csv.gz --replay simgrid` (docs/packets.md):
 //   machine NODES BUFFER ENTRY_SLOTS MESSAGE_CYCLES WORD_CYCLES
 //       BUFFER: number of slots of an output thread for messages of one class; ENTRY_SLOTS: number of free slots that a
 //       ray needs to enter a link of another axis; MESSAGE_CYCLES + words x WORD_CYCLES: processor cycles for sending
@@ -57,7 +57,7 @@ struct Task {
 // One direction of a link. For each class of messages: `out`, the messages in the output thread; `is_input_busy`, true
 // while the input thread has a message.
 struct Port {
-    std::size_t from = 0, to = 0;
+    std::size_t source = 0, target = 0;  // nodes
     int direction = 0;
     std::array<std::deque<Message*>, 2> out;
     std::array<bool, 2> is_input_busy{};
@@ -92,7 +92,7 @@ Machine machine;
 
 void wake(Node& node) { node.changed->notify_all(); }
 
-// The processor's part of a message: it preempts the main task; messages are handled one after another.
+// Takes the processor's time for sending or receiving a message. Messages have priority over the main task.
 void handle(Node& node, const Message& message) {
     const double cycles = machine.message_cycles + machine.word_cycles * message.words;
     if (cycles <= 0) return;
@@ -101,20 +101,20 @@ void handle(Node& node, const Message& message) {
     node.communication->unlock();
 }
 
-void deliver(Message* message, std::size_t at) {
+void deliver(Message* message, std::size_t node_index) {
     ++machine.delivered;
     machine.finish_one();
     if (message->task == kNoTask) return;
-    machine.nodes[at].message_tasks.push_back(message->task);
-    wake(machine.nodes[at]);
+    machine.nodes[node_index].message_tasks.push_back(message->task);
+    wake(machine.nodes[node_index]);
 }
 
 // Puts a message into the output thread of its next link; waits for free slots. `arrival`: direction in which the
 // message arrived; -1: from the main task.
-void put(std::size_t at, Message* message, int arrival) {
-    Node& node = machine.nodes[at];
+void put(std::size_t node_index, Message* message, int arrival) {
+    Node& node = machine.nodes[node_index];
     const Hop next = message->route[message->hop];
-    Port& port = *machine.ports.at({at, next.direction});
+    Port& port = *machine.ports.at({node_index, next.direction});
     std::deque<Message*>& out = port.out[message->cls];
     const bool needs_one_slot = message->cls == 0 || arrival == next.direction;
     const std::size_t required_slots = needs_one_slot ? 1 : machine.entry_slots;
@@ -124,8 +124,8 @@ void put(std::size_t at, Message* message, int arrival) {
     wake(node);
 }
 
-void main_task(std::size_t at) {
-    Node& node = machine.nodes[at];
+void main_task(std::size_t node_index) {
+    Node& node = machine.nodes[node_index];
     for (;;) {
         std::size_t task = kNoTask;
         {
@@ -139,15 +139,15 @@ void main_task(std::size_t at) {
         machine.finish_one();
         for (Message* message : machine.tasks[task].sent_messages)
             if (message->route.empty())
-                deliver(message, at);
+                deliver(message, node_index);
             else
-                put(at, message, -1);
+                put(node_index, message, -1);
     }
 }
 
 // Returns (class 0) have priority over rays.
 void output_thread(Port* port) {
-    Node& node = machine.nodes[port->from];
+    Node& node = machine.nodes[port->source];
     for (;;) {
         int cls = -1;
         {
@@ -166,16 +166,16 @@ void output_thread(Port* port) {
 }
 
 void input_thread(Port* port, int cls) {
-    Node& node = machine.nodes[port->to];
+    Node& node = machine.nodes[port->target];
     for (;;) {
         Message* const message = port->wire[cls]->get<Message>();
         handle(node, *message);
         if (++message->hop == message->route.size())
-            deliver(message, port->to);
+            deliver(message, port->target);
         else
-            put(port->to, message, port->direction);
+            put(port->target, message, port->direction);
         port->is_input_busy[cls] = false;
-        wake(machine.nodes[port->from]);
+        wake(machine.nodes[port->source]);
     }
 }
 
@@ -235,20 +235,20 @@ void start(const std::string& name, sg::Host* host, const std::function<void()>&
     sg::Actor::create(name, host, code)->daemonize();
 }
 
-// Creates ports and threads for the links that messages use.
+// Creates the main tasks, and the ports and threads of the links that messages use.
 void start_actors() {
     for (const Task& task : machine.tasks)
         for (const Message* message : task.sent_messages) {
-            std::size_t from = task.node;
+            std::size_t source = task.node;
             for (const Hop& hop : message->route) {
-                auto& port = machine.ports[{from, hop.direction}];
+                auto& port = machine.ports[{source, hop.direction}];
                 if (!port) {
                     port = std::make_unique<Port>();
-                    port->from = from;
-                    port->to = hop.node;
+                    port->source = source;
+                    port->target = hop.node;
                     port->direction = hop.direction;
                 }
-                from = hop.node;
+                source = hop.node;
             }
         }
     for (auto& [key, port] : machine.ports) {
@@ -256,20 +256,21 @@ void start_actors() {
         const std::string name = std::to_string(key.first) + ":" + std::to_string(key.second);
         for (int cls = 0; cls < 2; ++cls) {
             p->wire[cls] = sg::Mailbox::by_name(name + ":" + std::to_string(cls));
-            start("in " + name, machine.nodes[p->to].host, [p, cls] { input_thread(p, cls); });
+            start("in " + name, machine.nodes[p->target].host, [p, cls] { input_thread(p, cls); });
         }
-        start("out " + name, machine.nodes[p->from].host, [p] { output_thread(p); });
+        start("out " + name, machine.nodes[p->source].host, [p] { output_thread(p); });
     }
     for (std::size_t node = 0; node < machine.nodes.size(); ++node)
         start("main " + std::to_string(node), machine.nodes[node].host, [node] { main_task(node); });
-    if (machine.pending > 0) sg::Actor::create("end", machine.nodes[0].host, [] { machine.done->acquire(); });
+    if (machine.pending > 0)  // the simulation ends with this actor: all others are daemons
+        sg::Actor::create("end", machine.nodes[0].host, [] { machine.done->acquire(); });
 }
 
 }  // namespace
 
 int main(int argc, char* argv[]) {
     sg::Engine engine(&argc, argv);
-    // A message takes its bytes / the link's rate: disables SimGrid's corrections for TCP.
+    // A transfer takes bytes / rate of the link, without SimGrid's corrections for TCP.
     sg::Engine::set_config("network/model:CM02");
     sg::Engine::set_config("network/crosstraffic:0");
     sg::Engine::set_config("contexts/stack-size:128");

@@ -1,4 +1,4 @@
-// The compiled part of fmt for the standalone program, because Debian has no static library of fmt. Contains the
+// Replaces fmt's library in the standalone program, because Debian has no static library of fmt. Contains the
 // instantiations of src/format.cc (fmt 9) that raya uses.
 #include <fmt/format-inl.h>
 

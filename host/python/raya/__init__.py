@@ -95,8 +95,8 @@ def program():
 
 
 def _run_program():
-    """Runs the program `raya` in place of this process. Entry point of the command `raya` that pip installs; studies then
-    run with this Python interpreter."""
+    """Replaces this process with the program `raya`. Entry point of the command `raya` that pip installs. Studies that this
+    command starts use this Python interpreter."""
     os.environ.setdefault("RAYA_PYTHON", sys.executable)
     path = program()
     os.execv(path, [path, *sys.argv[1:]])

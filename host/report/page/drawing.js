@@ -56,12 +56,12 @@ function svg(tag, attributes, ...children) {
   return element;
 }
 
-const at = (v) => v.toFixed(2);
-const path = (kind, d) => svg("path", {class: kind, d});
-const line = (kind, ...points) => path(kind, "M" + points.map(([x, y]) => `${at(x)} ${at(y)}`).join("L"));
-const box = (kind, x0, y0, x1, y1) => path(kind, `M${at(x0)} ${at(y0)}H${at(x1)}V${at(y1)}H${at(x0)}Z`);
-const label = (anchor, x, y, text) => svg("text", {x: at(x), y: at(y), "text-anchor": anchor}, text);
-const dot = (x, y, radius = 4, kind = "dot") => svg("circle", {class: kind, cx: at(x), cy: at(y), r: radius});
+const pos = (v) => v.toFixed(2);  // a coordinate as text
+const path = (css, d) => svg("path", {class: css, d});
+const line = (css, ...points) => path(css, "M" + points.map(([x, y]) => `${pos(x)} ${pos(y)}`).join("L"));
+const box = (css, x0, y0, x1, y1) => path(css, `M${pos(x0)} ${pos(y0)}H${pos(x1)}V${pos(y1)}H${pos(x0)}Z`);
+const label = (anchor, x, y, text) => svg("text", {x: pos(x), y: pos(y), "text-anchor": anchor}, text);
+const dot = (x, y, radius = 4, css = "dot") => svg("circle", {class: css, cx: pos(x), cy: pos(y), r: radius});
 
 const chart = (description, marks, height = VIEW_HEIGHT) => svg(
   "svg", {class: "chart", viewBox: `0 0 ${VIEW_WIDTH} ${height}`, role: "img", "aria-label": description},
@@ -74,7 +74,7 @@ function ticksOf(max, count) {
   return Array.from({length: Math.floor(max / step * 1.0001) + 1}, (_, i) => Number((i * step).toPrecision(6)));
 }
 
-// Returns a linear axis from 0 to `max` with about `count` ticks. Function `to` maps a value to 0..1. `whole`: true if
+// Returns a linear axis from 0 to `max` with about `count` ticks. fraction(): maps a value to 0..1. `whole`: true if
 // the ticks are integers without a unit prefix.
 function linear(name, max, count, whole = false) {
   const [unit, prefix] = max >= 1e9 ? [1e9, "thousand million "] :
@@ -84,7 +84,7 @@ function linear(name, max, count, whole = false) {
   const ticks = ticksOf(max, count).filter((tick) => !whole || Number.isInteger(tick));
   return {
     name: whole ? name : prefix + name,
-    to: (v) => v / max,
+    fraction: (v) => v / max,
     ticks,
     text: (tick) => String(Number((tick / (whole ? 1 : unit)).toPrecision(6)))
   };
@@ -97,17 +97,17 @@ function decades(name, min, max) {
   for (let power = begin; power <= end; power += step) ticks.push(10 ** power);
   return {
     name,
-    to: (v) => (Math.log10(v) - begin) / (end - begin),
+    fraction: (v) => (Math.log10(v) - begin) / (end - begin),
     ticks,
     text: (tick) => String(Number(tick.toPrecision(6))),
     min: 10 ** begin
   };
 }
 
-// Returns a coordinate system with the axes `across` and `up`: x() and y() map values to positions; `grid` has lines
-// and labels.
+// Returns a coordinate system with the axes `across` and `up`: x() and y() map values to positions; `grid` has the
+// SVG elements of grid lines and labels.
 function plane(across, up) {
-  const x = (v) => LEFT + (RIGHT - LEFT) * across.to(v), y = (v) => BOTTOM - (BOTTOM - TOP) * up.to(v);
+  const x = (v) => LEFT + (RIGHT - LEFT) * across.fraction(v), y = (v) => BOTTOM - (BOTTOM - TOP) * up.fraction(v);
   const grid = [label("start", 4, 14, up.name), label("end", RIGHT, VIEW_HEIGHT - 4, across.name)];
   for (const tick of up.ticks)
     grid.push(line("grid", [LEFT, y(tick)], [RIGHT, y(tick)]), label("end", LEFT - 6, y(tick) + 4, up.text(tick)));
@@ -120,15 +120,15 @@ function plane(across, up) {
 // colour(first, count), optional: returns the colour of the column that shows the values first .. first + count - 1.
 // top: minimum for the upper end of the axis.
 function bars(description, [across, up], values, mean, {colour = null, top = 0} = {}) {
-  const count = values.length, columns = count <= 416 ? count : 208, wide = (RIGHT - LEFT) / columns,
+  const count = values.length, columns = count <= 416 ? count : 208, columnWidth = (RIGHT - LEFT) / columns,
         gap = columns > 100 ? 0.1 : 0.2;
   const max = values.reduce((a, b) => Math.max(a, b), Math.max(top, 1e-9));
   const {x, y, grid} = plane(linear(across, count, 8, true), linear(up, max * 1.04, 5)), marks = [];
   for (let column = 0; column < columns; ++column) {
     const first = Math.floor(column * count / columns),
           shown = values.slice(first, Math.floor((column + 1) * count / columns));
-    const low = Math.min(...shown), high = Math.max(...shown), left = x(column * count / columns) + wide * gap / 2,
-          right = left + wide * (1 - gap);
+    const low = Math.min(...shown), high = Math.max(...shown),
+          left = x(column * count / columns) + columnWidth * gap / 2, right = left + columnWidth * (1 - gap);
     if (high > low) marks.push(box("bar pale", left, y(high), right, y(low)));
     marks.push(box("bar", left, y(low), right, BOTTOM));
     if (colour)
@@ -172,12 +172,12 @@ function roof(description, slope, tops, points) {
   const taken = [];  // positions of labels; a label too close to another label is placed below that label
   const places = points.map(([px, py], i) => [x(px), y(py), i + 1]).sort((a, b) => a[1] - b[1]);
   for (const [px, py, number] of places) {
-    const isLeft = px + 22 > RIGHT, lx = isLeft ? px - 8 : px + 8;  // label to the left of the point
+    const labelIsLeft = px + 22 > RIGHT, lx = labelIsLeft ? px - 8 : px + 8;
     let ly = py + 4;
     for (const [ox, oy] of taken)
       if (Math.abs(ox - lx) < 18 && ly < oy + 12) ly = oy + 12;
     taken.push([lx, ly]);
-    marks.push(dot(px, py), label(isLeft ? "end" : "start", lx, ly, String(number)));
+    marks.push(dot(px, py), label(labelIsLeft ? "end" : "start", lx, ly, String(number)));
   }
   return chart(description, [grid, marks]);
 }

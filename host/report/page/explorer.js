@@ -12,12 +12,12 @@ const explorer = {
   figures: null,
   hovered: null,  // PE under the pointer, or null
   pointed: "",    // text about the pixel under the pointer
-  // Imbalance u of each offset: number of PEs, number of offsets computed so far, u by fold, minimum, maximum.
+  // Imbalance u by offset. known: number of offsets computed so far; values: [fold][offset]; worst: maximum u.
   curves: {pes: 0, known: 0, values: null, best: null, worst: 0},
 
   // The highlighted PE, or null.
   get focus() { return this.hovered ?? this.state.pe; },
-  get root() { return rootOf(this.figures.setting.pes); },  // √P, rounded; may exceed the maximum offset
+  get squareRoot() { return roundedSquareRoot(this.figures.setting.pes); },  // √P; may exceed the maximum offset
 
   // --- From the report to the first view
 
@@ -183,7 +183,7 @@ const explorer = {
     $("bars").replaceChildren(loadBars(f, texts, focus, 1 + curves.worst));
     const current =
       f.setting.kind === "slots" ? {offset: f.setting.offset, fold: values.block ? state.fold : "cyclic"} : null;
-    $("curves").replaceChildren(offsetCurves(f, texts, curves, this.root, current));
+    $("curves").replaceChildren(offsetCurves(f, texts, curves, this.squareRoot, current));
     const {pe, cells} = drawCloseUp($("close-up"), f, this.size, focus),
                closeUp = `${cells} × ${cells} pixels in the middle of the image, the pixels of PE ${pe} in white`;
     const ownerText = focus === null ?

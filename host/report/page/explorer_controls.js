@@ -17,7 +17,7 @@ const CONTROLS = {
 };
 
 function fillControls(page) {
-  const {width, height} = page.size, root = rootOf(width) % width;
+  const {width, height} = page.size, paperOffset = roundedSquareRoot(width) % width;
   const maxima = {
     "offset-slider": width - 1,
     offset: width - 1,
@@ -30,13 +30,13 @@ function fillControls(page) {
   for (const [id, side] of [["tile-w", width], ["tile-h", height]])
     $(id).append(...divisorsOf(side).map((d) => new Option(d, d)));
   Object.assign($("picture"), page.size);
-  const tries = [
+  const examples = [
     [`cyclic:0&pes=${width}&view=loads`, "Columns, by load", ": red columns where rays bounce."],
     [
-      `cyclic:${root}&pes=${width}&view=loads`, "The paper’s choice, p = √P, by load",
+      `cyclic:${paperOffset}&pes=${width}&view=loads`, "The paper’s choice, p = √P, by load",
       ": the same cycles, spread over all PEs."
     ],
-    [`cyclic:${root}&pes=${width}&pe=0`, "One PE’s pixels", ": the lattice over the whole image."],
+    [`cyclic:${paperOffset}&pes=${width}&pe=0`, "One PE’s pixels", ": the lattice over the whole image."],
     [`blocks&pes=${Math.min(width, height)}&view=loads`, "Contiguous blocks of lines", ": the simplest mapping."],
     [
       `random:1&pes=${width}`, "Pixels at random",
@@ -44,7 +44,7 @@ function fillControls(page) {
     ]
   ];
   $("tries").append(
-    ...tries.map(([link, name, text]) => make("li", {}, make("a", {href: `#mapping=${link}`}, name), text)));
+    ...examples.map(([link, name, text]) => make("li", {}, make("a", {href: `#mapping=${link}`}, name), text)));
 }
 
 function listen(page) {
@@ -113,8 +113,8 @@ function sync(page, active) {
     radio.checked = radio.value === state[radio.name];
   for (const part of document.querySelectorAll("[data-for]"))
     part.hidden = !part.dataset.for.split(" ").includes(state.mapping);
-  const root = rootOf(pes);
-  $("root").textContent = `p = √P ${root ** 2 === pes ? "=" : "≈"} ${root}`;
-  $("root").dataset.offset = root % width;
-  $("root").hidden = root >= width;
+  const squareRoot = roundedSquareRoot(pes);
+  $("root").textContent = `p = √P ${squareRoot ** 2 === pes ? "=" : "≈"} ${squareRoot}`;
+  $("root").dataset.offset = squareRoot % width;
+  $("root").hidden = squareRoot >= width;
 }

@@ -29,14 +29,14 @@ function drawPicture(canvas, f, {levels, costs, maxCost, photo}, view, focus) {
     Math.round(64 * (1 + (mean > 0 ? Math.min(loads[pe] / mean - 1, 1) : 0)));
   const paletteRow = Int32Array.from({length: pes}, (_, pe) => LEVELS * colourOf(pe)),
         palette = view === "owners" ? OWNERS : LOADS;
-  const third = (word, shift) => (word >>> shift & 255) / 3 << shift;
+  const dim = (word, shift) => (word >>> shift & 255) / 3 << shift;  // one colour channel
   for (let i = 0; i < shown.length; ++i) {
     if (view === "costs") shown[i] = COSTS[Math.round(255 * Math.sqrt(maxCost > 0 ? costs[i] / maxCost : 0)) * LEVELS];
     else if (view !== "picture")
       shown[i] = palette[paletteRow[owners[i]] + levels[i]];
     if (focus === null) continue;
     shown[i] = owners[i] === focus ? 0xffffffff :
-                                     (0xff000000 | third(shown[i], 16) | third(shown[i], 8) | third(shown[i], 0)) >>> 0;
+                                     (0xff000000 | dim(shown[i], 16) | dim(shown[i], 8) | dim(shown[i], 0)) >>> 0;
   }
   canvas.getContext("2d").putImageData(
     new ImageData(new Uint8ClampedArray(shown.buffer), photo.width, photo.height), 0, 0);
@@ -56,7 +56,7 @@ function loadBars(f, texts, focus, top) {
 }
 
 // Returns a chart with the imbalance u of each offset computed so far. `current`: the current offset and fold, or null.
-function offsetCurves(f, texts, {values, known, best}, root, current) {
+function offsetCurves(f, texts, {values, known, best}, sqrtP, current) {
   const side = values.cyclic.length, last = Math.max(side - 1, 1), folds = Object.entries(values);
   const max = folds.reduce(
     (top, [, us]) => us.subarray(0, known).reduce((a, u) => Math.max(a, u), top), Math.max(f.imbalance, 1e-3));
@@ -67,7 +67,7 @@ function offsetCurves(f, texts, {values, known, best}, root, current) {
   const minimum =
     best ? `minimum ${fixed(best.u, 3)} at p = ${best.offset}, fold ${best.fold}` : "not all computed yet";
   return chart(`u of the offsets 0 to ${side - 1}, current ${texts.u}; ${minimum}.`, [
-    grid, root < side ? [line("root", [x(root), TOP], [x(root), BOTTOM])] : [], known > 0 ? folds.map(curve) : [],
+    grid, sqrtP < side ? [line("root", [x(sqrtP), TOP], [x(sqrtP), BOTTOM])] : [], known > 0 ? folds.map(curve) : [],
     best ? [dot(x(best.offset), y(best.u), 4, "ring")] : [],
     current ?
       [
@@ -78,15 +78,15 @@ function offsetCurves(f, texts, {values, known, best}, root, current) {
   ]);
 }
 
-// Draws the enlarged centre of the image: the owner of each pixel, marks on the pixels of one PE, and the shortest
-// vector between pixels of this PE. Returns the PE and the number of pixels along a side.
-function drawCloseUp(canvas, f, {width: across, height: down}, focus) {
+// Draws the enlarged centre of the image: pixels in their owners' colours, marks on the pixels of one PE, and the
+// shortest vector between pixels of this PE. Returns the PE and the number of pixels along a side.
+function drawCloseUp(canvas, f, {width, height}, focus) {
   const context = canvas.getContext("2d"), {owners, vector, setting: {pes}} = f,
-        reach = vector ? Math.ceil(Math.hypot(...vector)) : 12;
-  const cells = Math.min(Math.max(2 * reach + 5, 17), 71, across, down), cell = canvas.width / cells,
+        vectorLength = vector ? Math.ceil(Math.hypot(...vector)) : 12;
+  const cells = Math.min(Math.max(2 * vectorLength + 5, 17), 71, width, height), cell = canvas.width / cells,
         middle = Math.floor(cells / 2);
-  const row0 = Math.floor((down - cells) / 2), column0 = Math.floor((across - cells) / 2);
-  const ownerAt = (row, column) => owners[(row0 + row) * across + column0 + column],
+  const row0 = Math.floor((height - cells) / 2), column0 = Math.floor((width - cells) / 2);
+  const ownerAt = (row, column) => owners[(row0 + row) * width + column0 + column],
         shownPe = focus ?? ownerAt(middle, middle);
   let nearest = null;  // the pixel of shownPe that is nearest to the centre
   for (let row = 0; row < cells; ++row)

@@ -124,14 +124,14 @@ function addToCurves(curves, costs, size, pes, first, deadline) {
         begin = (begin + offset) % width;
       }
     }
-    folds.forEach((fold, which) => {
+    folds.forEach((fold, k) => {
       loads.fill(0);
       if (pes <= width)
-        for (let slot = 0; slot < width; ++slot) loads[owner[which](0, slot)] += slots[slot];
+        for (let slot = 0; slot < width; ++slot) loads[owner[k](0, slot)] += slots[slot];
       else
         for (let row = 0, at = 0; row < height; ++row)
           for (let column = 0, slot = (width - row * offset % width) % width; column < width; ++column, ++at) {
-            loads[owner[which](row, slot)] += costs[at];
+            loads[owner[k](row, slot)] += costs[at];
             if (++slot === width) slot = 0;
           }
       curves[fold][offset] = balanceOf(loads).imbalance;
@@ -170,7 +170,7 @@ function rotationsOf(found) {
 }
 
 // Returns the numbers of rotations of the ring, transfers over the bus, and broadcasts over the bus that the 3 x 3
-// filter needs; each of the three suffices.
+// filter needs; each of the three kinds suffices alone.
 function movesOf(owners, size, pes) {
   const moves = {rotations: 0, transfers: 0, broadcasts: 0};
   for (const found of distancesOf(owners, size, pes)) {
@@ -185,13 +185,13 @@ function movesOf(owners, size, pes) {
 
 // --- Lattices
 
-// Returns a shortest vector of the lattice {(a, b): b = a p mod N} as [rows down, columns to the right].
+// Returns a shortest vector [rows down, columns to the right] of the lattice columns = rows * offset mod side.
 function shortestVector(offset, side) {
-  let shortest = [0, side], square = side * side;
-  for (let rows = 1; rows * rows < square; ++rows) {
+  let shortest = [0, side], squaredLength = side * side;
+  for (let rows = 1; rows * rows < squaredLength; ++rows) {
     const right = rows * offset % side, columns = right <= side - right ? right : right - side;
-    if (rows * rows + columns * columns < square)
-      [shortest, square] = [[rows, columns], rows * rows + columns * columns];
+    if (rows * rows + columns * columns < squaredLength)
+      [shortest, squaredLength] = [[rows, columns], rows * rows + columns * columns];
   }
   return shortest;
 }

@@ -22,7 +22,7 @@ std::string escape_tags(std::string json) {
 // again.
 std::string fill_template(const std::string& text, const Json& report) {
     std::string page;
-    std::size_t text_begin = 0;  // of the text that is not copied to the page yet
+    std::size_t text_begin = 0;  // start of the text that is not copied yet
     for (std::size_t at = text.find("{{"); at != std::string::npos; at = text.find("{{", text_begin)) {
         const std::size_t end = text.find("}}", at);
         const std::string name = text.substr(at + 2, end - at - 2);

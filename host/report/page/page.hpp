@@ -13,8 +13,8 @@ namespace raya {
 /// anything from the network. Without JavaScript it shows the JSON.
 std::string report_page(const Json& report);
 
-/// Maximum sum of the costs of an image in cycles. The explorer's script computes with doubles, which represent
-/// integers exactly up to this limit.
+/// Maximum number of cycles of an image, summed over its pixels. The explorer's script computes with doubles, which
+/// represent integers exactly up to this limit.
 inline constexpr std::uint64_t kExactCycles = std::uint64_t{1} << 53;
 
 /// Encodes the costs of pixels for the explorer's script: {"bytes": B, "gzip": base64}. The gzip data has B planes, one

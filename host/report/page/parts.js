@@ -101,10 +101,10 @@ function wideTable(label, header, rows) {
 // `rest`: text of the note below a table with more than MAX_ROWS rows.
 function table(label, header, rows, rest = "All rows are in the report.") {
   if (rows.length === 0) return [];
-  const whole = wideTable(label, header, rows.slice(0, MAX_ROWS));
-  if (rows.length <= OPEN_ROWS) return [whole];
-  const cut = rows.length > MAX_ROWS && note(...prose(`The first ${MAX_ROWS} of ${rows.length} rows. ${rest}`));
-  return [make("details", {}, make("summary", {}, `${rows.length} rows`), whole, cut)];
+  const tableElement = wideTable(label, header, rows.slice(0, MAX_ROWS));
+  if (rows.length <= OPEN_ROWS) return [tableElement];
+  const cutNote = rows.length > MAX_ROWS && note(...prose(`The first ${MAX_ROWS} of ${rows.length} rows. ${rest}`));
+  return [make("details", {}, make("summary", {}, `${rows.length} rows`), tableElement, cutNote)];
 }
 
 // Sorts the rows by a column; in a column of numbers, cells without a number come last. If the rows are already sorted

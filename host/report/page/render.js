@@ -48,7 +48,7 @@ function renderHead(r) {
 // --- Image, and maps of loads and owners
 
 // Returns the range of the loads as text.
-const range = (r) => !(num(r, "load.mean") > 0) ?
+const loadRangeText = (r) => !(num(r, "load.mean") > 0) ?
   "all 0" :
   `from ${percent(1 - num(r, "load.min") / num(r, "load.mean"))} below to ${
     percent(num(r, "load.max") / num(r, "load.mean") - 1)} above the mean`;
@@ -73,8 +73,8 @@ function ownerMaps(r, size) {
   const hues = Uint32Array.from({length: setting.pes}, (_, pe) => wordOf(rgbOf(0.72, 0.14, hueOf(pe, setting.pes))));
   return [
     caption(
-      pixelMap(w, h, `Map of the image: each pixel coloured by the load of its PE, ${range(r)}`, cellColour),
-      `Each pixel by the load of its PE, ${range(r)}. ${RED_AND_BLUE}`),
+      pixelMap(w, h, `Map of the image: each pixel coloured by the load of its PE, ${loadRangeText(r)}`, cellColour),
+      `Each pixel by the load of its PE, ${loadRangeText(r)}. ${RED_AND_BLUE}`),
     caption(
       pixelMap(
         ...side, `Close-up of the owners of pixels, mapping ${mapping}`,
@@ -112,7 +112,7 @@ function nodeMap(r, values, description) {
 function nodeMaps(r) {
   const nodes = `${list(r, "torus.nodes", "number").join(" × ")} nodes`;
   return [
-    ["load.per_pe", `Load of each of ${nodes}, by slices of equal z, ${range(r)}.`],
+    ["load.per_pe", `Load of each of ${nodes}, by slices of equal z, ${loadRangeText(r)}.`],
     ["torus.bytes_per_link.sent_by_node", `Bytes that each of ${nodes} sends over its links, by slices of equal z.`]
   ].map(
     ([path, description]) =>

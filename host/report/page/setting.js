@@ -9,7 +9,7 @@ const MAPPINGS = ["cyclic", "column", "rows", "blocks", "grid", "tiles", "random
 const VIEWS = ["owners", "loads", "costs", "picture"];
 const divisorsOf = (side) => Array.from({length: side}, (_, i) => i + 1).filter((d) => side % d === 0);
 const pairOf = (text) => /^\d{1,5}x\d{1,5}$/.test(text) ? text.split("x").map(Number) : null;
-const rootOf = (pes) => Math.round(Math.sqrt(pes));
+const roundedSquareRoot = (pes) => Math.round(Math.sqrt(pes));
 
 // Returns the initial state for the machine of a report. The mappings that the machine does not use have default
 // parameters: the offset of the paper, the grid that is closest to a square, tiles of up to 8 x 8 pixels.
@@ -25,7 +25,7 @@ function stateOf(machine, {width, height}) {
   const rows = divisor(pes, Math.floor(Math.sqrt(pes)));
   return {
     mapping,
-    offset: slots ? num(machine, "offset") : rootOf(pes) % width,
+    offset: slots ? num(machine, "offset") : roundedSquareRoot(pes) % width,
     fold: slots ? str(machine, "fold") : "cyclic",
     pes,
     grid: mapping === "grid" && pairOf(parameter) || [rows, pes / rows],

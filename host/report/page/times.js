@@ -106,7 +106,7 @@ function rooflineOf(peak, rows) {
       `The peak was measured by small programs in the same run: ${
         giga("fp32_multiply_adds_per_s")} Gop/s of multiply-adds in fp32; in ${format} ` +
       `${giga("format_multiply_adds_per_s")} of multiply-adds, ${giga("format_divisions_per_s")} of divisions, ${
-        giga("format_roots_per_s")} of roots; ` +
+        giga("format_roots_per_s")} of square roots; ` +
       `${
         giga(
           "copy_bytes_per_s")} GB/s copied, each byte counted as read and as written. Operations are those in the budgets of the counted events; bytes are the ` +

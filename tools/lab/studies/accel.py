@@ -102,13 +102,13 @@ def embree_method(scene, size, failures, group):
 def measure(lab, size, scenes):
     """Measures all methods on all scenes. Returns (table with a row for each scene and method, names of the scenes that are not rendered without an
     accelerator, error messages of Embree)."""
-    rows, left_out, failures, test_s = [], [], [], 1e-9  # test_s: seconds per object test; a low estimate until the first measurement
+    rows, skipped, failures, test_s = [], [], [], 1e-9  # test_s: seconds per object test; a low estimate until the first measurement
     for series, group, seed, make in scenes:
         scene = make()
         methods = [raya_method(lab, scene, size, name) for name in (GRID, BVH)]
         predicted = test_s * methods[0].figures["rays"] * scene.objects
         if predicted > MAX_RENDER_S:
-            left_out.append(f"{group} ({scene.objects} objects, about {predicted:.0f} s)")
+            skipped.append(f"{group} ({scene.objects} objects, about {predicted:.0f} s)")
         else:
             methods.insert(0, raya_method(lab, scene, size, NONE))
         for method in methods[1:]:
@@ -120,20 +120,20 @@ def measure(lab, size, scenes):
         for turn in range(ROUNDS):
             for method in methods:
                 if turn == 0 or sum(method.seconds) < SAMPLING_S:
-                    some = method.turn()
-                    method.seconds += some
-                    method.turns.append(1e3 * min(some))
+                    seconds = method.turn()
+                    method.seconds += seconds
+                    method.turns.append(1e3 * min(seconds))
         for method in methods:
             if method.name == NONE:
                 test_s = min(method.seconds) / (method.figures["rays"] * scene.objects)
             rows.append({"series": series, "scene": group, "seed": seed, "objects": scene.objects, "method": method.name,
                          **method.figures, "best": 1e3 * min(method.seconds), "median": 1e3 * np.median(method.seconds),
                          "samples": len(method.seconds), "turns": method.turns})
-    return pd.DataFrame(rows), left_out, failures
+    return pd.DataFrame(rows), skipped, failures
 
 
 def pairs(rows, method, other):
-    """Rows of the scenes that were rendered with both methods. Column `same`: the numbers of rays differ by at most RAYS_TOLERANCE."""
+    """Returns a row for each scene that was rendered with both methods. Column `same`: the numbers of rays differ by at most RAYS_TOLERANCE."""
     both = rows[rows["method"] == method].merge(rows[rows["method"] == other], on=["series", "scene", "seed", "objects"],
                                           suffixes=("", " of other"))
     rays = both[["rays", "rays of other"]]
@@ -141,13 +141,13 @@ def pairs(rows, method, other):
 
 
 def ratios(rows, method, other):
-    """Ratio of the times of two methods, for every group that has scenes in which both methods traced the same number of rays."""
+    """Returns {group, objects, times: Estimate of the ratio of two methods' times} for each group with scenes in which both traced as many rays."""
     found = []
-    for group, some in pairs(rows, method, other).query("same").groupby("scene", sort=False):
-        times = some["best"] / some["best of other"]
-        if len(some) == 1:
-            times = [x / y for x, y in zip(some["turns"].iloc[0], some["turns of other"].iloc[0])]
-        found.append({"group": group, "objects": some["objects"].iloc[0], "times": estimate(times)})
+    for group, scene_pairs in pairs(rows, method, other).query("same").groupby("scene", sort=False):
+        times = scene_pairs["best"] / scene_pairs["best of other"]
+        if len(scene_pairs) == 1:
+            times = [x / y for x, y in zip(scene_pairs["turns"].iloc[0], scene_pairs["turns of other"].iloc[0])]
+        found.append({"group": group, "objects": scene_pairs["objects"].iloc[0], "times": estimate(times)})
     return found
 
 
@@ -156,21 +156,21 @@ def text_of(e):
     return mean if np.isnan(e.half) else f"{mean} +- {half}"
 
 
-def ratios_text(some):
-    return ", ".join(f"{text_of(one['times'])} ({one['group']})" for one in some)
+def ratios_text(ratio_list):
+    return ", ".join(f"{text_of(ratio['times'])} ({ratio['group']})" for ratio in ratio_list)
 
 
 @study("accel")
 def accel(lab, scenes):
     size = lab.size(256)
-    some = [(USER_SCENES, s.name, 0, lambda s=s: s) for s in scenes] if scenes else own_scenes()
-    runs, left_out, failures = measure(lab, size, some)
+    measured_scenes = [(USER_SCENES, s.name, 0, lambda s=s: s) for s in scenes] if scenes else own_scenes()
+    runs, skipped, failures = measure(lab, size, measured_scenes)
     rows, growth = rows_of(runs), growth_of(runs)
     series = [(name, one) for name, one in runs.groupby("series", sort=False)]
-    findings = [*(finding_of_paying(one, name) for name, one in series), finding_of_two(runs, GRID, BVH),
+    findings = [*(finding_of_threshold(one, name) for name, one in series), finding_of_faster(runs, GRID, BVH),
                 *(finding_of_growth(growth, one) for one in (growth["scenes"].unique() if len(growth) else [])),
                 *(finding_of_memory(one) for _, one in series)]
-    findings += [f"Not rendered without an accelerator: {', '.join(left_out)}."] if left_out else []
+    findings += [f"Not rendered without an accelerator: {', '.join(skipped)}."] if skipped else []
     findings += findings_of_embree(runs, failures)
     each = runs[list(EACH)].fillna(0).astype(
         {name: int for name in ("tests", "steps", "scene_words", "accel_words")}).rename(columns=EACH)
@@ -186,73 +186,73 @@ def accel(lab, scenes):
 
 
 def rows_of(runs):
-    """Means over the scenes of each group and method."""
+    """Returns means over the scenes of each group and method."""
     rows = []
-    for (series, group, method), some in runs.groupby(["series", "scene", "method"], sort=False):
-        tests, steps, best = map(estimate, (some["tests"] / some["rays"], some["steps"] / some["rays"], some["best"]))
-        rows.append({"series": series, "scene": group, "objects": some["objects"].iloc[0], "method": method,
-                     "scenes": len(some), "tests a ray": tests.mean, "tests +-": tests.half, "steps a ray": steps.mean,
+    for (series, group, method), group_rows in runs.groupby(["series", "scene", "method"], sort=False):
+        tests, steps, best = map(estimate, (group_rows["tests"] / group_rows["rays"], group_rows["steps"] / group_rows["rays"], group_rows["best"]))
+        rows.append({"series": series, "scene": group, "objects": group_rows["objects"].iloc[0], "method": method,
+                     "scenes": len(group_rows), "tests a ray": tests.mean, "tests +-": tests.half, "steps a ray": steps.mean,
                      "steps +-": steps.half, "best (ms)": best.mean, "best +- (ms)": best.half,
-                     "median (ms)": some["median"].mean(),
-                     "a ray (ns)": (1e6 * some["best"] / some["rays"]).mean(),
-                     "build (ms)": math.nan if method == NONE else some["build"].mean(),
-                     "memory (KB)": 4 * (some["scene_words"] + some["accel_words"]).mean() / 1024})
+                     "median (ms)": group_rows["median"].mean(),
+                     "a ray (ns)": (1e6 * group_rows["best"] / group_rows["rays"]).mean(),
+                     "build (ms)": math.nan if method == NONE else group_rows["build"].mean(),
+                     "memory (KB)": 4 * (group_rows["scene_words"] + group_rows["accel_words"]).mean() / 1024})
     return pd.DataFrame(rows)
 
 
 def growth_of(runs):
     rows = []
-    for (series, method), some in runs[runs["objects"] >= MIN_FITTED_OBJECTS].groupby(["series", "method"], sort=False):
-        if series == USER_SCENES or some["objects"].nunique() < 2:
+    for (series, method), method_rows in runs[runs["objects"] >= MIN_FITTED_OBJECTS].groupby(["series", "method"], sort=False):
+        if series == USER_SCENES or method_rows["objects"].nunique() < 2:
             continue
-        lines = [line for _, line in some.groupby("seed", sort=False)]
+        lines = [line for _, line in method_rows.groupby("seed", sort=False)]
         time, tests = (estimate([fitted_exponent(line["objects"], line[what] / line["rays"]) for line in lines])
                        for what in ("best", "tests"))
-        rows.append({"scenes": series, "method": method, "from (objects)": some["objects"].min(),
-                     "to (objects)": some["objects"].max(), "time": time.mean, "time +-": time.half,
+        rows.append({"scenes": series, "method": method, "from (objects)": method_rows["objects"].min(),
+                     "to (objects)": method_rows["objects"].max(), "time": time.mean, "time +-": time.half,
                      "tests": tests.mean, "tests +-": tests.half})
     return pd.DataFrame(rows)
 
 
-def pays_from(some, method):
-    """Part of a sentence: the number of objects from which on a method is faster than testing all objects. some: groups in ascending order of
+def faster_from(ratio_list, method):
+    """Part of a sentence: the number of objects from which on a method is faster than testing all objects. ratio_list: in ascending order of
     objects."""
-    start = len(some)
-    while start > 0 and some[start - 1]["times"].low_or_mean > 1:
+    start = len(ratio_list)
+    while start > 0 and ratio_list[start - 1]["times"].low_or_mean > 1:
         start -= 1
-    if start == len(some):
-        return f"{method} is not measurably faster at {some[-1]['objects']} objects"
-    return f"{method} is faster from {some[start]['objects']} objects on{', the smallest number tried' if start == 0 else ''}"
+    if start == len(ratio_list):
+        return f"{method} is not measurably faster at {ratio_list[-1]['objects']} objects"
+    return f"{method} is faster from {ratio_list[start]['objects']} objects on{', the smallest number tried' if start == 0 else ''}"
 
 
-def finding_of_paying(runs, series):
-    tree, grid = ratios(runs, NONE, BVH), ratios(runs, NONE, GRID)
-    if not tree:
+def finding_of_threshold(runs, series):
+    bvh_ratios, grid_ratios = ratios(runs, NONE, BVH), ratios(runs, NONE, GRID)
+    if not bvh_ratios:
         return f"{series}: no scene was rendered without an accelerator."
     if series == USER_SCENES:
-        return (f"Without an accelerator a render takes {ratios_text(tree)} times as long as with bvh, {ratios_text(grid)} times as "
+        return (f"Without an accelerator a render takes {ratios_text(bvh_ratios)} times as long as with bvh, {ratios_text(grid_ratios)} times as "
                 "long as with grid.")
-    return (f"{series}: compared with testing all objects, {pays_from(tree, BVH)}, {pays_from(grid, GRID)}. At "
-            f"{tree[-1]['objects']} objects `none` takes {text_of(tree[-1]['times'])} times as long as bvh and "
-            f"{text_of(grid[-1]['times'])} times as long as grid.")
+    return (f"{series}: compared with testing all objects, {faster_from(bvh_ratios, BVH)}, {faster_from(grid_ratios, GRID)}. At "
+            f"{bvh_ratios[-1]['objects']} objects `none` takes {text_of(bvh_ratios[-1]['times'])} times as long as bvh and "
+            f"{text_of(grid_ratios[-1]['times'])} times as long as grid.")
 
 
-def finding_of_two(runs, method, other):
+def finding_of_faster(runs, method, other):
     """Sentence on the faster of two methods, over all groups."""
-    some = ratios(runs, method, other)
-    if not some:
+    ratio_list = ratios(runs, method, other)
+    if not ratio_list:
         return f"No scene has a ratio of {method} to {other}."
-    faster, slower = (sum(holds) for holds in zip(*((e.low_or_mean > 1, e.high_or_mean < 1) for e in (one["times"] for one in some))))
-    rest = len(some) - faster - slower
-    return (f"{other} is faster than {method} in {faster} of {len(some)}, slower in {slower}"
-            f"{f', not significantly different in {rest}' if rest else ''}; time of {method} over {other}: {ratios_text(some)}.")
+    faster, slower = (sum(holds) for holds in zip(*((e.low_or_mean > 1, e.high_or_mean < 1) for e in (ratio["times"] for ratio in ratio_list))))
+    rest = len(ratio_list) - faster - slower
+    return (f"{other} is faster than {method} in {faster} of {len(ratio_list)}, slower in {slower}"
+            f"{f', not significantly different in {rest}' if rest else ''}; time of {method} over {other}: {ratios_text(ratio_list)}.")
 
 
 def finding_of_growth(growth, series):
-    some = growth[growth["scenes"] == series]
+    series_growth = growth[growth["scenes"] == series]
     exponents = ", ".join(f"{Estimate(row['time'], row['time +-'], None).text(2)} ({row['method']}, "
-                          f"{row['from (objects)']} to {row['to (objects)']} objects)" for _, row in some.iterrows())
-    tens = ", ".join(f"{10**row['time']:.2f} ({row['method']})" for _, row in some.iterrows())
+                          f"{row['from (objects)']} to {row['to (objects)']} objects)" for _, row in series_growth.iterrows())
+    tens = ", ".join(f"{10**row['time']:.2f} ({row['method']})" for _, row in series_growth.iterrows())
     return (f"{series}: the time of a ray grows as the number of objects to the power of {exponents}; with ten times the objects it is "
             f"{tens} times as long.")
 
@@ -262,11 +262,11 @@ def finding_of_memory(runs):
     made = runs[runs["method"].isin([GRID, BVH])]
     group = made["scene"][made["objects"].idxmax()]
     texts, scene = [], 0
-    for method, some in made[made["scene"] == group].groupby("method", sort=False):
-        count, build = some["objects"].iloc[0], some["build"].mean()
-        scene = 4 * some["scene_words"].mean() / count
-        texts.append(f"{method} takes {4 * some['accel_words'].mean() / count:.1f} bytes an object and {build:.3g} ms to build, the time of "
-                     f"{build / some['best'].mean():.2g} renders")
+    for method, method_rows in made[made["scene"] == group].groupby("method", sort=False):
+        count, build = method_rows["objects"].iloc[0], method_rows["build"].mean()
+        scene = 4 * method_rows["scene_words"].mean() / count
+        texts.append(f"{method} takes {4 * method_rows['accel_words'].mean() / count:.1f} bytes an object and {build:.3g} ms to build, the time of "
+                     f"{build / method_rows['best'].mean():.2g} renders")
     return f"{group}: {', '.join(texts)}; the scene itself takes {scene:.1f} bytes an object."
 
 
@@ -274,7 +274,7 @@ def findings_of_embree(runs, failures):
     if not sibling_program("embree_peer"):
         return ["Embree was not measured: there is no program embree_peer next to raya. `tools/peers --setup` installs Embree; CMake's target "
                 "embree_peer builds the program."]
-    findings = [finding_of_two(runs, EMBREE, BVH)] if (runs["method"] == EMBREE).any() else []
+    findings = [finding_of_faster(runs, EMBREE, BVH)] if (runs["method"] == EMBREE).any() else []
     others = pairs(runs, EMBREE, BVH).query("not same")
     if len(others):
         names = ", ".join(f"{o['scene']} (seed {o['seed']})" if o["seed"] else o["scene"] for _, o in others.iterrows())
@@ -285,12 +285,12 @@ def findings_of_embree(runs, failures):
 def plots_of(rows):
     style = "points" if (rows["series"] == USER_SCENES).any() else "line"
 
-    def plot(name, title, label, some, lines, column):
-        return Plot(name, title, "objects", label, series_by(some, lines, "objects", column, style=style), "xy")
+    def plot(name, title, label, series_rows, lines, column):
+        return Plot(name, title, "objects", label, series_by(series_rows, lines, "objects", column, style=style), "xy")
 
     counted = rows[rows["method"] != EMBREE].assign(line=lambda r: r["series"] + ", " + r["method"])
-    return [plot(f"accel-{series}", f"Time against the number of objects: {series}", "best time of a render (ms)", some,
-                 "method", "best (ms)") for series, some in rows.groupby("series", sort=False)] + [
+    return [plot(f"accel-{series}", f"Time against the number of objects: {series}", "best time of a render (ms)", series_rows,
+                 "method", "best (ms)") for series, series_rows in rows.groupby("series", sort=False)] + [
         plot("accel-tests", "Tests a ray against the number of objects", "tests a ray", counted, "line", "tests a ray"),
         plot("accel-memory", "Memory of a PE against the number of objects", "scene with grid or BVH (KB)", counted,
              "line", "memory (KB)")]

@@ -11,7 +11,7 @@ Which offset of the cyclic mapping renders this image fastest, communication inc
 - Size: that of the scene if it is square, a smaller one if the scene has so many objects that rendering would take minutes; --size overrides
   it. Of equally fast offsets the study names the smallest.
 - {search} choose the offsets; {evaluation} judge them, compared within the same view. So the result holds for the scene and not only for
-  one picture. An offset is recommended if it is faster than p = sqrt(P) in the views that judge; otherwise p = sqrt(P) is.
+  one picture. An offset is recommended if it is faster than p = sqrt(P) in the views that judge; otherwise p = sqrt(P) is recommended.
 - The claim uses the scene families of Fig. 8 instead of one scene, with seeds {claim_search} on to choose and {claim_evaluation} on to judge.
 - Output: best-offset-views.csv, best-offset.csv and best-offset-all.csv (every offset). Times are in ms, u is (max load - mean load) / mean
   load, and "takes longer" is in % of the chosen offset's time.
@@ -27,8 +27,8 @@ METHODS = ("none", "filter", "supersample")
 
 
 def total_times(ensemble, pes, antialias):
-    """Modelled ms [picture, offset]."""
-    return ensemble.of(lambda costs: offset_times(costs, pes, antialias)["total_ms"])
+    """Returns the modelled ms [picture, offset]."""
+    return ensemble.map(lambda costs: offset_times(costs, pes, antialias)["total_ms"])
 
 
 class Choice:
@@ -40,7 +40,7 @@ class Choice:
         self.times = offset_times(picture, pes, antialias)
         self.chosen_by, self.judged_by = (total_times(one, pes, antialias) for one in (search, evaluation))  # [view, offset]
         total = self.times["total_ms"]
-        self.best, self.best_near = (self.times.loc[some.idxmin()] for some in (total, total[:self.root + 1]))
+        self.best, self.best_near = (self.times.loc[candidates.idxmin()] for candidates in (total, total[:self.root + 1]))
         sums = self.chosen_by.sum(0)
         self.chosen, self.chosen_near = int(sums.argmin()), int(sums[:self.root + 1].argmin())
         self.time = estimate(self.judged_by[:, self.chosen])
@@ -51,7 +51,7 @@ class Choice:
     method = property(lambda c: "without anti-aliasing" if c.antialias == "none" else f"with --antialias {c.antialias}")
 
     def longer(self, offset, confidence=0.95):
-        """By how many % an offset takes longer than the chosen offset, in the views of judged_by."""
+        """Returns by how many % an offset takes longer than the chosen offset, in the views of judged_by."""
         return estimate(100 * (self.judged_by[:, offset] / self.judged_by[:, self.chosen] - 1), None, confidence)
 
     def loss(self, ms):
@@ -75,13 +75,13 @@ def seeds_text(lab, part):
 
 @study("best-offset")
 def best_offset(lab, scenes):
-    some = scenes or [raya.example("centre")]
-    by_scene = [choices_of(lab, scene) for scene in some]
+    chosen_scenes = scenes or [raya.example("centre")]
+    by_scene = [choices_of(lab, scene) for scene in chosen_scenes]
     all_choices = [choice for choices in by_scene for choice in choices]
     first = by_scene[0]
-    named = [{"scene": choices[0].scene, "size": choices[0].size, "format": format_for(scene), "fold": "cyclic"}
-             for choices, scene in zip(by_scene, some)]
-    return Page({"scenes": named, "factor": FACTOR, "views": 2 * VIEWS, "rule": MAX_LOSS},
+    scene_settings = [{"scene": choices[0].scene, "size": choices[0].size, "format": format_for(scene), "fold": "cyclic"}
+                      for choices, scene in zip(by_scene, chosen_scenes)]
+    return Page({"scenes": scene_settings, "factor": FACTOR, "views": 2 * VIEWS, "rule": MAX_LOSS},
                 [*map(finding_of_best, by_scene), *map(finding_of_views, all_choices), *map(finding_of_choice, all_choices)],
                 [Comparison(f"best p, {c.pes} PEs, {c.antialias}", "", None, int(c.best["offset"]),
                             f"u of the first pass {c.best['imbalance']:.3f}; sqrt(P), Kohata & Ito's, is p = {c.root}")
@@ -96,7 +96,7 @@ def best_offset(lab, scenes):
 
 
 def finding_of_best(choices):
-    """The recommended offset of each anti-aliasing method, on the largest array."""
+    """Returns the recommended offset of each anti-aliasing method, on the largest array."""
     first = choices[0]
     texts = []
     for c in (c for c in choices if c.pes == first.pes):
@@ -141,9 +141,9 @@ def claim_of_enough(lab):
     return judged("root-is-enough", every(tests), f"chosen by {search.description}; judged by seeds of their own", "; ".join(texts) + ".")
 
 
-def tables_of(every):
+def tables_of(choices):
     views, best, offsets = [], [], []
-    for c in every:
+    for c in choices:
         head = {"scene": c.scene, "PEs": c.pes, "anti-aliasing": c.antialias}
         time, near, root, zero = (c.time, c.longer(c.chosen_near), c.longer(c.root), c.longer(0))
         views.append({**head, "best p": c.chosen, "time (ms)": time.mean, "time, +- (ms)": time.half,
@@ -167,7 +167,7 @@ def tables_of(every):
 
 
 def plots_of(choices, number):
-    """A plot for each number of PEs, with a line for each anti-aliasing method; the best offset is marked."""
+    """Yields a plot for each number of PEs, with a line for each anti-aliasing method; the best offset is marked."""
     for pes in dict.fromkeys(c.pes for c in choices):
         series = []
         for c in (c for c in choices if c.pes == pes):

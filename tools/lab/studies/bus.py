@@ -35,18 +35,18 @@ def exchange(lab, scene, size, pes, antialias, method):
 def rows_of(lab, scene, size, antialias):
     rows = []
     for pes in powers_of_two(min(256, size * size))[2:]:
-        ring, bus, cast = (exchange(lab, scene, size, pes, antialias, method) for method in METHODS)
+        ring, bus, broadcast = (exchange(lab, scene, size, pes, antialias, method) for method in METHODS)
         rows.append({"anti-aliasing": antialias, "P": pes, "p": round(pes**0.5) % size, "rotations": ring[0],
                      "ring (ms)": ring[1], "transfers": bus[0], "bus (ms)": bus[1], "bus, words alone (ms)": bus[2],
-                     "broadcasts": cast[0], "broadcasts, time (ms)": cast[1], "broadcasts, words alone (ms)": cast[2],
-                     "bus / ring": bus[1] / ring[1], "broadcasts / ring": cast[1] / ring[1],
-                     "same": ring[3] == bus[3] == cast[3]})
+                     "broadcasts": broadcast[0], "broadcasts, time (ms)": broadcast[1], "broadcasts, words alone (ms)": broadcast[2],
+                     "bus / ring": bus[1] / ring[1], "broadcasts / ring": broadcast[1] / ring[1],
+                     "same": ring[3] == bus[3] == broadcast[3]})
     return pd.DataFrame(rows)
 
 
-def ring_is_faster_from(rows, bus):
+def ring_is_faster_from(rows, bus_ms):
     """Part of a sentence: the number of PEs from which on the ring takes less time than the faster of the two bus methods."""
-    pes = tail_where(rows["P"], rows["ring (ms)"] < bus)
+    pes = tail_where(rows["P"], rows["ring (ms)"] < bus_ms)
     return f"from {pes.iloc[0]} PEs on" if len(pes) else f"for no number of PEs up to {rows['P'].iloc[-1]}"
 
 
@@ -62,9 +62,9 @@ def finding_of_ring(rows):
 
 
 def plot_of(rows):
-    method, bus, cast = rows["anti-aliasing"].iloc[0], "bus, PE to PE", "broadcasts by PEs"
-    columns = {"ring": "ring (ms)", bus: "bus (ms)", cast: "broadcasts, time (ms)",
-               f"{bus}, words alone": "bus, words alone (ms)", f"{cast}, words alone": "broadcasts, words alone (ms)"}
+    method, bus, broadcast = rows["anti-aliasing"].iloc[0], "bus, PE to PE", "broadcasts by PEs"
+    columns = {"ring": "ring (ms)", bus: "bus (ms)", broadcast: "broadcasts, time (ms)",
+               f"{bus}, words alone": "bus, words alone (ms)", f"{broadcast}, words alone": "broadcasts, words alone (ms)"}
     return Plot(f"bus-{method}", f"Time of the exchange against the number of PEs, {method}", "PEs",
                 "exchange (modelled ms)", [Series(label, rows["P"], rows[c]) for label, c in columns.items()], "xy")
 

@@ -5,28 +5,29 @@ What are the figures of Tables 2 to 4 for scenes with their objects in the middl
 - Source: Kohata & Ito 1993, abstract and Tables 2, 3 and 4.
 - {ensemble}, at {size} x {size} on {pes} PEs of the SPA, a PE for each column: seven spheres above a floor, one light.
 - The generator's parameters were searched for, with other seeds, so that the means of u(0), of the pixels recomputed and of the cycles a
-  pixel are those of the paper (see scenes/README.md). The first table has what is left of it with these seeds.
-- The paper's scene is the most uneven of several, u(0) = 1.58. The *matched* scenes are those whose u(0) lies within {match} % of it. u(16)
-  and supersampling decide nothing about the match. The times of a scene are scaled so that one PE computes for the printed 64,800 ms.
-- 283, 653, 662 and 302 ms follow from u(0), from the speed-up of 229 and from the filter's times, to which the clock is fitted. They are no
-  results of their own.
+  pixel are those of the paper (see scenes/README.md). The first table shows how far the means with these seeds agree.
+- The paper's scene is the most uneven of several, u(0) = 1.58. The *matched* scenes are those whose u(0) lies within {match} % of it. The
+  match uses neither u(16) nor supersampling. The times of a scene are scaled so that one PE computes for the printed 64,800 ms.
+- 283, 653, 662 and 302 ms follow from u(0), from the speed-up of 229 and from the filter's times, to which the clock is fitted. They are
+  not independent results.
 - Output: cluster.csv has a row for each scene: u at p = 0 and 16, speed-up, pixels recomputed (%), budget cycles a pixel, scaled times (ms) of
   supersampling without the first pass.
 """
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Comparison, Page, Plot, Series, Table, estimate, judged, one_more, papers, prediction_text, range_text, study
+from raya.lab import Comparison, Page, Plot, Series, Table, estimate, judged, next_value_within, papers, prediction_text, range_text, study
 from raya.lab.families import CROWDED
 from raya.lab.spa import CLOCK, FACTOR, offset_times, spa_ms
 
 MATCH = 0.1  # largest relative difference of a matched scene's u(0) from the paper's
 SPEEDUP_BOUND, SUPERSAMPLING_BOUND = 0.1, 0.2  # bounds of the claims speedup-229, supersampling-p0 and supersampling-p16
+# Figures for which the generator's parameters were searched, and other figures: (figure, unit, column, paper's, is derived).
 SEARCHED = [("u(0)", "", "u(0)", papers.IMBALANCE_0), ("pixels recomputed", "%", "recomputed (%)",
             50 * (papers.RECOMPUTED_MIN + papers.RECOMPUTED_MAX)), ("1 PE: compute", "ms", "1 PE: compute (ms)", papers.ONE_PE_COMPUTE_MS)]
-FREE = [("u(16)", "", "u(16)", papers.IMBALANCE_16, True), ("speed-up, p = 16", "", "speed-up", papers.SPEEDUP_16, False),
-        ("supersampling, p = 0", "ms", "supersampling, p = 0 (ms)", papers.SUPERSAMPLE_0_MS, False),
-        ("supersampling, p = 16", "ms", "supersampling, p = 16 (ms)", papers.SUPERSAMPLE_16_MS, False)]
+NOT_SEARCHED = [("u(16)", "", "u(16)", papers.IMBALANCE_16, True), ("speed-up, p = 16", "", "speed-up", papers.SPEEDUP_16, False),
+                ("supersampling, p = 0", "ms", "supersampling, p = 0 (ms)", papers.SUPERSAMPLE_0_MS, False),
+                ("supersampling, p = 16", "ms", "supersampling, p = 16 (ms)", papers.SUPERSAMPLE_16_MS, False)]
 
 
 def row_of(costs, size):
@@ -41,8 +42,8 @@ def row_of(costs, size):
 
 
 def matched_scenes(ensemble, size):
-    """Array of bool: whether the u(0) of each picture is that of the paper."""
-    u = ensemble.of(lambda costs: raya.imbalances(costs.trace, size, [0])[0])
+    """Returns a boolean array: true for each picture whose u(0) differs from the paper's by at most the fraction MATCH."""
+    u = ensemble.map(lambda costs: raya.imbalances(costs.trace, size, [0])[0])
     return np.abs(u / papers.IMBALANCE_0 - 1) <= MATCH
 
 
@@ -55,15 +56,15 @@ def cluster(lab, scenes):
     matched, in_paper = rows[rows["matched"] == "yes"], own and size == papers.SIZE
     about = f"{ensemble.description}; the {len(matched)} with a u(0) within {100 * MATCH:.0f} % of {papers.IMBALANCE_0}"
 
-    def comparison(what, unit, column, paper, derived, some, remark):
-        mean = estimate(some[column])
-        return Comparison(what, unit, paper if in_paper else None, mean.mean, f"{remark}; {range_text(some[column])} of single scenes",
+    def comparison(what, unit, column, paper, derived, scene_rows, remark):
+        mean = estimate(scene_rows[column])
+        return Comparison(what, unit, paper if in_paper else None, mean.mean, f"{remark}; {range_text(scene_rows[column])} of single scenes",
                           derived, mean.half)
 
     searched = [comparison(what + ", all scenes", unit, column, paper, True, rows, "searched for, with other seeds")
                 for what, unit, column, paper in SEARCHED]
     free = [comparison(what + ", matched scenes", unit, column, paper, derived, matched, "not searched for")
-            for what, unit, column, paper, derived in FREE] if len(matched) > 1 else []
+            for what, unit, column, paper, derived in NOT_SEARCHED] if len(matched) > 1 else []
     marks = [Series("Kohata & Ito, from their tables", [papers.IMBALANCE_0], [papers.IMBALANCE_16], "paper")] * in_paper
     return Page({"scenes": len(rows), "matched": len(matched), "size": size, "pes": size, "factor": FACTOR},
                 findings_of(rows, matched), searched + free,
@@ -79,17 +80,17 @@ def cluster(lab, scenes):
 def findings_of(rows, matched):
     means = ", ".join(f"{what} {estimate(rows[column]).text(2 if paper < 100 else 0)} {unit}".rstrip() + f" instead of {paper:g}"
                       for what, unit, column, paper in SEARCHED)
-    findings = [f"The search does not hold for other seeds: {means}."]
+    findings = [f"With these seeds the means differ from those searched for: {means}."]
     if len(matched) > 1:
-        findings.insert(0, f"Over {len(matched)} matched scenes u(16), which decided nothing, is {estimate(matched['u(16)']).text()}; one more "
-                        f"scene's lies in {prediction_text(matched['u(16)'])} with 95 %. The paper's is {papers.IMBALANCE_16}.")
+        findings.insert(0, f"Over {len(matched)} matched scenes u(16), which the match does not use, is {estimate(matched['u(16)']).text()}; "
+                        f"u(16) of one more scene lies in {prediction_text(matched['u(16)'])} with 95 %. The paper's is {papers.IMBALANCE_16}.")
     return findings
 
 
 def claims_of(matched, about):
     def claim(key, paper, column, bound):
         values = matched[column]
-        return judged(key, one_more(paper, values, bound, 0), about, f"Ours is {estimate(values).text(0)} in the mean. "
+        return judged(key, next_value_within(paper, values, bound, 0), about, f"Ours is {estimate(values).text(0)} in the mean. "
                       f"{100 * (values <= paper).mean():.0f} % of the scenes are at or below {paper}.")
 
     return [claim("speedup-229", papers.SPEEDUP_16, "speed-up", SPEEDUP_BOUND),

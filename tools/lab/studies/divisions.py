@@ -33,13 +33,13 @@ def divisions(lab, scenes):
     even = [raya.generate.uniform(n, near_cube(n)).renamed(f"{n} objects") for n in (64, 256, 512, 1024)]
     cases = [{"scene": scene, "cut": near_cube(count)} for scene in scenes or even for count in DIVISIONS]
     rows = run_cases(cases, lambda scene, cut: run_in_one_pe(lab, scene, size, cut, runs=5), COLUMNS)
-    by_scene = [some for _, some in rows.groupby("scene", sort=False)]
-    settings = [some[["scene", "objects"]].iloc[0].to_dict() for some in by_scene]
+    by_scene = [scene_rows for _, scene_rows in rows.groupby("scene", sort=False)]
+    settings = [scene_rows[["scene", "objects"]].iloc[0].to_dict() for scene_rows in by_scene]
     findings = [finding_of_optimum(name, by_scene) for name in SUBJECTS]
     findings += [finding_of_loss(by_scene), finding_of_rise(by_scene), finding_of_parts(list(by_scene[-1]["run"]))]
-    most = by_scene[-1]
+    largest_scene = by_scene[-1]
     if from_paper:
-        falls = {name: fall_of(most, name) for name in SUBJECTS}
+        falls = {name: fall_of(largest_scene, name) for name in SUBJECTS}
         findings.insert(0, "1024 objects, 32 divisions compared with 1024: Yoshitani & Yamazaki take "
                         f"{papers.DIVISIONS_FALL:.1f} times as long; our modelled time is {falls['modelled']:.1f} times and our "
                         f"measured time {falls['measured']:.1f} times as long. Our tests are {falls['tests']:.1f} times as many; "
@@ -63,47 +63,47 @@ def divisions(lab, scenes):
                               "allow, whatever the shape of the bounding box."})
 
 
-def row_of_minimum(some, name):
-    return some.loc[some[SUBJECTS[name][2]].idxmin()]
+def row_of_minimum(scene_rows, name):
+    return scene_rows.loc[scene_rows[SUBJECTS[name][2]].idxmin()]
 
 
-def row_at_object_count(some):
-    """The row with as many divisions as objects; None if there is none."""
-    found = some[some["divisions"] == some["objects"]]
+def row_at_object_count(scene_rows):
+    """Returns the row with as many divisions as objects; None if there is none."""
+    found = scene_rows[scene_rows["divisions"] == scene_rows["objects"]]
     return found.iloc[0] if len(found) else None
 
 
-def ratio_to_minimum(some, row, name):
-    return row[SUBJECTS[name][2]] / row_of_minimum(some, name)[SUBJECTS[name][2]]
+def ratio_to_minimum(scene_rows, row, name):
+    return row[SUBJECTS[name][2]] / row_of_minimum(scene_rows, name)[SUBJECTS[name][2]]
 
 
-def fall_of(some, name):
-    """The figure at 32 divisions divided by the figure at 1024."""
-    figures = some.set_index("divisions")[SUBJECTS[name][2]]
+def fall_of(scene_rows, name):
+    """Returns the figure at 32 divisions divided by the figure at 1024."""
+    figures = scene_rows.set_index("divisions")[SUBJECTS[name][2]]
     return figures[papers.FEW_DIVISIONS] / figures[papers.MANY_DIVISIONS]
 
 
 def comparisons_of(by_scene, from_paper):
-    all_of = []
+    comparisons = []
     if from_paper:
-        all_of = [Comparison(f"32 over 1024 divisions, 1024 objects: {name}", "", paper,
-                             fall_of(by_scene[-1], name.split()[0]), remark, name != "tests")
-                  for name, paper, remark in (("modelled time", papers.DIVISIONS_FALL, "a T805's"),
-                                              ("measured time", papers.DIVISIONS_FALL, "this device's"),
-                                              ("tests", papers.TESTS_FALL, "Yoshitani & Yamazaki: \"about 1/5\""))]
+        comparisons = [Comparison(f"32 over 1024 divisions, 1024 objects: {name}", "", paper,
+                                  fall_of(by_scene[-1], name.split()[0]), remark, name != "tests")
+                       for name, paper, remark in (("modelled time", papers.DIVISIONS_FALL, "a T805's"),
+                                                   ("measured time", papers.DIVISIONS_FALL, "this device's"),
+                                                   ("tests", papers.TESTS_FALL, "Yoshitani & Yamazaki: \"about 1/5\""))]
     for name, (*_, optimum) in SUBJECTS.items():
-        for some in by_scene:
-            best = row_of_minimum(some, name)
+        for scene_rows in by_scene:
+            best = row_of_minimum(scene_rows, name)
             paper = best["objects"] if from_paper and name != "measured" else None
-            all_of.append(Comparison(f"{optimum}, {best['scene']}", "divisions", paper, best["divisions"],
-                                     best["A x B x C"]))
-    return all_of
+            comparisons.append(Comparison(f"{optimum}, {best['scene']}", "divisions", paper, best["divisions"],
+                                          best["A x B x C"]))
+    return comparisons
 
 
 def finding_of_optimum(name, by_scene):
-    best = [row_of_minimum(some, name) for some in by_scene]
+    best = [row_of_minimum(scene_rows, name) for scene_rows in by_scene]
     equal = sum(b["divisions"] == b["objects"] for b in best)
-    last = sum(b["divisions"] == some["divisions"].iloc[-1] for b, some in zip(best, by_scene))
+    last = sum(b["divisions"] == scene_rows["divisions"].iloc[-1] for b, scene_rows in zip(best, by_scene))
     more = f"; for {last} it is the largest number tried, so the optimum may be higher" if last else ""
     where = ", ".join(f"{b['divisions']} for {b['scene']}" for b in best)
     return (f"{SUBJECTS[name][3].capitalize()}, number of divisions: {where}. It equals the number of objects for {equal} of "
@@ -111,24 +111,24 @@ def finding_of_optimum(name, by_scene):
 
 
 def finding_of_loss(by_scene):
-    tried = [(some, row) for some in by_scene for row in [row_at_object_count(some)] if row is not None]
+    tried = [(scene_rows, row) for scene_rows in by_scene for row in [row_at_object_count(scene_rows)] if row is not None]
     if not tried:
         return "No scene here was divided into as many voxels as it has objects."
-    times = ", ".join(f"{ratio_to_minimum(some, row, 'modelled'):.2f} ({row['scene']})" for some, row in tried)
-    tests = ", ".join(f"{ratio_to_minimum(some, row, 'tests'):.2f}" for some, row in tried)
+    times = ", ".join(f"{ratio_to_minimum(scene_rows, row, 'modelled'):.2f} ({row['scene']})" for scene_rows, row in tried)
+    tests = ", ".join(f"{ratio_to_minimum(scene_rows, row, 'tests'):.2f}" for scene_rows, row in tried)
     voxels = ", ".join(f"{row['voxels of an object']:.2f}" for _, row in tried)
     return (f"With divisions = objects the modelled time is {times} times its minimum and the tests are {tests} times their minimum; an "
             f"object then lies in {voxels} voxels.")
 
 
 def finding_of_rise(by_scene):
-    rises = ", ".join(f"{ratio_to_minimum(some, some.iloc[-1], 'modelled'):.2f} "
-                      f"({some['scene'].iloc[0]})" for some in by_scene)
+    rises = ", ".join(f"{ratio_to_minimum(scene_rows, scene_rows.iloc[-1], 'modelled'):.2f} "
+                      f"({scene_rows['scene'].iloc[0]})" for scene_rows in by_scene)
     return f"At {by_scene[0]['divisions'].iloc[-1]} divisions the modelled time is {rises} times its minimum."
 
 
 def finding_of_parts(runs):
-    """Fractions of the modelled time that object tests and grid traversal take, by number of divisions."""
+    """Returns fractions of the modelled time that object tests and grid traversal take, by number of divisions."""
     at = [run for run in runs if run.voxels in (papers.FEW_DIVISIONS, papers.MANY_DIVISIONS)] + [runs[-1]]
 
     def shares(events):
@@ -141,18 +141,18 @@ def finding_of_parts(runs):
 
 
 RADII, VIEWS = (0.5, 1.0, 1.5, 2.0), 6  # layouts of the claim tests-to-a-fifth: radii / those of the even scene, random views
-FIFTH = 4, 6  # its bounds
+FIFTH = 4, 6  # bounds of the claim tests-to-a-fifth
 
 
 def with_radii(scene, factor):
-    """The scene with all radii of spheres multiplied by `factor`."""
+    """Returns the scene with all radii of spheres multiplied by `factor`."""
     lines = (f"{line[:line.rindex(' ')]} {float(line.split()[4]) * factor:.9g}" if line.startswith("s ") else line
              for line in scene.nff.splitlines())
     return raya.parse("\n".join(lines) + "\n", f"{scene.name}, radii x {factor:g}")
 
 
 def falls_of_layouts(lab, size):
-    """Tests at 32 divisions / tests at 1024, for 1024 even spheres of several radii from several views."""
+    """Returns tests at 32 divisions / tests at 1024, for 1024 even spheres of several radii from several views."""
     even, falls = raya.generate.uniform(1024, near_cube(1024)), []
     for i, factor in enumerate(RADII):
         for seed in range(lab.seed + i * VIEWS, lab.seed + (i + 1) * VIEWS):
@@ -164,15 +164,15 @@ def falls_of_layouts(lab, size):
 
 def claims_of(lab, size, by_scene):
     def is_minimum_at_object_count(name):
-        rows = [(some, row_at_object_count(some)) for some in by_scene]
-        return all(row is not None and ratio_to_minimum(some, row, name) <= DIFFERENCE_RATIO for some, row in rows)
+        rows = [(scene_rows, row_at_object_count(scene_rows)) for scene_rows in by_scene]
+        return all(row is not None and ratio_to_minimum(scene_rows, row, name) <= DIFFERENCE_RATIO for scene_rows, row in rows)
 
-    def falls_then_rises(some):
-        until = some[some["divisions"] <= some["objects"]]["modelled (s)"]
-        return bool((until.diff()[1:] < 0).all()) and some["modelled (s)"].iloc[-1] > DIFFERENCE_RATIO * until.iloc[-1]
+    def falls_then_rises(scene_rows):
+        until = scene_rows[scene_rows["divisions"] <= scene_rows["objects"]]["modelled (s)"]
+        return bool((until.diff()[1:] < 0).all()) and scene_rows["modelled (s)"].iloc[-1] > DIFFERENCE_RATIO * until.iloc[-1]
 
-    falls = [ratio_to_minimum(some, some.iloc[0], "modelled") for some in by_scene]
-    texts = ", ".join(f"{fall:.1f} ({some['scene'].iloc[0]})" for fall, some in zip(falls, by_scene))
+    falls = [ratio_to_minimum(scene_rows, scene_rows.iloc[0], "modelled") for scene_rows in by_scene]
+    texts = ", ".join(f"{fall:.1f} ({scene_rows['scene'].iloc[0]})" for fall, scene_rows in zip(falls, by_scene))
     layouts = falls_of_layouts(lab, size)
     radii = [factor for factor in RADII for _ in range(VIEWS)]
     about = f"1024 even spheres, {len(RADII)} radii, {VIEWS} views of each, seeds {lab.seed}..{lab.seed + len(RADII) * VIEWS - 1}"

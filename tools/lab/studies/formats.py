@@ -7,8 +7,8 @@ How much does an image in a reduced format differ from the exact one, and what d
   {offset}. Each image is compared with the double-precision reference on values clamped to 0..1.
 - Formats: `eXmY` has X exponent bits and Y fraction bits and rounds to nearest; with a `t` it truncates. `e6m15` is `spa22`.
 - Times are measured on {device}, {lanes} lanes: the minimum of {samples} renders of each format, in turn.
-- Output: formats-overview.csv has a row for each format, formats.csv one for each scene and format. psnr_db: peak signal-to-noise ratio in dB,
-  peak 1; largest_error: of a channel; pixels_over, share_over: pixels with a channel that is off by more than 1/255; measured_kernel_s: s.
+- Output: formats-overview.csv has a row for each format, formats.csv one for each scene and format. psnr_db: PSNR in dB, peak 1;
+  largest_error: of a channel; pixels_over, share_over: number and fraction of pixels with a channel that is off by more than 1/255.
 """
 import re
 
@@ -29,8 +29,8 @@ def bits_of(form):
 
 
 def difference(expected, image):
-    """PSNR (dB, peak 1), largest error, and number and share of the pixels with a channel that is off by more than STEP. Values are clamped to 0..1;
-    the error of a value that is not finite is infinite."""
+    """Returns PSNR (dB, peak 1), largest error, and number and fraction of the pixels with a channel that is off by more than STEP. Values are
+    clamped to 0..1; the error of a value that is not finite is infinite."""
     finite = np.isfinite(expected) & np.isfinite(image)
     off = np.where(finite, np.abs(np.clip(expected, 0, 1) - np.clip(image.astype(float), 0, 1)), np.inf)
     with np.errstate(divide="ignore"):
@@ -62,11 +62,11 @@ def formats(lab, scenes):
     own = [raya.example(name) for name in ("centre", "spheres", "glass", "polygons", "cones")]
     by_scene, lanes = zip(*(rows_of(lab, scene, size) for scene in scenes or own))
     rows, overview = pd.concat(by_scene, ignore_index=True), []
-    for form, some in rows.groupby("format", sort=False):
-        worst, ratio = some.loc[some["psnr_db"].idxmin()], some["measured_ratio_to_fp32"]
+    for form, format_rows in rows.groupby("format", sort=False):
+        worst, ratio = format_rows.loc[format_rows["psnr_db"].idxmin()], format_rows["measured_ratio_to_fp32"]
         overview.append({"format": form, "lowest PSNR (dB)": worst["psnr_db"], "of scene": worst["scene"],
-                         "largest error": some["largest_error"].max(),
-                         "most off by > 1/255 (%)": 100 * some["share_over"].max(),
+                         "largest error": format_rows["largest_error"].max(),
+                         "most off by > 1/255 (%)": 100 * format_rows["share_over"].max(),
                          "time / fp32, least (measured)": ratio.min(), "time / fp32, largest (measured)": ratio.max()})
     nearest = rows[(rows["rounding"] == "nearest") & (rows["fraction_bits"] < 23)]
     return Page({"size": size, "machine": "grande", "pes": size, "offset": 16 % size, "bounces": GRANDE["bounces"],
@@ -85,8 +85,8 @@ def findings_of(rows):
     def spread(gains):
         return f"{gains.mean():+.1f} dB on average ({gains.min():+.1f} to {gains.max():+.1f})"
 
-    def text(some, column, factor=1, digits=1):
-        return f"{factor * some[column].min():.{digits}f} to {factor * some[column].max():.{digits}f}"
+    def text(format_rows, column, factor=1, digits=1):
+        return f"{factor * format_rows[column].min():.{digits}f} to {factor * format_rows[column].max():.{digits}f}"
 
     gains = pd.concat([psnr[form] - psnr[form + "t"] for form in REDUCED if not form.endswith("t")])
     changes = [f"From {a} to {b} the PSNR changes by {spread(psnr[b] - psnr[a])}." for a, b in

@@ -25,14 +25,14 @@ COLUMNS = ("scene", "A x B x C", "copies", "tests", "steps", "measured (ms)")
 
 
 def grids_for(name):
-    """The grids published for the scene; for other scenes, those published for lattice."""
+    """Returns the grids published for the scene; for other scenes, those published for lattice."""
     known = [grid for scene, grid in papers.UNIFORM_GRIDS if scene == name]
     return known or [(20, 20, 20), (44, 44, 44)]
 
 
 @study("havran")
 def havran(lab, scenes):
-    size = lab.size(257)  # every other one of SPD's 513 pixel corners along a side
+    size = lab.size(257)  # every second of SPD's 513 pixel corners along a side
     own = [raya.generate.balls(4).renamed("balls"), raya.generate.lattice(12).renamed("lattice")]
     cases = [{"scene": scene, "grid": grid} for scene in scenes or own for grid in grids_for(scene.name)]
     table = run_cases(cases, lambda scene, grid: run_in_one_pe(lab, scene, size, grid, BOUNCES, "corners"), COLUMNS)
@@ -80,8 +80,8 @@ def finding_of(known, what):
 
 
 def finding_of_finer(coarse, fine):
-    """Our and their ratios of tests and steps between a finer and a coarser grid of one scene. Ratios do not depend on how rays and tests are
-    counted."""
+    """Returns a sentence on the changes of tests and steps from a coarser to a finer grid of one scene. These ratios do not depend on how rays and
+    tests are counted."""
     tests, steps, *others = (f"{fine[name] / coarse[name]:.2f}" for name in ("tests", "steps", "their tests",
                                                                              "their steps"))
     theirs = "" if "nan" in others else f"; theirs by factors of {others[0]} and {others[1]}"

@@ -42,10 +42,9 @@ def row_of(lab, scene, size, sides, groups):
 
 
 def rows_of(lab, scene, size, sides):
-    """Table with a row for each number of groups: 1, 2, 4, ..."""
+    """Returns a table with a row for each number of groups: 1, 2, 4, ..."""
     rows = pd.DataFrame([row_of(lab, scene, size, sides, groups) for groups in powers_of_two(NODES)])
-    # With one node per group, no node sends a message or discards a ray. The sum of their work is the work of a
-    # single node that renders all pixels.
+    # With one node per group no node sends messages or discards rays, so the sum of work is that of one node that renders all pixels.
     for bound in ("overlapped", "stepwise"):
         rows[f"speed-up, {bound}"] = rows["work"].iloc[-1] / rows[f"{bound} (ms)"]
     for name, size in MEMORIES.items():
@@ -56,8 +55,8 @@ def rows_of(lab, scene, size, sides):
 @study("hybrid")
 def hybrid(lab, scenes):
     size = lab.size(72)  # 64 + 8: with 64 groups each row is shifted by 8, the square root of their number, the best offset
-    some = scenes or [even_scene(8320), raya.example("centre"), balls_scene(3)]
-    every = [rows_of(lab, scene, size, sides) for scene in some for sides in SIDES]
+    chosen_scenes = scenes or [even_scene(8320), raya.example("centre"), balls_scene(3)]
+    every = [rows_of(lab, scene, size, sides) for scene in chosen_scenes for sides in SIDES]
     rows = pd.concat(every, ignore_index=True)
     head = ["scene", "voxels", "groups"]
     times = rows[head + ["nodes a group", "overlapped (ms)", "stepwise (ms)", "speed-up, overlapped",
@@ -65,7 +64,7 @@ def hybrid(lab, scenes):
                          "tests a ray", "rays discarded"]]
     memory = rows[head + ["its part of the scene (bytes)", "with the shortest buffers (bytes)",
                           "with the study's (bytes)", "fits 32 KB", "fits 4 MB"]]
-    return Page({"scenes": [scene.name for scene in some], "size": size, "nodes": NODES, "voxels": list(SIDES),
+    return Page({"scenes": [scene.name for scene in chosen_scenes], "size": size, "nodes": NODES, "voxels": list(SIDES),
                  "links": "torus3d", "format": "fp32", "bounces": BOUNCES}, findings_of(every),
                 [Comparison(f"best G, {r['scene'][0]}, {r['voxels'][0]} voxels", "groups", None,
                             int(r["groups"][r["overlapped (ms)"].idxmin()]),
@@ -113,7 +112,7 @@ def findings_of(every):
 
     return [f"The best number of groups on {NODES} nodes without a memory limit, overlapped: "
             f"{for_each_scene(best('overlapped'), ' with {} voxels')}.",
-            f"The same stepwise: {for_each_scene(best('stepwise'))}.",
+            f"The best number of groups without a memory limit, stepwise: {for_each_scene(best('stepwise'))}.",
             *(f"Numbers of groups that fit nodes of {name}, with the shortest buffers that work: {for_each_scene(memory(name))}."
               for name in MEMORIES), f"u over all nodes, from one group to a group for each node: {for_each_scene(balance)}."]
 

@@ -20,11 +20,11 @@ import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, above, estimate, every, judged, papers, proportion, study, with_paper
 
 FINER_VIEWS, WINDOWS, ITERATIONS = 108, 24, 1000  # pictures at twice the size; windows of the Mandelbrot set and their maximum iterations
-ALIKE, STRONGLY, HIGH, SHARE = 0.8, 2, 0.8, 0.95  # bounds of the claims neighbours-alike, columns-vary, cyclic-is-high; of the last and gain-for-all
+ALIKE, STRONGLY, HIGH, SHARE = 0.8, 2, 0.8, 0.95  # bounds of neighbours-alike; columns-vary; cyclic-is-high; cyclic-is-high and gain-for-all
 
 
 def paper_like_scenes():
-    """Ten scenes of 6 to 30 spheres and planes, as in the paper's experiments."""
+    """Returns ten scenes of 6 to 30 spheres and planes, as in the paper's experiments."""
     scenes = [raya.example(name) for name in ("centre", "spheres", "mirrors", "glass", "planes")]
     scenes += [raya.generate.random(n, n).renamed(f"random-{n}") for n in (6, 12, 20, 30)]
     return scenes + [raya.generate.uniform(27, (3, 3, 3)).renamed("uniform-27")]
@@ -40,7 +40,7 @@ def rows_of(pictures, objects, pes, offset):
 
 
 def mandelbrot(side, seed):
-    """Cost image uint64 [side, side]: iterations of z = z^2 + c, at most ITERATIONS, for a window whose centre lies near the set's boundary."""
+    """Returns a cost image, uint64 [side, side]: iterations of z = z^2 + c, at most ITERATIONS, in a window centred near the set's boundary."""
     random = np.random.default_rng(seed)
     angle, width = random.uniform(0, 2 * np.pi), 10 ** random.uniform(-2, 0.4)
     centre = (0.5 - 0.25 * np.exp(1j * angle)) * np.exp(1j * angle)  # the boundary of the main cardioid
@@ -57,31 +57,31 @@ def mandelbrot(side, seed):
 
 
 def correlation(image):
-    """Correlation of the cost of a pixel and of its right neighbour; 1 for equal costs."""
+    """Returns the correlation of the cost of a pixel and of its right neighbour; 1 for equal costs."""
     left, right = image[:, :-1].ravel().astype(float), image[:, 1:].ravel().astype(float)
     return float(np.corrcoef(left, right)[0, 1]) if left.std() and right.std() else 1.0
 
 
 @study("images")
 def images(lab, scenes):
-    pes, some = lab.size(256), scenes or paper_like_scenes()
+    pes, shown_scenes = lab.size(256), scenes or paper_like_scenes()
     p = round(pes**0.5)
-    pictures = [lab.costs(scene, side) for side in (pes, 2 * pes) for scene in some]
-    rows = rows_of(pictures, [scene.objects for scene in some] * 2, pes, p)
-    columns, cyclic = "efficiency, p = 0", f"efficiency, p = {p}"
+    pictures = [lab.costs(scene, side) for side in (pes, 2 * pes) for scene in shown_scenes]
+    rows = rows_of(pictures, [scene.objects for scene in shown_scenes] * 2, pes, p)
+    split_column, cyclic_column = "efficiency, p = 0", f"efficiency, p = {p}"
     ensemble, finer = lab.ensemble(scenes, pes), lab.ensemble(scenes, 2 * pes, views=FINER_VIEWS)
     windows = np.array([raya.imbalances(mandelbrot(pes, lab.seed + i), pes, [0, p]) for i in range(WINDOWS)])  # [window, offset]
     groups = {f"scenes at {side} x {side}": group for side, group in rows.groupby("side (pixels)", sort=False)}
     groups.update({f"ensemble at {len(one.pictures[0].trace)} x {len(one.pictures[0].trace)}": rows_of(one.pictures, 0, pes, p)
                    for one in (ensemble, finer)})
-    groups["Mandelbrot windows"] = pd.DataFrame({columns: 1 / (1 + windows[:, 0]), cyclic: 1 / (1 + windows[:, 1])})
+    groups["Mandelbrot windows"] = pd.DataFrame({split_column: 1 / (1 + windows[:, 0]), cyclic_column: 1 / (1 + windows[:, 1])})
     return Page({"pes": pes, "offset": p, "images": len(rows), "windows": WINDOWS, "iterations": ITERATIONS, "seed": lab.seed},
-                findings_of(groups, rows, columns, cyclic, p),
-                comparisons_of(rows, columns, cyclic, pes),
+                findings_of(groups, rows, split_column, cyclic_column, p),
+                comparisons_of(rows, split_column, cyclic_column, pes),
                 claims_of(ensemble, finer, windows, pes, p) if not scenes else [],
-                [table_of_groups(groups, columns, cyclic),
+                [table_of_groups(groups, split_column, cyclic_column),
                  Table("images", "Imbalance and efficiency of each image", rows)],
-                plots_of(rows, groups, columns, cyclic, pes, p),
+                plots_of(rows, groups, split_column, cyclic_column, pes, p),
                 ["Kohata & Ito describe their images without figures. This study gives figures for every image, and intervals over "
                  "an ensemble."], compared_with=papers.SPA,
                 placeholders={"fewest": rows["objects"].min(), "most": rows["objects"].max(), "ensemble": ensemble.description,
@@ -90,11 +90,11 @@ def images(lab, scenes):
 
 def claims_of(ensemble, finer, windows, pes, p):
     families, about = ensemble.families, ensemble.description
-    u = [one.of(lambda costs: raya.imbalances(costs.trace, pes, [0, p])) for one in (ensemble, finer)]
+    u = [one.map(lambda costs: raya.imbalances(costs.trace, pes, [0, p])) for one in (ensemble, finer)]
     gains = [of_size[:, 1] < of_size[:, 0] for of_size in u]
     efficiency = 1 / (1 + u[0])
     deviation = np.abs(efficiency - efficiency.mean(0))
-    alike = ensemble.of(lambda costs: correlation(costs.trace))
+    alike = ensemble.map(lambda costs: correlation(costs.trace))
     high = efficiency[:, 1] >= HIGH
     worst = int(efficiency[:, 1].argmin())
     return [judged("gain-for-all", every(proportion(one, SHARE) for one in gains),
@@ -102,7 +102,7 @@ def claims_of(ensemble, finer, windows, pes, p):
                    f"u({p}) is lower than u(0) in {gains[0].sum()} of {len(gains[0])} pictures and, at twice the size, in {gains[1].sum()} of "
                    f"{len(gains[1])}."),
             judged("neighbours-alike", above(alike, ALIKE, families), about,
-                   f"The correlation is {estimate(alike, families).text()}, {alike.min():.2f} in the least alike picture."),
+                   f"The correlation is {estimate(alike, families).text()}, the lowest one {alike.min():.2f}."),
             judged("columns-vary", above(deviation[:, 0] - STRONGLY * deviation[:, 1], 0, families), about,
                    f"The mean absolute deviation of the efficiency is {deviation[:, 0].mean():.3f} for the column split and "
                    f"{deviation[:, 1].mean():.3f} for the cyclic mapping."),
@@ -113,57 +113,57 @@ def claims_of(ensemble, finer, windows, pes, p):
                    f"u falls by {estimate(windows[:, 0] - windows[:, 1]).text()} from p = 0 to p = {p}, to {estimate(windows[:, 1]).text()}.")]
 
 
-def table_of_groups(groups, columns, cyclic):
+def table_of_groups(groups, split_column, cyclic_column):
     table = pd.DataFrame({"pictures": list(groups), "number": [len(rows) for rows in groups.values()]})
-    for name, column in (("p = 0", columns), ("cyclic", cyclic)):
+    for name, column in (("p = 0", split_column), ("cyclic", cyclic_column)):
         means = [estimate(rows[column]) for rows in groups.values()]
         table[name], table[f"{name}, +-"] = [m.mean for m in means], [m.half for m in means]
-        for which, of in (("least", min), ("largest", max)):
-            table[f"{name}, {which}"] = [of(rows[column]) for rows in groups.values()]
+        for which, extreme in (("least", min), ("largest", max)):
+            table[f"{name}, {which}"] = [extreme(rows[column]) for rows in groups.values()]
     return Table("images-groups", "Mean efficiencies, with intervals of 95 %", table)
 
 
-def findings_of(groups, rows, columns, cyclic, p):
-    means = "; ".join(f"{estimate(g[columns]).text()} and {estimate(g[cyclic]).text()} of {len(g)} {label}"
+def findings_of(groups, rows, split_column, cyclic_column, p):
+    means = "; ".join(f"{estimate(g[split_column]).text()} and {estimate(g[cyclic_column]).text()} of {len(g)} {label}"
                       for label, g in groups.items())
-    worst = rows.loc[rows[cyclic].idxmin()]
-    worse = (rows[columns] > rows[cyclic]).sum()
+    worst = rows.loc[rows[cyclic_column].idxmin()]
+    worse = (rows[split_column] > rows[cyclic_column]).sum()
     size = "{0} x {0}".format(worst["side (pixels)"])
     rest = (f"The column split is better for {worse} of {len(rows)} images." if worse else
             f"The cyclic mapping is at least as good as the column split on all {len(rows)} images.")
     return [f"Mean efficiency of p = 0 and of the cyclic mapping: {means}.",
-            f"On the scenes' own pictures the efficiency is {rows[columns].min():.3f} to {rows[columns].max():.3f} with "
-            f"the column split and {rows[cyclic].min():.3f} to {rows[cyclic].max():.3f} with p = {p}.",
-            f"The cyclic mapping's lowest efficiency is {worst[cyclic]:.3f}, for {worst['scene']} at {size}; there the column split "
-            f"has {worst[columns]:.3f}. {rest}"]
+            f"On the scenes' own pictures the efficiency is {rows[split_column].min():.3f} to {rows[split_column].max():.3f} with "
+            f"the column split and {rows[cyclic_column].min():.3f} to {rows[cyclic_column].max():.3f} with p = {p}.",
+            f"The cyclic mapping's lowest efficiency is {worst[cyclic_column]:.3f}, for {worst['scene']} at {size}; there the column split "
+            f"has {worst[split_column]:.3f}. {rest}"]
 
 
-def comparisons_of(rows, columns, cyclic, pes):
+def comparisons_of(rows, split_column, cyclic_column, pes):
     first = rows.iloc[0]
     same = pes == papers.PES and first["scene"] == "centre" and first["side (pixels)"] == papers.SIZE
     name = "{0} at {1} x {1}".format(first["scene"], first["side (pixels)"])
     source = "of their most unbalanced image" if same else ""
-    return [*with_paper(same, [Comparison(f"{name}, p = 0", "", papers.EFFICIENCY_0, first[columns], source, True),
-                               Comparison(f"{name}, cyclic", "", papers.EFFICIENCY_16, first[cyclic], source, True)]),
-            Comparison("lowest of all, p = 0", "", None, rows[columns].min(), "Kohata & Ito: varies strongly"),
-            Comparison("highest of all, p = 0", "", None, rows[columns].max()),
-            Comparison("lowest of all, cyclic", "", None, rows[cyclic].min(), "Kohata & Ito: high for all"),
-            Comparison("highest of all, cyclic", "", None, rows[cyclic].max())]
+    return [*with_paper(same, [Comparison(f"{name}, p = 0", "", papers.EFFICIENCY_0, first[split_column], source, True),
+                               Comparison(f"{name}, cyclic", "", papers.EFFICIENCY_16, first[cyclic_column], source, True)]),
+            Comparison("lowest of all, p = 0", "", None, rows[split_column].min(), "Kohata & Ito: varies strongly"),
+            Comparison("highest of all, p = 0", "", None, rows[split_column].max()),
+            Comparison("lowest of all, cyclic", "", None, rows[cyclic_column].min(), "Kohata & Ito: high for all"),
+            Comparison("highest of all, cyclic", "", None, rows[cyclic_column].max())]
 
 
-def plots_of(rows, groups, columns, cyclic, pes, p):
-    """Plots of the efficiency. Scenes are numbered in order of their first image and named below the axis."""
+def plots_of(rows, groups, split_column, cyclic_column, pes, p):
+    """Returns plots of the efficiency. Scenes are numbered in order of their first image and named below the axis."""
     first = rows[rows["side (pixels)"] == rows["side (pixels)"].iloc[0]]
     names = [f"{i} {scene}" for i, scene in enumerate(first["scene"], 1)]
     lines = ",\n".join(", ".join(names[i:i + 5]) for i in range(0, len(names), 5))
-    series = [Series(f"p = {offset} at {side} x {side}", range(1, len(some) + 1), some[column], "points")
-              for offset, column in ((p, cyclic), (0, columns))
-              for side, some in rows.groupby("side (pixels)", sort=False)]
+    series = [Series(f"p = {offset} at {side} x {side}", range(1, len(image_rows) + 1), image_rows[column], "points")
+              for offset, column in ((p, cyclic_column), (0, split_column))
+              for side, image_rows in rows.groupby("side (pixels)", sort=False)]
     if pes == papers.PES and rows["scene"].iloc[0] == "centre":
         series.append(Series("Kohata & Ito, their worst image", [1, 1], [papers.EFFICIENCY_0, papers.EFFICIENCY_16],
                              "paper"))
-    shares = [Series(f"{name}, {label}", 100 * np.arange(1, len(some) + 1) / len(some), np.sort(some[column]), "steps")
-              for label, some in groups.items() for name, column in (("cyclic", cyclic), ("p = 0", columns))]
+    distributions = [Series(f"{name}, {label}", 100 * np.arange(1, len(image_rows) + 1) / len(image_rows), np.sort(image_rows[column]), "steps")
+                     for label, image_rows in groups.items() for name, column in (("cyclic", cyclic_column), ("p = 0", split_column))]
     return [Plot("images", "Efficiency over the scenes", f"scene: {lines}", "efficiency", series),
-            Plot("images-groups", "Distribution of the efficiency over the pictures", "share of the pictures, ascending (%)",
-                 "efficiency", shares)]
+            Plot("images-groups", "Distribution of the efficiency over the pictures", "pictures in ascending order of efficiency (%)",
+                 "efficiency", distributions)]

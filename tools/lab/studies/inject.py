@@ -26,17 +26,16 @@ COLUMNS = ("supersteps", "overlapped (ms)", "stepwise (ms)", "the root's process
 @study("inject", one_scene=True)
 def inject(lab, scenes):
     scene, size = scenes[0] if scenes else even_scene(8320), lab.size(64)
-
     rows = run_cases(CASES, lambda nodes, inject: run_on_torus(lab, scene, size, near_cube(nodes), near_cube(nodes),
                                                            inject=inject), COLUMNS)
-    root, every = (rows[rows["inject"] == method].reset_index() for method in ("root", "all"))
+    root, all_nodes = (rows[rows["inject"] == method].reset_index() for method in ("root", "all"))
     return Page({"scene": scene.name, "size": size, "nodes": MAX_NODES, "links": "torus3d", "format": "fp32",
-                 "bounces": BOUNCES}, findings_of(root, every),
+                 "bounces": BOUNCES}, findings_of(root, all_nodes),
                 tables=[Table("inject", "Primary rays from the root and from all nodes",
                               rows.drop(columns=["primary", "run"]))],
-                plots=[Plot("inject", "Time against the number of nodes", "nodes", "modelled ms",
-                            [Series(f"{some['inject'][0]}, {bound}", some["nodes"], some[f"{bound} (ms)"])
-                             for some in (root, every) for bound in ("overlapped", "stepwise")], "xy"),
+                plots=[Plot("inject", "Time against the number of nodes", "nodes", "modelled time (ms)",
+                            [Series(f"{method_rows['inject'][0]}, {bound}", method_rows["nodes"], method_rows[f"{bound} (ms)"])
+                             for method_rows in (root, all_nodes) for bound in ("overlapped", "stepwise")], "xy"),
                        Plot("inject-root", "The root's share of the time", "nodes", "root / overlapped (%)",
                             series_by(rows, "inject", "nodes", "root / overlapped (%)"), "x"),
                        Plot("inject-supersteps", "Supersteps", "nodes", "supersteps",
@@ -51,28 +50,28 @@ def bound_text(rows):
     return f"from {nodes.iloc[0]} nodes on" if len(nodes) else "for no number of nodes"
 
 
-def finding_of_difference(root, every):
-    ratio = root["overlapped (ms)"] / every["overlapped (ms)"]
-    last = f"with {every['nodes'].iloc[-1]} nodes injection by the root takes {ratio.iloc[-1]:.2f} times as long"
+def finding_of_difference(root, all_nodes):
+    ratio = root["overlapped (ms)"] / all_nodes["overlapped (ms)"]
+    last = f"with {all_nodes['nodes'].iloc[-1]} nodes injection by the root takes {ratio.iloc[-1]:.2f} times as long"
     different = ratio[ratio > DIFFERENCE_RATIO]
     if not len(different):
         return f"The two methods never differ by more than 10 %: {last}."
-    return (f"The two methods first differ by more than 10 % on {every['nodes'][different.index[0]]} nodes, where injection by the root "
+    return (f"The two methods first differ by more than 10 % on {all_nodes['nodes'][different.index[0]]} nodes, where injection by the root "
             f"takes {different.iloc[0]:.2f} times as long; {last}.")
 
 
-def findings_of(root, every):
-    a, b = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (root, every))
-    one, last, all_last = every["overlapped (ms)"][0], root.iloc[-1], every.iloc[-1]
+def findings_of(root, all_nodes):
+    a, b = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (root, all_nodes))
+    one, last, all_last = all_nodes["overlapped (ms)"][0], root.iloc[-1], all_nodes.iloc[-1]
     return [f"The root is the bottleneck of the machine, overlapped: {bound_text(root)} if it makes all primary rays, "
-            f"{bound_text(every)} if all nodes do.",
+            f"{bound_text(all_nodes)} if all nodes do.",
             f"The fastest machine with injection by the root takes {a['overlapped (ms)']:.0f} ms, with {a['nodes']} nodes, "
             f"{one / a['overlapped (ms)']:.1f} times as fast as one node; with injection by all nodes "
             f"{b['overlapped (ms)']:.0f} ms, with {b['nodes']} nodes, {one / b['overlapped (ms)']:.1f} times.",
-            finding_of_difference(root, every),
+            finding_of_difference(root, all_nodes),
             f"{all_last['nodes']} nodes that make their own primary rays make "
             f"{1 + all_last['rays discarded'] / all_last['primary']:.1f} for each that they keep, and are charged for all of them: "
             "the other rays that they make enter at other voxels.",
             f"Stepwise, injection by the root takes {last['stepwise (ms)'] / all_last['stepwise (ms)']:.2f} times as long on "
-            f"{last['nodes']} nodes, in {last['supersteps']} supersteps instead of {all_last['supersteps']}: at a time the root "
-            "makes at most as many rays as an eighth of its queue holds."]
+            f"{last['nodes']} nodes, in {last['supersteps']} supersteps instead of {all_last['supersteps']}, because the root makes "
+            "at most as many rays at a time as an eighth of its queue holds."]

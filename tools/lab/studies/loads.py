@@ -22,49 +22,49 @@ FLAT_LIMIT = 0.1  # bound of the claim no-hump, as a fraction of the mean load
 
 
 def relative_loads(image, offset):
-    """The load of each PE divided by the mean load; 1 for all PEs if there is no load."""
+    """Returns the load of each PE divided by the mean load; 1 for all PEs if there is no load."""
     loads = raya.loads(image, offset=offset)
     return loads / loads.mean() if loads.any() else np.ones(len(loads))
 
 
 def middle_and_sides(loads):
-    """Mean load of the middle quarter of the PEs, and mean load of the first and last eighth together. loads: [..., PE]."""
+    """Returns the mean load of the middle quarter of the PEs, and the mean load of the first and last eighth together. loads: [..., PE]."""
     eighth, middle = loads.shape[-1] // 8, loads.shape[-1] // 2
     sides = (loads[..., :eighth].mean(-1) + loads[..., loads.shape[-1] - eighth:].mean(-1)) / 2
     return loads[..., middle - eighth:middle + eighth].mean(-1), sides
 
 
-def page_of(name, lab, scenes, first):
+def page_of(name, lab, scenes, first_pass):
     scene, size = first_scene(scenes), lab.size(256)
-    antialias, image_of = ("none", lambda costs: costs.trace) if first else ("supersample", lambda costs: costs.supersample)
+    antialias, image_of = ("none", lambda costs: costs.trace) if first_pass else ("supersample", lambda costs: costs.supersample)
     offsets, picture = (0, 16 % size), image_of(lab.costs(scene, size, antialias))
     ensemble = lab.ensemble(scenes, size, antialias, families=CROWDED)
     own = [relative_loads(picture, p) for p in offsets]
-    of_pictures = [ensemble.of(lambda costs, p=p: relative_loads(image_of(costs), p)) for p in offsets]  # [picture, PE]
-    u = ensemble.of(lambda costs: raya.imbalances(image_of(costs), size, offsets)).T  # [offset, picture]
+    picture_loads = [ensemble.map(lambda costs, p=p: relative_loads(image_of(costs), p)) for p in offsets]  # [picture, PE]
+    u = ensemble.map(lambda costs: raya.imbalances(image_of(costs), size, offsets)).T  # [offset, picture]
     own_u = raya.imbalances(picture, size, offsets)
     rows = pd.DataFrame({"PE": range(size), "p = 0 (cycles)": raya.loads(picture, offset=0),
                          "p = 16 (cycles)": raya.loads(picture, offset=offsets[1])})
-    for label, some in zip(("p = 0", "p = 16"), of_pictures):
+    for label, some in zip(("p = 0", "p = 16"), picture_loads):
         means = estimates(some)
         rows[f"{label}, mean of the ensemble"], rows[f"{label}, +-"] = [m.mean for m in means], [m.half for m in means]
-    place, phase = ("Fig. 7", "first pass") if first else ("Fig. 12", "supersampling without the first pass")
+    place, phase = ("Fig. 7", "first pass") if first_pass else ("Fig. 12", "supersampling without the first pass")
     return Page({"scene": scene.name, "size": size, "pes": size, "pictures": len(u[0]), "offsets": list(offsets)},
                 findings_of(own, own_u, u),
-                comparisons_of(own_u, u, first and papers.is_papers(scene.name, size)),
-                claims_of(of_pictures, ensemble.description) if first and not scenes else [],
+                comparisons_of(own_u, u, first_pass and papers.is_papers(scene.name, size)),
+                claims_of(picture_loads, ensemble.description) if first_pass and not scenes else [],
                 [Table(name, "Load of each PE", rows, on_page=False)],
                 plots_of(name, scene.name, phase, rows, own, len(u[0])),
                 ["Kohata & Ito show one image. Many pictures separate the effect of the mapping from that of the picture."],
                 compared_with=papers.SPA,
-                placeholders={"figure": f"{place}: load of each PE{'' if first else ' in supersampling'}", "phase": phase, "place": place,
+                placeholders={"figure": f"{place}: load of each PE{'' if first_pass else ' in supersampling'}", "phase": phase, "place": place,
                               "name": name, "ensemble": ensemble.description,
                               "question": "How is the work of one image spread over the PEs, by columns and by the cyclic mapping?"
-                              if first else "Is the extra work of supersampling spread as evenly as the first pass?"})
+                              if first_pass else "Is the extra work of supersampling spread as evenly as the first pass?"})
 
 
 def findings_of(own, own_u, u):
-    (middle, sides), mean_u = middle_and_sides(own[0]), [estimate(some) for some in u]
+    (middle, sides), mean_u = middle_and_sides(own[0]), [estimate(offset_u) for offset_u in u]
     return [f"Over {len(u[0])} pictures u is {mean_u[0].text()} with columns ({range_text(u[0])}) and {mean_u[1].text()} "
             f"with p = 16 ({range_text(u[1])}).",
             f"In the picture the PEs of the middle quarter carry {middle:.2f} times the mean load with columns and "
@@ -80,28 +80,28 @@ def comparisons_of(own_u, u, in_paper):
                                         for p, mean in zip((0, 16), map(estimate, u))]
 
 
-def claims_of(of_pictures, about):
-    columns, cyclic = (np.subtract(*middle_and_sides(some)) for some in of_pictures)
-    text = "A PE of the middle quarter carries {} mean loads more than one of the quarter at the sides."
+def claims_of(picture_loads, about):
+    columns, cyclic = (np.subtract(*middle_and_sides(offset_loads)) for offset_loads in picture_loads)
+    text = "The load of a PE in the middle quarter exceeds that of a PE in the quarter at the sides by {} of the mean load."
     return [judged("hump", above(columns, 0, digits=2), about, text.format(estimate(columns).text(2))),
             judged("no-hump", within(cyclic, -FLAT_LIMIT, FLAT_LIMIT, digits=2), about, text.format(estimate(cyclic).text(2)))]
 
 
 def plots_of(name, scene, phase, rows, own, pictures):
-    some = rows[rows["PE"] % max(len(rows) // 64, 1) == 0]
+    plotted_rows = rows[rows["PE"] % max(len(rows) // 64, 1) == 0]
     labels, mean_line = ("p = 0, column split", "p = 16, cyclic mapping"), Series("mean", [0, len(rows) - 1], [1, 1])
     return [Plot(name, f"Load of each PE, {scene}, {phase}", "PE", "load / mean load",
                  [Series(label, rows["PE"], one) for label, one in zip(labels, own)] + [mean_line]),
             Plot(f"{name}-views", f"Load of each PE, {phase}, mean of {pictures} pictures", "PE", "load / mean load",
-                 [Series(label, some["PE"], some[f"{p}, mean of the ensemble"], half_widths=some[f"{p}, +-"])
+                 [Series(label, plotted_rows["PE"], plotted_rows[f"{p}, mean of the ensemble"], half_widths=plotted_rows[f"{p}, +-"])
                   for label, p in zip(labels, ("p = 0", "p = 16"))] + [mean_line])]
 
 
 @study("fig7", prose=PROSE, one_scene=True)
 def fig7(lab, scenes):
-    return page_of("fig7", lab, scenes, first=True)
+    return page_of("fig7", lab, scenes, first_pass=True)
 
 
 @study("fig12", prose=PROSE, one_scene=True)
 def fig12(lab, scenes):
-    return page_of("fig12", lab, scenes, first=False)
+    return page_of("fig12", lab, scenes, first_pass=False)

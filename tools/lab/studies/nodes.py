@@ -5,8 +5,8 @@ How many transputers pay, and what is their bottleneck?
 - Source: Yoshitani & Yamazaki, about 1995, who had 64 nodes and print no speed-up.
 - {size} x {size} pixels on 1, 2, 4, ... nodes, as near to a cube as powers of two allow; fp32. All nodes make primary rays and are
   charged for those that they make and discard; ray packets have 16 words, each term of a ray is a return; queues hold {queue} packets.
-- Two divisions of the scene: one voxel a node, as in Yoshitani & Yamazaki, and {voxels} voxels laid out cyclically on any number of
-  nodes. With {voxels} voxels all machines do the same work, so the speed-up is due only to the nodes. With one voxel a node it is also due to
+- Two divisions of the scene: one voxel a node, as in Yoshitani & Yamazaki; and {voxels} voxels on any number of nodes, laid out
+  cyclically. With {voxels} voxels all machines do the same work, so the speed-up is due only to the nodes. With one voxel a node it is also due to
   the finer grid.
 - The processors at both ends of a message spend time on it; u and tests are of computing, without messages.
 - 2-D: slabs of nodes next to each other, four links a node, as a T805 has; 3-D: six links a node.
@@ -26,7 +26,7 @@ COLUMNS = ("u", "hops a packet", "supersteps", "busiest link (bytes)", "tests a 
 
 
 def series_of(lab, scene, size, fixed, links, known):
-    """Table of tori of one kind, with 1, 2, 4, ... nodes. fixed: VOXELS on every machine, else one voxel a node. known: {settings: Run}, a cache."""
+    """Returns a table of tori of one kind, with 1, 2, 4, ... nodes. fixed: VOXELS on each, else one voxel a node. known: {settings: Run}, a cache."""
     rows, one = [], None
     for nodes in powers_of_two(MAX_NODES):
         if rows and rows[-1]["supersteps"] * nodes > MAX_NODE_SUPERSTEPS:
@@ -45,7 +45,7 @@ def series_of(lab, scene, size, fixed, links, known):
 
 
 def bottleneck(nodes, run):
-    """Text of the processor or link that determines the overlapped time."""
+    """Returns the name of the processor or link that determines the overlapped time."""
     if run.root_link_ms >= run.overlapped_ms:
         return "the root's link"
     if run.root_processor_ms >= run.overlapped_ms:
@@ -56,9 +56,9 @@ def bottleneck(nodes, run):
 @study("nodes")
 def nodes(lab, scenes):
     size = lab.size(64)
-    some = scenes or [even_scene(8320), balls_scene(3)]
+    chosen_scenes = scenes or [even_scene(8320), balls_scene(3)]
     known, findings, comparisons, by_scene = {}, [], [], []
-    for scene in some:
+    for scene in chosen_scenes:
         three, two, fixed = (series_of(lab, scene, size, *kind, known) for kind in
                              ((False, "torus3d"), (False, "torus2d"), (True, "torus3d")))
         by_scene.append((three, two, fixed))
@@ -70,7 +70,7 @@ def nodes(lab, scenes):
         findings += [*findings_of_speedup(three, fixed), finding_of_links(three, two),
                      *findings_of_balance(three, fixed)]
     rows = pd.concat(sum(by_scene, ()), ignore_index=True).drop(columns=["run", "balance"])
-    return Page({"scenes": [scene.name for scene in some], "size": size, "nodes": MAX_NODES,
+    return Page({"scenes": [scene.name for scene in chosen_scenes], "size": size, "nodes": MAX_NODES,
                  "voxels": VOXELS, "queue": QUEUE, "format": "fp32", "bounces": BOUNCES}, findings, comparisons,
                 tables=[Table("nodes", "Every machine", rows)], plots=plots_of(by_scene),
                 news=["Yoshitani & Yamazaki had 64 nodes and measured neither speed-up nor balance. This study has both, "

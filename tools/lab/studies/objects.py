@@ -19,8 +19,8 @@ Are random objects slower than even ones, are their copies the reason, and why d
   of spheres, but no sphere is in two voxels. This separates the effect of copies from that of unequal numbers.
 - In all three kinds the outermost spheres touch the sides of one cube, so that all scenes have the same voxels. Registration enlarges each
   sphere by up to a 16th of a voxel's side; even and moved spheres keep that distance from the sides.
-- The asynchronous machine decides, because the paper describes it: it is simulated packet by packet, with two tasks a node, links that carry
-  while nodes compute, and finite buffers. Overlapped (nothing waits) and stepwise (everything waits) are shown as bounds.
+- The claims use the asynchronous machine, because the paper describes it. It is simulated packet by packet: a node has two tasks, links transfer
+  while nodes compute, and buffers are finite. Overlapped (nothing waits) and stepwise (everything waits) are shown as bounds.
 - The depth of primary rays is counted without lights. The growth of time is analysed from the fewest to the most objects, overlapped:
   objects over time is a product of four ratios, see the table.
 - Output: objects.csv (modelled times in ms and counts), objects-ratios.csv, objects-growth.csv, objects-primary.csv and objects-words.csv.
@@ -46,15 +46,15 @@ def render(lab, scene, size, **options):
 
 def scenes_of(count):
     """{kind: scenes}: the even scene; for each seed, a random scene, and the same scene with its spheres moved within their voxels."""
-    even = even_scene(count).moved_within()
+    even = even_scene(count).moved_into_voxels()
     random = [even.scattered(seed) for seed in range(1, SEEDS + 1)]
     return {EVEN: [even.touching_walls()], RANDOM: [one.touching_walls() for one in random],
-            WITHIN: [one.moved_within().touching_walls() for one in random]}
+            WITHIN: [one.moved_into_voxels().touching_walls() for one in random]}
 
 
 def depth_of(lab, scene, size):
-    """Figures of the primary rays: fraction that hits an object; of the rays that enter the box of the voxels, fraction that ends in its first
-    voxel, and mean number of visited voxels."""
+    """Returns three figures of the primary rays: the fraction that hits an object; of the rays that enter the box of the voxels, the fraction that
+    ends in the first voxel and the mean number of visited voxels."""
     run = render(lab, scene.without_lights(), size, packets=True)
     packets = run.result.packets
     primary = packets[packets["kind"] == raya.PACKET_KINDS.index("primary")]
@@ -67,21 +67,21 @@ def depth_of(lab, scene, size):
 def objects(lab, scenes):
     size, runs, depths, words = lab.size(96), {}, [], []
     for count in COUNTS:
-        some = scenes_of(count)
+        scenes_by_kind = scenes_of(count)
         for protocol, options in PROTOCOLS.items():
-            for kind, drawn in some.items():
-                runs[count, kind, protocol] = [render(lab, one, size, async_=True, **options) for one in drawn]
+            for kind, kind_scenes in scenes_by_kind.items():
+                runs[count, kind, protocol] = [render(lab, one, size, async_=True, **options) for one in kind_scenes]
         for kind in (EVEN, RANDOM):
-            hits, firsts, voxels = zip(*(depth_of(lab, one, size) for one in some[kind]))
+            hits, firsts, voxels = zip(*(depth_of(lab, one, size) for one in scenes_by_kind[kind]))
             depths.append({"objects": count, "kind": kind, "hit (% of primary rays)": 100 * np.mean(hits),
                            "end in the first voxel (% of those in the box)": 100 * np.mean(firsts),
                            "voxels a ray in the box": np.mean(voxels), "half": estimate(voxels).half})
         if count in (COUNTS[0], COUNTS[-1]):
             for more in OTHER_WORDS:
-                run = render(lab, some[EVEN][0], size, **{**PROTOCOLS[PAPER], "packet_words": more})
+                run = render(lab, scenes_by_kind[EVEN][0], size, **{**PROTOCOLS[PAPER], "packet_words": more})
                 words.append({"objects": count, "words a ray": more, "overlapped (ms)": run.overlapped_ms,
                               "stepwise (ms)": run.stepwise_ms})
-    rows = pd.DataFrame([row_of(key, some) for key, some in runs.items()])
+    rows = pd.DataFrame([row_of(key, kind_runs) for key, kind_runs in runs.items()])
     ratios = pd.DataFrame([ratio_of(runs, count, kind, protocol) for protocol in PROTOCOLS for kind in (RANDOM, WITHIN)
                            for count in COUNTS])
     growth = [(kind, protocol, growth_of(runs[COUNTS[0], kind, protocol], runs[COUNTS[-1], kind, protocol]))
@@ -113,15 +113,15 @@ def row_of(key, runs):
 
 
 def ratio_of(runs, count, kind, protocol):
-    """Ratios of the times of random scenes to the time of the even scene with as many objects."""
-    even, some = runs[count, EVEN, protocol][0], runs[count, kind, protocol]
+    """Returns the ratios of the times of random scenes to the time of the even scene with as many objects."""
+    even, random_runs = runs[count, EVEN, protocol][0], runs[count, kind, protocol]
     return {"objects": count, "kind": kind, "protocol": protocol,
-            **{time: estimate([getattr(run, f"{time}_ms") / getattr(even, f"{time}_ms") for run in some])
+            **{time: estimate([getattr(run, f"{time}_ms") / getattr(even, f"{time}_ms") for run in random_runs])
                for time in TIMES}}
 
 
 def growth_of(first, last):
-    """Objects / time of each scene, as a product of four factors."""
+    """Returns objects / time of each scene as a product of four factors."""
     def one(a, b):
         steps, tests = b.events["steps"] / a.events["steps"], b.tests / a.tests
         work, time, count = b.work_ms / a.work_ms, b.overlapped_ms / a.overlapped_ms, COUNTS[-1] / COUNTS[0]
@@ -135,30 +135,30 @@ def select(rows, kind, protocol):
     return rows[(rows["kind"] == kind) & (rows["protocol"] == protocol)].reset_index(drop=True)
 
 
-def texts_of(some, time):
-    return ", ".join(f"{e.text(2)} ({count})" for e, count in zip(some[time], some["objects"]))
+def texts_of(time_ratios, time):
+    return ", ".join(f"{e.text(2)} ({count})" for e, count in zip(time_ratios[time], time_ratios["objects"]))
 
 
 def claims_of(runs, ratios, growth):
-    """The asynchronous machine decides about random scenes, because the paper's machine is asynchronous; the reason has the two bounds."""
-    some, about = select(ratios, RANDOM, PAPER), f"{SEEDS} random scenes of each number of objects"
+    """Judges random scenes by asynchronous times, because the paper's machine is asynchronous. The reasons also have the two bounds."""
+    random_ratios, about = select(ratios, RANDOM, PAPER), f"{SEEDS} random scenes of each number of objects"
     slower = [above([run.asynchronous_ms / runs[count, EVEN, PAPER][0].asynchronous_ms for run in runs[count, RANDOM, PAPER]], 1)
               for count in COUNTS]
     even, random = growth[0][2], growth[1][2]
     linear = [counted(even["objects / time"].min() > LINEAR_LIMIT), above(random["objects / time"], LINEAR_LIMIT)]
-    parts = [np.log(rows["fewer voxels a ray"]) / np.log(rows["objects / time"]) for rows in (even, random)]
-    more = [np.log(rows["fewer voxels a ray"]) - HALF * np.log(rows["objects / time"]) for rows in (even, random)]
+    log_fractions = [np.log(rows["fewer voxels a ray"]) / np.log(rows["objects / time"]) for rows in (even, random)]
+    log_excess = [np.log(rows["fewer voxels a ray"]) - HALF * np.log(rows["objects / time"]) for rows in (even, random)]
     return [judged("random-is-slower", every(slower), about,
-                   f"Random over even, asynchronous (number of objects in brackets): {texts_of(some, 'asynchronous')}. "
-                   f"Bounds: overlapped {texts_of(some, 'overlapped')}; stepwise {texts_of(some, 'stepwise')}."),
+                   f"Random over even, asynchronous (number of objects in brackets): {texts_of(random_ratios, 'asynchronous')}. "
+                   f"Bounds: overlapped {texts_of(random_ratios, 'overlapped')}; stepwise {texts_of(random_ratios, 'stepwise')}."),
             judged("not-linear", every(linear), about,
                    f"{even['objects'][0]:.0f} times the objects take {even['time'][0]:.2f} times the time for even objects and "
                    f"{estimate(random['time']).text(2)} times for random ones."),
-            judged("front-voxels", every([counted(more[0].min() > 0), above(more[1])]), about,
+            judged("front-voxels", every([counted(log_excess[0].min() > 0), above(log_excess[1])]), about,
                    f"Rays end earlier: fewer voxels a ray explain a factor of {even['fewer voxels a ray'].mean():.2f} of "
                    f"{even['objects / time'].mean():.2f} for even objects and {random['fewer voxels a ray'].mean():.2f} of "
-                   f"{random['objects / time'].mean():.2f} for random ones, which is {100 * parts[0].mean():.0f} % and "
-                   f"{100 * parts[1].mean():.0f} % by logarithms.")]
+                   f"{random['objects / time'].mean():.2f} for random ones, which is {100 * log_fractions[0].mean():.0f} % and "
+                   f"{100 * log_fractions[1].mean():.0f} % by logarithms.")]
 
 
 def findings_of(runs, rows, ratios, growth, depths, words):
@@ -186,9 +186,9 @@ def findings_of(runs, rows, ratios, growth, depths, words):
 
 
 def findings_of_protocol(rows, ratios, protocol):
-    some, even = select(ratios, RANDOM, protocol), select(rows, EVEN, protocol)
-    yield (f"Protocol of {protocol}: random over even is {texts_of(some, 'asynchronous')} asynchronous, "
-           f"{texts_of(some, 'overlapped')} overlapped, {texts_of(some, 'stepwise')} stepwise (number of objects in brackets).")
+    random_ratios, even = select(ratios, RANDOM, protocol), select(rows, EVEN, protocol)
+    yield (f"Protocol of {protocol}: random over even is {texts_of(random_ratios, 'asynchronous')} asynchronous, "
+           f"{texts_of(random_ratios, 'overlapped')} overlapped, {texts_of(random_ratios, 'stepwise')} stepwise (number of objects in brackets).")
     bound = even[even["the root alone (ms)"] >= even["overlapped (ms)"]]
     ms = bound["the root alone (ms)"]
     yield (f"Protocol of {protocol}: the root is not the bottleneck in any even scene." if not len(bound) else
@@ -209,8 +209,8 @@ def tables_of(rows, ratios, growth, depths, words):
     spread = ratios[["objects", "kind", "protocol"]].copy()
     for time in TIMES:
         spread[time], spread[f"{time} +-"] = [e.mean for e in ratios[time]], [e.half for e in ratios[time]]
-    factors = pd.DataFrame([{"kind": kind, "protocol": protocol, **some.mean()} for kind, protocol, some in growth])
-    factors.insert(5, "+-", [estimate(some["objects / time"]).half for *_, some in growth])
+    factors = pd.DataFrame([{"kind": kind, "protocol": protocol, **growth_rows.mean()} for kind, protocol, growth_rows in growth])
+    factors.insert(5, "+-", [estimate(growth_rows["objects / time"]).half for *_, growth_rows in growth])
     return [Table("objects", "Time and work for each number of objects", rows),
             Table("objects-ratios", "Random over even", spread),
             Table("objects-growth", "Growth of time and objects: objects / time as a product", factors),
@@ -222,20 +222,20 @@ def plots_of(rows, ratios, depths):
     def times(name, title, protocol, time):
         column = f"{time} (ms)"
         even = select(rows, EVEN, protocol)
-        series = [Series(kind, some["objects"], some[column], half_widths=some[f"{time} +- (ms)"])
-                  for kind in (EVEN, RANDOM, WITHIN) for some in [select(rows, kind, protocol)]]
+        series = [Series(kind, kind_rows["objects"], kind_rows[column], half_widths=kind_rows[f"{time} +- (ms)"])
+                  for kind in (EVEN, RANDOM, WITHIN) for kind_rows in [select(rows, kind, protocol)]]
         linear = Series("linear, from the first even scene", even["objects"],
                         even[column][0] * even["objects"] / even["objects"][0])
-        return Plot(name, title, "objects", "modelled ms", series + [linear], "xy")
+        return Plot(name, title, "objects", "modelled time (ms)", series + [linear], "xy")
 
     title = "Time under the protocol of Yoshitani & Yamazaki"
-    ratio = [Series(f"{kind}, protocol: {protocol}", some["objects"], [e.mean for e in some["asynchronous"]],
-                    half_widths=[e.half for e in some["asynchronous"]])
-             for protocol in PROTOCOLS for kind in (RANDOM, WITHIN) for some in [select(ratios, kind, protocol)]]
+    ratio = [Series(f"{kind}, protocol: {protocol}", kind_rows["objects"], [e.mean for e in kind_rows["asynchronous"]],
+                    half_widths=[e.half for e in kind_rows["asynchronous"]])
+             for protocol in PROTOCOLS for kind in (RANDOM, WITHIN) for kind_rows in [select(ratios, kind, protocol)]]
     return [times("objects-async", f"{title}, asynchronous", PAPER, "asynchronous"),
             times("objects", f"{title}, overlapped", PAPER, "overlapped"),
             times("objects-stepwise", f"{title}, stepwise", PAPER, "stepwise"),
             times("objects-raya", "Time under raya's protocol, overlapped", RAYA, "overlapped"),
-            Plot("objects-ratios", "Random over even, asynchronous", "objects", "times as long", ratio, "x"),
+            Plot("objects-ratios", "Random over even, asynchronous", "objects", "time of random / time of even", ratio, "x"),
             Plot("objects-depth", "Depth of primary rays", "objects", "voxels a ray in the box",
                  series_by(depths, "kind", "objects", "voxels a ray in the box", "half"), "x")]

@@ -6,10 +6,10 @@ Is every offset beyond sqrt(P) = {reference} worse, as Kohata & Ito say?
 - {ensemble}, at {size} x {size} on {pes} PEs of the SPA, a PE for each column; first pass.
 - The pixels of a PE form a lattice. Its shortest vector, the smallest distance between two pixels of one PE, limits how well an offset
   can spread expensive regions. Distances are measured in the image and do not wrap at its edges; with wrapping the shortest vector is the same.
-- Offsets are compared with p = {reference}, whose shortest vector has {length} pixels. Its mirror, p = {mirror}, is in no group.
+- Offsets are compared with p = {reference}, whose shortest vector has {length} pixels. The mirror image of this offset, p = {mirror}, is in no group.
   Differences are taken within the same picture.
 - Output: lattice.csv has a row for each offset p: length of the shortest vector (pixels), mean u = (max load - mean load) / mean load with
-  the half width of its 95 % interval, mean rank. lattice-chosen.csv has the rows of interest.
+  the half width of its 95 % interval, mean rank of the offset by u. lattice-chosen.csv has the rows of interest.
 """
 import numpy as np
 import pandas as pd
@@ -27,7 +27,7 @@ def lattice(lab, scenes):
     size = lab.size(256)
     ensemble = lab.ensemble(scenes, size)
     families = ensemble.families
-    u = ensemble.of(lambda costs: raya.imbalances(costs.trace, size, range(size)))  # [picture, offset]
+    u = ensemble.map(lambda costs: raya.imbalances(costs.trace, size, range(size)))  # [picture, offset]
     of_family = {name: u[np.array(families) == name] for name in dict.fromkeys(families)}
     n = round(size**0.5)
     squares = np.array([shortest_square(p, size) for p in range(size)])
@@ -88,7 +88,7 @@ def findings_of(rows, u, families, n, longer, as_long, correlations, squares):
         how = ("they are better on the whole" if gain.high < 0 else "they are worse on the whole" if gain.low > 0 else
                "there is no significant difference")
         verdict_text = f"In the same picture their mean u is {gain.text(4)} above that of p = {n}: {how}."
-    spread = (f"Of the offsets beyond {n} (u = {estimate(u[:, n], families).text(4)}), {group(longer, 'longer than its own')}; "
+    spread = (f"u of p = {n} is {estimate(u[:, n], families).text(4)}. Of the offsets beyond {n}, {group(longer, f'longer than that of p = {n}')}; "
               f"{group(as_long, 'as long')}. {verdict_text}")
     best = mean.idxmin()
     rest = [p for p in range(n + 1, size - n) if squares[p] < squares[n]]
@@ -97,8 +97,8 @@ def findings_of(rows, u, families, n, longer, as_long, correlations, squares):
            "in no picture does the shortest vector predict u" if low > MAX_CORRELATION else
            "the shortest vector predicts u in some pictures only")
     half = squares[n]**0.5 / 2
-    some = np.sqrt(squares) >= half
-    of_some = np.mean([spearmanr(np.sqrt(squares[some]), one[some])[0] for one in u])
+    is_long = np.sqrt(squares) >= half
+    long_correlation = np.mean([spearmanr(np.sqrt(squares[is_long]), picture_u[is_long])[0] for picture_u in u])
     return [spread,
             f"The best of all {size} is p = {best}, mean u = {mean[best]:.4f}: its largest load is "
             f"{100 * (1 - (1 + mean[best]) / (1 + mean[n])):.1f} % below that of p = {n}, which has a mean rank of "
@@ -107,20 +107,20 @@ def findings_of(rows, u, families, n, longer, as_long, correlations, squares):
             f"{(mean[rest] > mean[n]).sum()} are worse than p = {n}.",
             f"Rank correlation of u with the shortest vector over all offsets: {low:.2f} to {high:.2f}; {how} "
             f"(predicts: {MAX_CORRELATION} or below). Over the offsets with a shortest vector of {half:.1f} pixels or more the mean "
-            f"correlation is {of_some:.2f}."]
+            f"correlation is {long_correlation:.2f}."]
 
 
 def comparisons_of(rows, n, longer, as_long, correlations):
     mean, best = rows["mean u"], int(rows["mean u"].idxmin())
-    all_of = [Comparison(f"mean u, p = {n}", "", None, mean[n], half_width=rows["+-"][n]),
-              Comparison("lowest mean u of all offsets", "", None, mean[best], f"p = {best}",
-                         half_width=rows["+-"][best])]
+    comparisons = [Comparison(f"mean u, p = {n}", "", None, mean[n], half_width=rows["+-"][n]),
+                   Comparison("lowest mean u of all offsets", "", None, mean[best], f"p = {best}",
+                              half_width=rows["+-"][best])]
     for vector, offsets in (("longer vector", longer), ("as long", as_long)):
-        all_of += [Comparison(f"offsets beyond {n}, {vector}", "", None, len(offsets), ", ".join(map(str, offsets))),
-                   Comparison(f"... better than p = {n}", "", None, int((mean[offsets] < mean[n]).sum()),
-                              "Kohata & Ito: beyond sqrt(P) only the direction of the bias turns")]
-    return all_of + [Comparison("rank correlation of u and shortest vector", "", None, float(np.mean(correlations)),
-                                "mean of the pictures")]
+        comparisons += [Comparison(f"offsets beyond {n}, {vector}", "", None, len(offsets), ", ".join(map(str, offsets))),
+                        Comparison(f"... better than p = {n}", "", None, int((mean[offsets] < mean[n]).sum()),
+                                   "Kohata & Ito: beyond sqrt(P) only the direction of the bias turns")]
+    return comparisons + [Comparison("rank correlation of u and shortest vector", "", None, float(np.mean(correlations)),
+                                     "mean of the pictures")]
 
 
 def plots_of(rows, n, longer, as_long, pictures):
@@ -129,7 +129,7 @@ def plots_of(rows, n, longer, as_long, pictures):
             ("lattice", "Imbalance against the shortest distance between two pixels of a PE",
              "shortest vector (pixels)", "shortest vector of the lattice (pixels)", "points"),
             ("lattice-offsets", "Imbalance against the offset", "p", "offset p (pixels)", "line")):
-        points = [Series(label, some[x], some["mean u"], "points", some["+-"]) for label, offsets in groups.items()
-                  for some in [rows.loc[offsets]]]
+        points = [Series(label, group_rows[x], group_rows["mean u"], "points", group_rows["+-"]) for label, offsets in groups.items()
+                  for group_rows in [rows.loc[offsets]]]
         yield Plot(name, title, x_label, f"u, mean of {pictures} pictures",
                    [Series("every offset", rows[x], rows["mean u"], style), *points], "y")

@@ -47,66 +47,66 @@ MAX_OTHER_LOAD = 0.05  # fraction of the processor time used by other programs, 
 
 def measurable_ranks():
     """Returns ({number of ranks to measure: number of cores that these ranks have together}, result of `raya ping`)."""
-    here, ping = {1: 1}, None
+    available_cores, ping = {1: 1}, None
     for ranks in powers_of_two(min(max(2 * os.cpu_count(), 4), 16))[1:]:
-        one = json.loads(run_on_ranks(ranks, ["ping"]))
-        ping = ping or one
+        result = json.loads(run_on_ranks(ranks, ["ping"]))
+        ping = ping or result
         hosts = {}
-        for place in one["ranks"]:
+        for place in result["ranks"]:
             hosts.setdefault(place["host"], [0, place["cores"]])[0] += place["threads"]
-        here[ranks] = sum(min(threads, cores) for threads, cores in hosts.values())
-    return here, ping
+        available_cores[ranks] = sum(min(threads, cores) for threads, cores in hosts.values())
+    return available_cores, ping
 
 
 def parts_of(machine, report):
-    """{part: measured seconds} of a render on one rank: tracing; the other kernels and commands; the rest of the render, on the host."""
+    """Returns {part: measured seconds} of a render on one rank: tracing; the other kernels and commands; the rest of the render, on the host."""
     commands = report["measured"]["commands"]
     device = 1e-9 * sum(c["total_ns"] for c in commands)
     trace = 1e-9 * sum(c["total_ns"] for c in commands if c["label"] == machine.label)
     return {"trace": trace, "rest": device - trace, "host": max(0.0, report["measured"]["render_s"] - device)}
 
 
-def measure(renders, device, sampling_s=SAMPLING_S):
-    """Renders on ranks. renders: {ranks: arguments of a render}. Returns {ranks: (seconds of each render, report of the fastest render)}. Raises
-    InputError if the ranks use another device than `device`."""
-    first = render_on_ranks(1, renders[1])  # builds the kernels
+def measure(arguments_by_ranks, device, sampling_s=SAMPLING_S):
+    """Renders on ranks. arguments_by_ranks: {ranks: arguments of a render}. Returns {ranks: (seconds of each render, report of the fastest render)}.
+    Raises InputError if the ranks use another device than `device`."""
+    first = render_on_ranks(1, arguments_by_ranks[1])  # builds the kernels
     if first["device"]["name"] != device:
         raise raya.InputError(f"study ranks: --device {device}: the ranks use their default device, {first['device']['name']}; omit --device, "
                               "or name the device in RAYA_DEVICE")
-    trials = {ranks: ([], None) for ranks in renders}
+    trials = {ranks: ([], None) for ranks in arguments_by_ranks}
     for _ in range(TURNS):
         for ranks, (seconds, best) in trials.items():
             if sum(seconds) < sampling_s:
-                report = render_on_ranks(ranks, renders[ranks])
+                report = render_on_ranks(ranks, arguments_by_ranks[ranks])
                 s = report["measured"]["render_s"]
                 trials[ranks] = (seconds + [s], report if not seconds or s < min(seconds) else best)
     return trials
 
 
-def scaling_of(machine, scaling, trials, here):
-    """Rows of measured efficiency: modelled cycles per second and core, relative to one rank."""
+def scaling_of(machine, scaling, trials, available_cores):
+    """Yields rows of measured efficiency: modelled cycles per second and core, relative to one rank."""
     def rate(ranks):
         seconds, report = trials[ranks]
-        return sum(report["load"]["per_pe"]) / min(seconds) / cores_of(report, ranks, here)
+        return sum(report["load"]["per_pe"]) / min(seconds) / cores_of(report, ranks, available_cores)
 
     one = trials[1][1]
     for ranks, (seconds, report) in trials.items():
         image = report["image"]
         if scaling == "strong" and image["hash"] != one["image"]["hash"]:
             raise raya.DeviceError(f"{ranks} ranks and one rank give different images: {image['hash']} and {one['image']['hash']}")
-        yield {"machine": machine.name, "scaling": scaling, "ranks": ranks, "cores": cores_of(report, ranks, here),
+        yield {"machine": machine.name, "scaling": scaling, "ranks": ranks, "cores": cores_of(report, ranks, available_cores),
                "size": f"{image['width']}x{image['height']}", "work (cycles)": sum(report["load"]["per_pe"]),
                "measured, best (ms)": 1e3 * min(seconds), "median (ms)": 1e3 * float(np.median(seconds)),
                "measured efficiency": rate(ranks) / rate(1)}
 
 
-def cores_of(report, ranks, here):
-    """Number of cores that the ranks have together. A device that is not a CPU counts as one core."""
-    return here[ranks] if report["device"]["platform"] == "Portable Computing Language" else ranks
+def cores_of(report, ranks, available_cores):
+    """Returns the number of cores that the ranks have together. A device that is not a CPU counts as one core."""
+    return available_cores[ranks] if report["device"]["platform"] == "Portable Computing Language" else ranks
 
 
 def processor_time():
-    """(busy seconds of all processors, total seconds of all processors, processor seconds of this process and its finished children)"""
+    """Returns (busy seconds of all processors, total seconds of all processors, processor seconds of this process and its finished children)"""
     with open("/proc/stat", encoding="utf-8") as file:
         ticks = [int(word) / os.sysconf("SC_CLK_TCK") for word in file.readline().split()[1:9]]
     own = sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
@@ -122,27 +122,27 @@ def ranks(lab, scenes):
         for scene, file in zip((on_ring, on_torus), files):
             scene.save(file)
         before = processor_time()
-        here, ping = measurable_ranks()
+        available_cores, ping = measurable_ranks()
         machines = [kind(lab, scene, file, size) for kind, scene, file in
                     zip((RingModel, TorusModel), (on_ring, on_torus), files)]
         device = lab.session.device["name"]
-        trials = [measure(dict.fromkeys(here, machine.arguments), device) for machine in machines]
-        weak = [measure({ranks: machine.weak(ranks) for ranks in here}, device, WEAK_SAMPLING_S) for machine in machines]
+        trials = [measure(dict.fromkeys(available_cores, machine.arguments), device) for machine in machines]
+        weak = [measure({ranks: machine.weak(ranks) for ranks in available_cores}, device, WEAK_SAMPLING_S) for machine in machines]
         busy, whole, own = (b - a for a, b in zip(before, processor_time()))
     networks = networks_of(ping, lab.network)
-    ones = [parts_of(machine, trial[1][1]) for machine, trial in zip(machines, trials)]
-    rows = pd.DataFrame([row for machine, one in zip(machines, ones) for row in rows_of(machine, one, networks)])
-    checks = pd.DataFrame([row for some in zip(machines, ones, trials)
-                           for row in checks_of(*some, networks["this host"][0], here)])
+    one_rank_parts = [parts_of(machine, trial[1][1]) for machine, trial in zip(machines, trials)]
+    rows = pd.DataFrame([row for machine, one in zip(machines, one_rank_parts) for row in rows_of(machine, one, networks)])
+    checks = pd.DataFrame([row for some in zip(machines, one_rank_parts, trials)
+                           for row in checks_of(*some, networks["this host"][0], available_cores)])
     scaling = pd.DataFrame([row for machine, *both in zip(machines, trials, weak)
                             for name, some in zip(("strong", "weak"), both)
-                            for row in scaling_of(machine, name, some, here)])
+                            for row in scaling_of(machine, name, some, available_cores)])
     summary = pd.DataFrame([summary_of(*one) for one in rows.groupby(["machine", "network"], sort=False)])
-    others = min(max((busy - own) / whole, 0), 1) if whole > 0 else 0
+    other_load = min(max((busy - own) / whole, 0), 1) if whole > 0 else 0
     return Page({"scene": on_ring.name, "torus_scene": on_torus.name, "size": size, "torus_size": size,
                  "ranks": int(rows["ranks"].iloc[-1]), "turns": TURNS, "enough": SAMPLING_S, "alpha_s": ping["alpha_s"],
                  "beta_s_per_byte": ping["beta_s_per_byte"]},
-                findings_of_model(summary, checks) + findings_of_measures(scaling, others, ping),
+                findings_of_model(summary, checks) + findings_of_measures(scaling, other_load, ping),
                 [Comparison(f"{c['machine']}, {c['ranks']} ranks: predicted / measured", "", None,
                             c["predicted / measured"], c["remark"])
                  for _, c in checks[checks["ranks"] > 1].iterrows()],
@@ -153,7 +153,7 @@ def ranks(lab, scenes):
 
 
 def networks_of(ping, given):
-    """{name: ((alpha in s, beta in s/byte), source)}"""
+    """Returns {name: ((alpha in s, beta in s/byte), source)}"""
     fitted = ping["alpha_s"], ping["beta_s_per_byte"]
     networks = {"this host": (fitted, f"fitted to the ping-pong, {ping['library']}"),
                 "10 GbE": ((30e-6, 0.8e-9), "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us, about what TCP takes"),
@@ -162,23 +162,23 @@ def networks_of(ping, given):
     return {**networks, "given": (given, "--network")} if given else networks
 
 
-def rows_of(machine, one, networks):
-    """Rows of predictions from the seconds of one rank, for each network and number of ranks."""
-    one_s = sum(machine.predict(0, one, (0, 0), 1).values())
+def rows_of(machine, one_rank, networks):
+    """Yields rows of predictions from the seconds of one rank, for each network and number of ranks."""
+    one_s = sum(machine.predict(0, one_rank, (0, 0), 1).values())
     for name, (network, _) in networks.items():
         for i, count in enumerate(machine.ranks):
-            parts = machine.predict(i, one, network, count)
+            parts = machine.predict(i, one_rank, network, count)
             total = sum(parts.values())
             yield {"machine": machine.name, "network": name, "ranks": count, "array": machine.arrays[i],
                    **{f"{part} (ms)": 1e3 * seconds for part, seconds in parts.items()}, "time (ms)": 1e3 * total,
                    "speed-up": one_s / total, "communication (%)": 100 * sum(parts[p] for p in PARTS[2:]) / total}
 
 
-def checks_of(machine, one, trial, network, here):
-    """Rows of predicted and measured times, for the numbers of ranks that were measured."""
+def checks_of(machine, one_rank, trial, network, available_cores):
+    """Yields rows of predicted and measured times, for the numbers of ranks that were measured."""
     for i, (count, (seconds, _)) in enumerate(trial.items()):
-        cores = cores_of(trial[1][1], count, here)
-        parts = machine.predict(i, one, network, cores)
+        cores = cores_of(trial[1][1], count, available_cores)
+        parts = machine.predict(i, one_rank, network, cores)
         predicted = 1e3 * (sum(parts.values()) - parts["broadcast"])
         yield {"machine": machine.name, "ranks": count, "cores": cores, "predicted (ms)": predicted,
                "measured, best (ms)": 1e3 * min(seconds), "median (ms)": 1e3 * float(np.median(seconds)),
@@ -186,9 +186,9 @@ def checks_of(machine, one, trial, network, here):
                "remark": "ranks share cores" if cores < count else "the model is based on it" if count == 1 else ""}
 
 
-def summary_of(key, some):
-    half = some["ranks"][some["communication (%)"] >= 50]
-    best = some.loc[some["time (ms)"].idxmin()]
+def summary_of(key, network_rows):
+    half = network_rows["ranks"][network_rows["communication (%)"] >= 50]
+    best = network_rows.loc[network_rows["time (ms)"].idxmin()]
     return {"machine": key[0], "network": key[1], "half at (ranks)": half.iloc[0] if len(half) else None,
             "fastest (ranks)": best["ranks"], "array": best["array"], "time (ms)": best["time (ms)"],
             "speed-up": best["speed-up"]}
@@ -196,16 +196,16 @@ def summary_of(key, some):
 
 def findings_of_model(summary, checks):
     findings, more = [], checks[checks["ranks"] > 1]
-    for machine, some in summary.groupby("machine", sort=False):
+    for machine, group in summary.groupby("machine", sort=False):
         halves = ", ".join(f"{'no number of' if pd.isna(r['half at (ranks)']) else int(r['half at (ranks)'])} ranks "
-                           f"({r['network']})" for _, r in some.iterrows())
+                           f"({r['network']})" for _, r in group.iterrows())
         fastest = ", ".join(f"{r['fastest (ranks)']} ({r['network']}, {r['speed-up']:.3g} times as fast as one)"
-                            for _, r in some.iterrows())
+                            for _, r in group.iterrows())
         findings.append(f"{machine}: communication takes half of the time on {halves}. The fastest numbers of ranks are {fastest}.")
 
-    def text(some):
-        ratio = some["predicted / measured"]
-        return f"{ratio.min():.2f} to {ratio.max():.2f}" if len(some) else "(none)"
+    def text(group):
+        ratio = group["predicted / measured"]
+        return f"{ratio.min():.2f} to {ratio.max():.2f}" if len(group) else "(none)"
 
     shared = more["cores"] < more["ranks"]
     return findings + [
@@ -213,14 +213,14 @@ def findings_of_model(summary, checks):
         f"has a core, and {text(more[shared])} times if ranks share cores; measured: the minimum of up to {TURNS} renders each."]
 
 
-def findings_of_measures(scaling, share, ping):
-    """share: fraction of the host's processor time that other programs used."""
+def findings_of_measures(scaling, other_load, ping):
+    """other_load: fraction of the host's processor time that other programs used."""
     kinds = [f"{machine}, {name}: " + ", ".join(f"{r['measured efficiency']:.2f} on {r['ranks']}"
-                                                for _, r in some[some["ranks"] > 1].iterrows())
-             for (machine, name), some in scaling.groupby(["machine", "scaling"], sort=False)]
-    others = (f"During the measurements other programs used {100 * share:.1f} % of this host's processor time." if share <= MAX_OTHER_LOAD else
-              f"During the measurements other programs used {100 * share:.0f} % of this host's processor time: ranks waited for each "
-              "other, and times of several ranks are unreliable. Repeat this study when the host is idle.")
+                                                for _, r in group[group["ranks"] > 1].iterrows())
+             for (machine, name), group in scaling.groupby(["machine", "scaling"], sort=False)]
+    others = f"During the measurements other programs used {100 * other_load:.1f} % of this host's processor time."
+    if other_load > MAX_OTHER_LOAD:
+        others += " Ranks waited for each other, and times of several ranks are unreliable. Repeat this study when the host is idle."
     first, last = ping["messages"][0], ping["messages"][-1]
     return [f"Measured efficiency relative to one rank on one core: {'; '.join(kinds)}.", others,
             f"By the fit, a message between two ranks on this host ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us and "
@@ -244,15 +244,15 @@ def tables_of(rows, checks, scaling, summary, networks, ping):
 
 def plots_of(rows, checks):
     for machine in ("ring", "torus"):
-        some = rows[rows["machine"] == machine]
+        machine_rows = rows[rows["machine"] == machine]
         measured = checks[checks["machine"] == machine]
         yield Plot(f"ranks-{machine}-networks", f"{machine}: time against ranks, by network", "ranks", "time (ms)",
-                   series_by(some, "network", "ranks", "time (ms)") +
+                   series_by(machine_rows, "network", "ranks", "time (ms)") +
                    [Series("measured", measured["ranks"], measured["measured, best (ms)"], "points")], "xy")
-        one = some[some["network"] == "10 GbE"]
+        on_10_gbe = machine_rows[machine_rows["network"] == "10 GbE"]
         labels = {"compute": "compute", "host": "host", "exchange": "exchange",
                   "collect": "pixels to rank 0" if machine == "ring" else "status to all", "broadcast": "scene"}
-        parts = [Series(label, *zip(*[(r, ms) for r, ms in zip(one["ranks"], one[f"{part} (ms)"]) if ms > 0]))
+        parts = [Series(label, *zip(*[(r, ms) for r, ms in zip(on_10_gbe["ranks"], on_10_gbe[f"{part} (ms)"]) if ms > 0]))
                  for part, label in labels.items()]
         yield Plot(f"ranks-{machine}", f"{machine} on ranks, by 10 GbE", "ranks", "time (ms)",
-                   [Series("total", one["ranks"], one["time (ms)"]), *parts], "xy")
+                   [Series("total", on_10_gbe["ranks"], on_10_gbe["time (ms)"]), *parts], "xy")

@@ -55,14 +55,14 @@ def scale(lab, scenes):
     scene, side = first_scene(scenes), lab.size(1024)
     ensemble, image = lab.ensemble(scenes, side, views=VIEWS), lab.costs(scene, side).trace
     rows = efficiencies(image)
-    of_views = [efficiencies(costs.trace) for costs in ensemble.pictures]
+    view_tables = [efficiencies(costs.trace) for costs in ensemble.pictures]
     between = (rows["P"] > side) & (rows["P"] < side * side)
     largest = int(image.max()) * image.size / int(image.sum())  # cost of the most expensive pixel / mean cost of a pixel
     halves = pd.DataFrame([half_of(name, rows) for name in ["upper bound", *PLAIN, *FOLDED]])
     texts = [f"{name}: {pes or 'none'}" for name, pes, _ in halves[1:1 + len(PLAIN)].itertuples(index=False)]
-    means = means_of(of_views, ensemble.families)
+    means = means_of(view_tables, ensemble.families)
     return Page({"scene": scene.name, "size": side, "pes": rows["P"].tolist(), "offset": 16 % side, "seed": 1,
-                 "views": len(of_views)},
+                 "views": len(view_tables)},
                 [f"Numbers of PEs up to which the efficiency is at least 50 %: {'; '.join(texts)}; upper limit of all mappings that give "
                  f"each pixel to one PE: {halves.iloc[0, 1]}.",
                  finding_of_2d(rows[between]), finding_of_resonance(rows[between], side),
@@ -70,11 +70,11 @@ def scale(lab, scenes):
                  f"more than {side * side / largest:.0f}. With a PE for each pixel every mapping has this speed-up, at an efficiency of "
                  f"{1 / largest:.3f}."],
                 comparisons_of(rows, side, side * side / largest),
-                [claim_of_2d(rows["P"][between], of_views, ensemble)] if not scenes else [],
+                [claim_of_2d(rows["P"][between], view_tables, ensemble)] if not scenes else [],
                 [Table("scale-half", "Numbers of PEs up to which the efficiency is at least 50 %", halves),
                  Table("scale", "Efficiency for each number of PEs", rows),
                  Table("scale-views", "Efficiency for each number of PEs, mean of the views", means, on_page=False)],
-                plots_of(rows, means, len(of_views)),
+                plots_of(rows, means, len(view_tables)),
                 ["Kohata & Ito stop at a PE for each column. This study extends the arrays to a PE for each pixel, and shows the "
                  "upper bound of all mappings that give each pixel to one PE."],
                 placeholders={"ensemble": ensemble.description, "fewest": rows["P"].min(), "most": rows["P"].max(), "close": f"{100 * KEEPS_UP:.0f}"},
@@ -82,16 +82,16 @@ def scale(lab, scenes):
 
 
 def half_of(name, rows):
-    """(largest P up to which the efficiency is at least 50 %, speed-up for this P); 0 if there is no such P."""
-    some = rows[(rows[name] >= HALF_EFFICIENCY).cummin()]
-    pes, efficiency = some[["P", name]].iloc[-1] if len(some) else (0, 0.0)
+    """Returns (largest P up to which the efficiency is at least 50 %, speed-up for this P); 0 if there is no such P."""
+    efficient = rows[(rows[name] >= HALF_EFFICIENCY).cummin()]
+    pes, efficiency = efficient[["P", name]].iloc[-1] if len(efficient) else (0, 0.0)
     return {"mapping": name, "50 % or more up to P": int(pes), "speed-up there": efficiency * pes}
 
 
-def means_of(of_views, families):
-    table = {"P": of_views[0]["P"], "upper bound": np.mean([v["upper bound"] for v in of_views], axis=0)}
+def means_of(view_tables, families):
+    table = {"P": view_tables[0]["P"], "upper bound": np.mean([v["upper bound"] for v in view_tables], axis=0)}
     for name in PLAIN:
-        of_name = estimates([v[name] for v in of_views], families)
+        of_name = estimates([v[name] for v in view_tables], families)
         table[name], table[f"{name}, +-"] = [e.mean for e in of_name], [e.half for e in of_name]
     return pd.DataFrame(table)
 
@@ -123,11 +123,11 @@ def finding_of_resonance(between, side):
             f"is that of the column split. This happens with {'; '.join(texts)}.")
 
 
-def claim_of_2d(between, of_views, ensemble):
-    """The claim that a 2-D mapping is necessary, for arrays with more PEs than columns."""
-    over = {name: np.array([[v[name][i] / v[GRID][i] for i in between.index] for v in of_views]) for name in (FIXED, ROOT, ADAPTED)}
-    best = [max(over, key=lambda name, i=i: over[name][:, i].mean()) for i in range(len(between))]  # for each array
-    ratios = np.array([over[name][:, i] for i, name in enumerate(best)])  # [array, view]
+def claim_of_2d(between, view_tables, ensemble):
+    """Judges the claim that a 2-D mapping is necessary, for arrays with more PEs than columns."""
+    ratios_to_2d = {name: np.array([[v[name][i] / v[GRID][i] for i in between.index] for v in view_tables]) for name in (FIXED, ROOT, ADAPTED)}
+    best = [max(ratios_to_2d, key=lambda name, i=i: ratios_to_2d[name][:, i].mean()) for i in range(len(between))]  # for each array
+    ratios = np.array([ratios_to_2d[name][:, i] for i, name in enumerate(best)])  # [array, view]
     worst = int(ratios.mean(1).argmin())
     return judged("beyond-a-side", every(below(one, KEEPS_UP, ensemble.families) for one in ratios), ensemble.description,
                   f"On {len(between)} arrays with more PEs than columns, the best of the cyclic mappings is {', '.join(dict.fromkeys(best))}. On "

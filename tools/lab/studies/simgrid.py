@@ -4,12 +4,12 @@ Do raya's simulator and SimGrid give the same time for the same work on the same
 
 - Source: SimGrid (Casanova et al. 2014), with the protocol of Yoshitani & Yamazaki, about 1995 (Table 1: ray packets of 22 words).
 - The work: the cost of each packet of a render on its node, and the messages that it causes ({scene}, {size} x {size} pixels, {nodes}
-  nodes, primary rays made by the root or by all nodes, ray packets of 22 words, one return a ray). It does not depend on the order in
-  time, so two simulators can replay it.
+  nodes, primary rays made by the root or by all nodes, ray packets of 22 words, one return a ray). The work does not depend on the
+  order in time, so both simulators can replay it.
 - raya: its own discrete-event simulation (`host/torus/async_machine.hpp`). SimGrid 3.32: hosts, links, actors and messages of the S4U
   interface (`tools/simgrid/replay.cpp`); SimGrid's solver shares processors and links. Common rules: a main task and a communication
-  task with priority; one message at a time in each direction of a link; ports that buffer {buffer} messages of a class, two of which
-  must be free before a ray enters a ring.
+  task with priority; one message at a time in each direction of a link; ports with {buffer} slots for each class of messages. A
+  ray needs two free slots to enter a link of another axis.
 - The platform has explicit links and routes between neighbours. A hop has two links: one for its direction, and the wire that both
   directions share. SimGrid's own torus is not used: there a message occupies all links of its route at once, while transputers store it
   in every node.
@@ -28,7 +28,7 @@ from raya.lab import Comparison, Page, Plot, Series, Table, papers, study
 from raya.lab.programs import output_of, sibling_program
 from raya.lab.voxels import even_scene, run_on_torus
 
-GOAL, BUFFER = 10, 4  # accepted difference in %; number of messages of a class that a port buffers
+MAX_DIFFERENCE, BUFFER = 10, 4  # accepted difference in %; number of messages of a class that a port buffers
 UNLIMITED = {"buffer": 1 << 20}  # buffers that never fill up
 NO_LINKS = {"one_way": 0, "both_ways": 0}
 # Each machine adds one effect to the previous machine; the last one is the complete machine.
@@ -77,21 +77,21 @@ def simgrid(lab, scenes):
     scene, size = scenes[0] if scenes else even_scene(512), lab.size(48)
     rows = pd.DataFrame([row for links in ("torus3d", "torus2d") for inject in ("root", "all")
                          for row in rows_of(lab, scene, size, links, inject)])
-    whole = rows[rows["machine"] == list(EFFECTS)[-1]]
-    series = [Series(f"{shape}, {inject}, {who}", range(len(some)), some[f"{who} (ms)"], style)
-              for (shape, inject), some in rows.groupby(["torus", "inject"], sort=False)
-              for who, style in (("raya", "line"), ("SimGrid", "points"))]
+    complete = rows[rows["machine"] == list(EFFECTS)[-1]]
+    series = [Series(f"{torus}, {inject}, {simulator}", range(len(group)), group[f"{simulator} (ms)"], style)
+              for (torus, inject), group in rows.groupby(["torus", "inject"], sort=False)
+              for simulator, style in (("raya", "line"), ("SimGrid", "points"))]
     bounds = [f"{row['torus']}, inject {row['inject']}: the complete machine takes {row['raya (ms)']:.1f} ms, between "
               f"{row['overlapped']:.1f} ms overlapped and {row['stepwise']:.1f} ms stepwise."
-              for _, row in whole.iterrows()]
-    return Page({"scene": scene.name, "size": size, "nodes": "4x4x4", "buffer": BUFFER, "goal": GOAL},
+              for _, row in complete.iterrows()]
+    return Page({"scene": scene.name, "size": size, "nodes": "4x4x4", "buffer": BUFFER, "goal": MAX_DIFFERENCE},
                 findings_of(rows) + bounds,
                 [Comparison(f"{row['torus']}, {row['inject']}, complete machine, ours / SimGrid", "", None,
                             row["raya (ms)"] / row["SimGrid (ms)"], "modelled, asynchronous")
-                 for _, row in whole.iterrows()],
+                 for _, row in complete.iterrows()],
                 tables=[Table("simgrid", "Time of the same work, simulated by raya and by SimGrid",
                               rows.drop(columns=["overlapped", "stepwise"]))],
-                plots=[Plot("simgrid", "Time of the machine, one effect after another", "effects", "modelled ms",
+                plots=[Plot("simgrid", "Time of the machine, one effect after another", "number of effects", "modelled time (ms)",
                             series)],
                 news=["This study compares the asynchronous torus with an independent simulator. The papers compare with none."],
                 clock="Modelled on T805s from counted cycles, 40 ns each; both simulators have the same rates.")
@@ -100,13 +100,13 @@ def simgrid(lab, scenes):
 def findings_of(rows):
     """Sentences on the difference between the two simulators, and on the effect that takes most time apart from computing."""
     worst = rows.loc[rows["difference (%)"].abs().idxmax()]
-    most, where = abs(worst["difference (%)"]), f"{worst['torus']}, inject {worst['inject']}, {worst['machine']}"
-    near = (f"On all {len(rows)} machines the two times differ by less than {GOAL} %, at most by {most:.2g} % ({where})."
-            if most <= GOAL else
-            f"The two times differ by up to {most:.2f} % ({where}), more than {GOAL} %, on {len(rows)} machines.")
-    more = rows[rows["machine"].str.startswith("+")]
-    ours, theirs = more["raya, the effect (ms)"], more["SimGrid, the effect (ms)"]
+    largest, where = abs(worst["difference (%)"]), f"{worst['torus']}, inject {worst['inject']}, {worst['machine']}"
+    agreement = (f"On all {len(rows)} machines the two times differ by less than {MAX_DIFFERENCE} %, at most by {largest:.2g} % ({where})."
+                 if largest <= MAX_DIFFERENCE else
+                 f"The two times differ by up to {largest:.2f} % ({where}), more than {MAX_DIFFERENCE} %, on {len(rows)} machines.")
+    effects = rows[rows["machine"].str.startswith("+")]
+    ours, theirs = effects["raya, the effect (ms)"], effects["SimGrid, the effect (ms)"]
     i = ours.idxmax()
-    return [near, f"The largest effect after computing is \"{more['machine'][i][2:]}\" ({more['torus'][i]}, inject "
-            f"{more['inject'][i]}): it adds {ours[i]:.2f} ms by raya and {theirs[i]:.2f} ms by SimGrid. The two differ by at most "
+    return [agreement, f"The largest effect after computing is \"{effects['machine'][i][2:]}\" ({effects['torus'][i]}, inject "
+            f"{effects['inject'][i]}): it adds {ours[i]:.2f} ms by raya and {theirs[i]:.2f} ms by SimGrid. The two differ by at most "
             f"{(ours - theirs).abs().max():.3f} ms in any effect."]

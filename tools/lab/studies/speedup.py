@@ -29,7 +29,7 @@ COLUMNS = {"p = 0": lambda pes: 0 * pes, "p = 16": lambda pes: 0 * pes + OFFSET,
 
 
 def speedups(image, pes, fold="cyclic"):
-    """{name of an offset: speed-up on each number of PEs}"""
+    """Returns {name of an offset: speed-up on each number of PEs}"""
     return {name: raya.speedups(image, pes, offsets(pes) % image.shape[1], fold)
             for name, offsets in COLUMNS.items()}
 
@@ -57,12 +57,12 @@ def fig9(lab, scenes):
         of_name = estimates([table[f"{name}, cyclic fold"] for table, _ in tables], ensemble.families)
         means[name], means[f"{name}, +-"] = [e.mean for e in of_name], [e.half for e in of_name]
     in_paper = papers.is_papers(scene.name, size)
-    more = len(grids) // 2 * 2
-    ratios, fewer = zip(*((g[more] / g[more // 2], g[more // 2]) for _, g in tables))
+    large_side = len(grids) // 2 * 2
+    grid_ratios, half_side_speedups = zip(*((g[large_side] / g[large_side // 2], g[large_side // 2]) for _, g in tables))
     sides = pd.DataFrame([row for image in sizes for row in rows_of_size(image)])
     return Page({"scene": scene.name, "size": size, "pes": size, "offset": OFFSET % size, "pictures": len(tables)},
                 findings_of(rows, grids, sides, in_paper),
-                with_paper(in_paper, comparisons_of(rows, grids, means.iloc[-1], ratios, fewer, more, ensemble.families)),
+                with_paper(in_paper, comparisons_of(rows, grids, means.iloc[-1], grid_ratios, half_side_speedups, large_side, ensemble.families)),
                 claims_of(lab, tables, ensemble) if size == 256 and not scenes else [], tables_of(rows, grids, means, sides),
                 plots_of(rows, grids, means, in_paper),
                 ["Kohata & Ito plot one picture. This study has every number of PEs, two folds, and an ensemble with intervals."],
@@ -92,48 +92,48 @@ def tables_of(rows, grids, means, sides):
             Table("fig9-sizes", "One PE to one for each column, cyclic fold, one picture of each size", sides)]
 
 
-def comparisons_of(rows, grids, mean, ratios, fewer, more, families):
-    last, half, pes = rows.iloc[-1], more // 2, f"speed-up on {len(rows)} PEs, "
-    ratio, few = estimate(ratios, families), estimate(fewer, families)
+def comparisons_of(rows, grids, mean, grid_ratios, half_side_speedups, large_side, families):
+    last, half_side, pes = rows.iloc[-1], large_side // 2, f"speed-up on {len(rows)} PEs, "
+    ratio, half_side_speedup = estimate(grid_ratios, families), estimate(half_side_speedups, families)
     return [Comparison(pes + "p = 16, picture", "", papers.SPEEDUP_16, last["p = 16, cyclic fold"],
                        "the paper's is printed in its abstracts"),
             Comparison(pes + "p = 16, mean of the ensemble", "", None, mean["p = 16"], "", False, mean["p = 16, +-"]),
             Comparison(pes + "p = 0, picture", "", papers.SPEEDUP_0, last["p = 0, cyclic fold"],
                        "our scene, centre at 256 x 256, is calibrated on the paper's u(0)", derived=True),
             Comparison(pes + "p = 0, mean of the ensemble", "", None, mean["p = 0"], half_width=mean["p = 0, +-"]),
-            Comparison(f"CAP's mapping, {more} x {more} PEs over {half} x {half}", "", papers.CAP_RATIO,
+            Comparison(f"CAP's mapping, {large_side} x {large_side} PEs over {half_side} x {half_side}", "", papers.CAP_RATIO,
                        ratio.mean, "mean of the ensemble; the makers of CAP measured another scene", half_width=ratio.half),
-            Comparison(f"Pixel Machine's mapping, {half} x {half} PEs", "", papers.PIXEL_MACHINE_SPEEDUP, few.mean,
-                       "mean of the ensemble; the makers measured another scene: 60 or more", half_width=few.half)]
+            Comparison(f"Pixel Machine's mapping, {half_side} x {half_side} PEs", "", papers.PIXEL_MACHINE_SPEEDUP, half_side_speedup.mean,
+                       "mean of the ensemble; the makers measured another scene: 60 or more", half_width=half_side_speedup.half)]
 
 
 def claims_of(lab, tables, ensemble):
-    """The claims of section 4.2 and section 6 on numbers of PEs, for images of 256 x 256 pixels."""
+    """Judges the claims of section 4.2 and section 6 on numbers of PEs, for images of 256 x 256 pixels."""
     families, about = ensemble.families, ensemble.description
 
-    def of(name, fold="cyclic"):
+    def speedups_on(name, fold="cyclic"):
         return np.array([table[f"{name}, {fold} fold"] for table, _ in tables])  # [picture, P - 1]
 
     def text(values, digits=2):
         return estimate(values, families).text(digits)
 
-    cyclic, block = of("p = 16"), of("p = 16", "block")
+    cyclic, block = speedups_on("p = 16"), speedups_on("p = 16", "block")
     like_2d = cyclic[:, 255] / [g[16] for _, g in tables]
     pes = np.arange(2, 257)
     folds = np.stack([cyclic, block])[:, :, 1:] / pes  # [fold, picture, P - 2]
     efficiency = np.where(folds[0].mean(0) >= folds[1].mean(0), folds[0], folds[1])
     worst = int(efficiency.mean(0).argmin())
-    low = (efficiency.mean(0) < HIGH).sum()
+    low_count = (efficiency.mean(0) < HIGH).sum()
     over_64, on_64 = cyclic[:, 255] / cyclic[:, 63], cyclic[:, 63]
-    few = of("p = 0")[:, 15] / 16
-    finer = [lab.ensemble([], side, views=None if side == 256 else FINER_VIEWS) for side in (256, 512, 1024)]
-    full = [one.of(lambda costs: 1 / (1 + raya.imbalances(costs.trace, costs.trace.shape[1], [round(costs.trace.shape[1]**0.5)])[0]))
-            for one in finer]
+    on_16 = speedups_on("p = 0")[:, 15] / 16
+    ensembles = [lab.ensemble([], side, views=None if side == 256 else FINER_VIEWS) for side in (256, 512, 1024)]
+    efficiencies_by_size = [one.map(lambda costs: 1 / (1 + raya.imbalances(costs.trace, costs.trace.shape[1], [round(costs.trace.shape[1]**0.5)])[0]))
+                            for one in ensembles]
     return [judged("like-2d", within(like_2d, 1 - CLOSE, 1 + CLOSE, families), about,
-                   f"Speed-up with p = 16 over that of 16 x 16 PEs in two dimensions: {text(like_2d, 3)}; in means "
+                   f"Speed-up with p = 16 over that of 16 x 16 PEs in two dimensions: {text(like_2d, 3)}. The mean speed-ups are "
                    f"{text(cyclic[:, 255], 1)} and {text([g[16] for _, g in tables], 1)}."),
             judged("proportional", every(above(one, HIGH, families) for one in efficiency.T), about,
-                   f"The mean efficiency is below {HIGH} for {low} of 255 numbers of PEs; the lowest is {text(efficiency[:, worst])} at "
+                   f"The mean efficiency is below {HIGH} for {low_count} of 255 numbers of PEs; the lowest is {text(efficiency[:, worst])} at "
                    f"P = {pes[worst]}. On powers of two it is at least "
                    f"{min(efficiency[:, p - 2].mean() for p in (2, 4, 8, 16, 32, 64, 128, 256)):.2f}: PEs own whole columns, so the speed-up "
                    "stays the same between the numbers that divide the columns evenly."),
@@ -142,11 +142,11 @@ def claims_of(lab, tables, ensemble):
             judged("near-pixel-machine", within(on_64, papers.PIXEL_MACHINE_SPEEDUP * (1 - CLOSE),
                                                 papers.PIXEL_MACHINE_SPEEDUP * (1 + CLOSE), families), about,
                    f"64 PEs of the SPA over one: {text(on_64)}."),
-            judged("few-processors", above(few, HIGH, families), about, f"Efficiency of the column split on 16 PEs: {text(few, 3)}."),
-            judged("finer-images", every(above(values, HIGH, one.families) for values, one in zip(full, finer)),
+            judged("few-processors", above(on_16, HIGH, families), about, f"Efficiency of the column split on 16 PEs: {text(on_16, 3)}."),
+            judged("finer-images", every(above(values, HIGH, one.families) for values, one in zip(efficiencies_by_size, ensembles)),
                    f"{about}; {FINER_VIEWS} of them at 512 x 512 and 1024 x 1024",
                    "Efficiency at 256, 512 and 1024 pixels a side: "
-                   + ", ".join(estimate(values, one.families).text(3) for values, one in zip(full, finer)) + ".")]
+                   + ", ".join(estimate(values, one.families).text(3) for values, one in zip(efficiencies_by_size, ensembles)) + ".")]
 
 
 def findings_of(rows, grids, sides, in_paper):

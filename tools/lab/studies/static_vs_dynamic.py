@@ -36,7 +36,7 @@ ROOT = "cyclic, p = sqrt(P)"
 
 
 def request_cycles(factor):
-    """Budget cycles from a PE's request for work to the answer: one word to the root, two words back."""
+    """Returns the budget cycles from a PE's request for work to the answer: one word to the root, two words back."""
     ms = 2 * SPA["rotation_sync_ms"] + 1e3 * 3 / SPA["link_words_per_s"]
     return math.floor(1e6 * ms / (factor * SPA["cycle_ns"]) + 0.5)
 
@@ -61,7 +61,7 @@ def plans(overhead):
 
 
 def outcomes_of(label, image, sizes, overhead):
-    """Table with a row for each strategy and number of PEs."""
+    """Returns table with a row for each strategy and number of PEs."""
     size, total, rows = len(image), int(image.sum()), []
     for pes in sizes:
         bound = raya.lower_bound(image, pes)
@@ -83,52 +83,52 @@ def outcomes_of(label, image, sizes, overhead):
 
 
 def best_of(rows, kind):
-    """For each P, the row of the best strategy of a kind; strategies with free requests are excluded."""
-    some = rows[(rows["kind"] == kind) & (rows["pays"] | (kind == "static"))]
-    return some.loc[some.groupby("P", sort=True)["makespan (cycles)"].idxmin()].reset_index(drop=True)
+    """Returns a row for each P, that of the best strategy of a kind. Strategies with free requests are excluded."""
+    strategies = rows[(rows["kind"] == kind) & (rows["pays"] | (kind == "static"))]
+    return strategies.loc[strategies.groupby("P", sort=True)["makespan (cycles)"].idxmin()].reset_index(drop=True)
 
 
 def counts_of(scenes):
-    """{name: number of cases}, where a case is a scene with a number of PEs: all cases; cases in which no static strategy is near the bound, in which
-    a hybrid is near the bound, and in which a hybrid is faster than all static strategies."""
-    fixed, hybrid = (pd.concat([best_of(rows, kind) for rows in scenes]) for kind in ("static", "hybrid"))
-    return {"cases": len(fixed), "no static one near the bound": (fixed["makespan / lower bound"] > NEAR_OPTIMAL).sum(),
+    """Returns {name: number of cases}, where a case is a scene with a number of PEs: all cases; cases in which no static strategy is near
+    the bound, in which a hybrid is near the bound, and in which a hybrid is faster than all static strategies."""
+    static, hybrid = (pd.concat([best_of(rows, kind) for rows in scenes]) for kind in ("static", "hybrid"))
+    return {"cases": len(static), "no static one near the bound": (static["makespan / lower bound"] > NEAR_OPTIMAL).sum(),
             "hybrid near the bound": (hybrid["makespan / lower bound"] <= NEAR_OPTIMAL).sum(),
             "hybrid beats all static ones": (hybrid["makespan (cycles)"].values <
-                                             fixed["makespan (cycles)"].values).sum()}
+                                             static["makespan (cycles)"].values).sum()}
 
 
 @study(NAME)
 def static_vs_dynamic(lab, scenes):
     size = lab.size(512)
-    own = [raya.example("centre"), raya.generate.random(200, 200).renamed("random-200"),
-           raya.generate.balls(3).renamed("balls-3")]
+    default_scenes = [raya.example("centre"), raya.generate.random(200, 200).renamed("random-200"),
+                      raya.generate.balls(3).renamed("balls-3")]
     sizes = [p for p in powers_of_two(min(MAX_PES, size * size)) if p >= MIN_PES]
-    images = {scene.name: lab.costs(scene, size).trace for scene in scenes or own}
+    images = {scene.name: lab.costs(scene, size).trace for scene in scenes or default_scenes}
     by_factor = {f: [outcomes_of(name, image, sizes, request_cycles(f)) for name, image in images.items()]
                  for f in (FACTORS[0], FACTOR, FACTORS[-1])}
-    all_of = by_factor[FACTOR]
+    tables_by_scene = by_factor[FACTOR]
     factors = pd.DataFrame([{"factor": f, "request (budget cycles)": request_cycles(f), **counts_of(rows)}
                             for f, rows in by_factor.items()])
     tables, plots = [], []
-    for number, rows in enumerate(all_of, 1):
+    for number, rows in enumerate(tables_by_scene, 1):
         percent = 100 * rows.pivot_table("efficiency", "strategy", "P", sort=False)
         percent.loc["upper bound"] = 100 * rows.groupby("P")["bound"].first()
         tables.append(Table(f"{NAME}-{number}", f"Efficiency (%) by P, {rows['scene'][0]}",
                             percent.rename(columns=str).reset_index()))
         plots += plots_of(rows, percent, number)
-    every = pd.concat(all_of, ignore_index=True)
-    limits = every.groupby(["scene", "strategy"], sort=False).apply(
+    outcomes = pd.concat(tables_by_scene, ignore_index=True)
+    limits = outcomes.groupby(["scene", "strategy"], sort=False).apply(
         lambda one: pd.Series({f"P, under {100 * limit:.0f} %": first_below(one, limit) or "never"
                                for limit in (0.9, 0.5)})).reset_index()
-    shown = every.drop(columns=["kind", "pays", "bound"])
+    shown = outcomes.drop(columns=["kind", "pays", "bound"])
     return Page({"size": size, "pes": sizes, "factor": FACTOR, "request_cycles": request_cycles(FACTOR),
                  "random_seed": 1, "scenes": list(images)},
-                findings_of(all_of, counts_of(all_of), request_cycles(FACTOR), size), claims=claims_of(lab) if not scenes else [],
+                findings_of(tables_by_scene, counts_of(tables_by_scene), request_cycles(FACTOR), size), claims=claims_of(lab) if not scenes else [],
                 tables=tables + [Table(f"{NAME}-limits", "The first P at which the efficiency is under 90 % and under "
                                        "50 %", limits),
                                  Table(NAME, "Every strategy, scene and number of PEs", shown, on_page=False),
-                                 Table(f"{NAME}-factors", "Numbers of cases (scene and P) by the clock's factor",
+                                 Table(f"{NAME}-factors", "Numbers of cases (scene and P) for each factor of the clock",
                                        factors)],
                 plots=plots, news=["Heirich & Arvo measured on other machines and scenes. This study compares static, dynamic and "
                                    "hybrid distribution on the same cost images, and with the upper bound of any distribution."],
@@ -138,7 +138,7 @@ def static_vs_dynamic(lab, scenes):
 
 
 def first_below(rows, limit):
-    """Smallest number of PEs at which the efficiency is below the limit; 0 if there is none."""
+    """Returns smallest number of PEs at which the efficiency is below the limit; 0 if there is none."""
     below = rows["P"][rows["efficiency"] < limit]
     return below.iloc[0] if len(below) else 0
 
@@ -151,26 +151,29 @@ CLAIM_SIZE, CLAIM_PES, CLAIM_VIEWS = 256, (128, 256, 1024, 4096), 36
 
 
 def claims_of(lab):
-    """The claims of Heirich & Arvo, and that of Kohata & Ito on dynamic distribution, over an ensemble."""
+    """Judges the claims of Heirich & Arvo, and that of Kohata & Ito on dynamic distribution, over an ensemble."""
     ensemble = lab.ensemble([], CLAIM_SIZE, views=CLAIM_VIEWS)
     families, about, requests = ensemble.families, ensemble.description, request_cycles(FACTOR)
     tables = [outcomes_of(costs.label, costs.trace, CLAIM_PES, requests) for costs in ensemble.pictures]
-    over = {kind: np.array([best_of(rows, kind)["makespan / lower bound"] for rows in tables]) for kind in ("static", "hybrid")}  # [picture, P]
-    free = np.array([rows[(rows["strategy"] == "dynamic:1, free requests") & (rows["P"] == 256)]["efficiency"].iloc[0] for rows in tables])
-    cyclic = np.array([rows[(rows["strategy"] == "cyclic, p = 16") & (rows["P"] == 256)]["efficiency"].iloc[0] for rows in tables])
-    sent = np.array([rows[(rows["strategy"] == "dynamic:1") & (rows["P"] == 256)]["requests"].iloc[0] for rows in tables])
-    gain = 1 / cyclic - 1 / free  # difference of the imbalances, as efficiency = 1 / (1 + u)
+    bound_ratios = {kind: np.array([best_of(rows, kind)["makespan / lower bound"] for rows in tables])  # [picture, P]
+                    for kind in ("static", "hybrid")}
+    def on_256(strategy, column):
+        return np.array([rows[(rows["strategy"] == strategy) & (rows["P"] == 256)][column].iloc[0] for rows in tables])
+
+    free_efficiency, cyclic_efficiency = on_256("dynamic:1, free requests", "efficiency"), on_256("cyclic, p = 16", "efficiency")
+    sent_requests = on_256("dynamic:1", "requests")
+    gain = 1 / cyclic_efficiency - 1 / free_efficiency  # difference of the imbalances, as efficiency = 1 / (1 + u)
 
     def texts(values):
         return ", ".join(f"{estimate(one, families).text(2)} on {pes} PEs" for one, pes in zip(values.T, CLAIM_PES))
 
-    return [judged("static-inadequate", every(above(one, NEAR_OPTIMAL, families) for one in over["static"].T), about,
-                   f"The best static strategy takes {texts(over['static'])} of the lower bound."),
-            judged("hybrid-nearly-optimal", every(below(one, NEAR_OPTIMAL, families) for one in over["hybrid"].T), about,
-                   f"The best hybrid, including the cost of requests, takes {texts(over['hybrid'])} of the lower bound."),
-            judged("dynamic-balances", every([above(gain, 0, families), counted(all(sent > 0))]), about,
+    return [judged("static-inadequate", every(above(one, NEAR_OPTIMAL, families) for one in bound_ratios["static"].T), about,
+                   f"Makespan / lower bound of the best static strategy: {texts(bound_ratios['static'])}."),
+            judged("hybrid-nearly-optimal", every(below(one, NEAR_OPTIMAL, families) for one in bound_ratios["hybrid"].T), about,
+                   f"Makespan / lower bound of the best hybrid, including the cost of requests: {texts(bound_ratios['hybrid'])}."),
+            judged("dynamic-balances", every([above(gain, 0, families), counted(all(sent_requests > 0))]), about,
                    f"Dynamic distribution of single pixels with free requests lowers u by {estimate(gain, families).text()} on 256 PEs. It takes "
-                   f"{sent.min()} or more requests; an array with a static mapping takes none.")]
+                   f"{sent_requests.min()} or more requests; an array with a static mapping takes none.")]
 
 
 def findings_of(scenes, counts, overhead, size):
@@ -194,8 +197,8 @@ def static_finding(rows):
     first, last = best.iloc[0], best.iloc[-1]
 
     def limits(name):
-        some = rows[rows["strategy"] == name]
-        return f"{from_text(first_below(some, 0.9))} and {from_text(first_below(some, 0.5))}"
+        strategy_rows = rows[rows["strategy"] == name]
+        return f"{from_text(first_below(strategy_rows, 0.9))} and {from_text(first_below(strategy_rows, 0.5))}"
 
     return (f"{rows['scene'][0]}, static: at P = {first['P']} {first['strategy']} is best, "
             f"{100 * first['efficiency']:.0f} % efficient, at P = {last['P']} {last['strategy']}, "
@@ -216,10 +219,10 @@ def hybrid_finding(rows):
 
 
 def requests_limit_text(rows, overhead):
-    """For each strategy, the number of PEs from which on its requests, answered one at a time, take longer than its makespan."""
+    """Returns text: for each strategy, the number of PEs from which on its requests, answered one at a time, take longer than its makespan."""
     texts = []
-    for name, some in rows[rows["pays"]].groupby("strategy", sort=False):
-        late = some["P"][some["requests"] * overhead > some["makespan (cycles)"]]
+    for name, strategy_rows in rows[rows["pays"]].groupby("strategy", sort=False):
+        late = strategy_rows["P"][strategy_rows["requests"] * overhead > strategy_rows["makespan (cycles)"]]
         texts.append(f"{name} {from_text(late.iloc[0] if len(late) else 0)}")
     return ", ".join(texts)
 

@@ -27,7 +27,7 @@ SAMPLING_S = 10  # seconds of a series after which no further run starts
 
 
 def job_gain(one_ms, array_ms):
-    """Speed-up of Kohata & Ito's complete job, including display, for given computing times of one PE and of all PEs."""
+    """Returns the speed-up of Kohata & Ito's complete job, including display, for given computing times of one PE and of all PEs."""
     rest = papers.OBJECTS_MS + papers.IMAGE_MS + papers.DISPLAY_MS
     return (one_ms + rest) / (array_ms + rest)
 
@@ -42,8 +42,8 @@ def reference_seconds(scene, size):
     return time_calls(run, 3, SAMPLING_S, warm=False)
 
 
-def device_seconds(lab, scene, size, form):
-    options = dict(machine="grande", format=form, bounces=SPA["bounces"], size=size, pes=size, offset=16 % size,
+def device_seconds(lab, scene, size, number_format):
+    options = dict(machine="grande", format=number_format, bounces=SPA["bounces"], size=size, pes=size, offset=16 % size,
                    accel="none")
     return time_calls(lambda: lab.render(scene, **options).device_s, 5, SAMPLING_S)
 
@@ -70,7 +70,7 @@ def table2(lab, scenes):
                                                     1e3 * reference.minimum)),
                 [claim_of_totals()] if in_paper and not scenes else [],
                 [Table("table2", "Times", rows_of(size, array, one, here, in_paper)),
-                 Table("table2-factors", "The job by the clock's factor", factors),
+                 Table("table2-factors", "The whole job for each factor of the clock", factors),
                  Table("table2-host", "Host model, with the ranges that the rounding of the printed 2, 12 and 140 ms leaves", host)],
                 news=["This study computes the gain of the whole job from the balance, its range over the clock's uncertainty, and a model of "
                       "the host with the ranges that rounding leaves."],
@@ -133,7 +133,7 @@ def comparisons_of(size, array, one, speedup, balance, reference):
              "our balance, the printed times of one PE, transfers and display", True),
             ("one processor, 64 bits", "ms", papers.PC_MS, reference,
              "the paper's PC; ours: this machine, measured, one thread of the reference"),
-            ("the same, workstation", "ms", papers.WORKSTATION_MS, reference, "the paper's workstation; ours as above")]
+            ("one processor, 64 bits, and the workstation", "ms", papers.WORKSTATION_MS, reference, "the paper's workstation; ours as above")]
     return [Comparison(*row) for row in rows]
 
 
@@ -148,7 +148,7 @@ def findings_of(size, speedup, array, one, factors, host, reference, fp32, spa22
             f"The host model gives {objects['least']:.2f} .. {objects['largest']:.2f} ms for the words of our scene; 2 ms are printed "
             "for the paper's scene, whose number of words is not printed.",
             f"A pixel takes {one.time(1)['compute'] / 100e-6 / size**2:.0f} cycles of one PE by the instruction budget. The scene of "
-            "Kohata & Ito takes some 1,520 on this clock, from the printed 9,888 cycles of 100 ns a pixel [D].",
+            "Kohata & Ito takes about 1,520 on this clock, from the printed 9,888 cycles of 100 ns a pixel [D].",
             f"Measured here, warm: one thread in 64 bits takes {1e3 * reference.minimum:.0f} ms, the device's kernels "
             f"{1e3 * fp32.minimum:.1f} ms in fp32 and {1e3 * spa22.minimum:.1f} ms in the SPA's format, whose slowest of "
             f"{spa22.runs} runs took {100 * (spa22.maximum / spa22.minimum - 1):.0f} % longer than its fastest; one thread is {slower} "

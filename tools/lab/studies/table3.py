@@ -25,7 +25,7 @@ TWICE = 2  # bound of the claim filter-total
 
 
 def at_factor(runs, factor):
-    """The figures that the conclusions use, for one factor of the clock model."""
+    """Returns the figures that the conclusions use, for one factor of the clock model."""
     rows, near = runs.rows(factor), runs.times(factor)[:17]
     first, last = rows.iloc[0], rows.iloc[-1]
     saved, lost = first["trace"] - last["trace"], last["filtering"] - first["filtering"]
@@ -50,7 +50,7 @@ def table3(lab, scenes):
                 findings_of(runs, rows, near, factors), with_paper(in_paper, comparisons_of(rows)),
                 claims_of(lab, rows, near) if in_paper and not scenes else [],
                 [Table("table3", "Ray tracing and filter", shown),
-                 Table("table3-factors", "The conclusions by the clock's factor", factors),
+                 Table("table3-factors", "The conclusions for each factor of the clock", factors),
                  Table("table3-offsets", "Every offset", offsets, on_page=False)],
                 [plot_of(runs, False, in_paper), plot_of(runs, True, in_paper)],
                 ["Kohata & Ito have two offsets. This study has every offset, and the effect of the clock's uncertainty on each "
@@ -63,10 +63,10 @@ def comparisons_of(rows):
                ("filtering", "filtering", (papers.FILTER_0_MS, papers.FILTER_8_MS, papers.FILTER_16_MS),
                 (made, predicted, made)),
                ("total", "filtered", (papers.FILTERED_0_MS, None, papers.FILTERED_16_MS), ("", "", ""))]
-    all_of = [Comparison(f"p = {row['p']:.0f}: {what}", "ms", printed[i], row[column], remarks[i], i == 1)
-              for i, row in rows.iterrows() for what, column, printed, remarks in figures]
+    comparisons = [Comparison(f"p = {row['p']:.0f}: {what}", "ms", printed[i], row[column], remarks[i], i == 1)
+                   for i, row in rows.iterrows() for what, column, printed, remarks in figures]
     first, last = rows.iloc[0], rows.iloc[-1]
-    return all_of + [
+    return comparisons + [
         Comparison("filter's arithmetic", "ms", papers.FILTER_ARITHMETIC_MS, first["filter"],
                    "the clock's factor is derived from it", derived=True),
         Comparison("exchange's set-up", "ms", None, SPA["setup_ms"],

@@ -46,16 +46,16 @@ def table4(lab, scenes):
 
 
 def comparisons_of(rows, share):
-    all_of = []
+    comparisons = []
     for row, exchange, computation in ((rows.iloc[0], papers.EXCHANGE_0_MS, papers.SUPERSAMPLE_0_MS),
                                        (rows.iloc[-1], papers.EXCHANGE_16_MS, papers.SUPERSAMPLE_16_MS)):
-        all_of += [Comparison(f"p = {row['p']:.0f}: {what}", "ms", paper, row[column], remark)
-                   for what, paper, column, remark in (
+        comparisons += [Comparison(f"p = {row['p']:.0f}: {what}", "ms", paper, row[column], remark)
+                        for what, paper, column, remark in (
                        ("communication", exchange, "communication", "the clock is derived from it"),
                        ("phase alone", computation, "alone", "computation, comparisons included"),
                        ("with first pass", computation, "with_first", "computation of both passes"))]
     first, middle, last = (rows.iloc[i] for i in range(3))
-    return all_of + [
+    return comparisons + [
         Comparison(f"p = {middle['p']:.0f}: communication", "ms", papers.EXCHANGE_8_MS, middle["communication"],
                    "predicted from Tables 3 and 4", derived=True),
         Comparison("phase alone, p = 0 over p = 16", "", PRINTED_RATIO, first["alone"] / last["alone"],
@@ -68,7 +68,7 @@ def comparisons_of(rows, share):
 
 def claims_of(lab, runs, rows, filtered):
     ensemble = lab.ensemble([], papers.SIZE, "supersample")
-    saved = ensemble.of(lambda costs: gain_of(offset_times(costs, papers.SIZE, "supersample", 1)))
+    saved = ensemble.map(lambda costs: gain_of(offset_times(costs, papers.SIZE, "supersample", 1)))
     same = all(a.report["communication"][key] == b.report["communication"][key]
                for a, b in zip(filtered, runs.runs.values()) for key in ("rotations", "rotation_words"))
     counted_text = ", ".join(f"{r} for p = {p}" for r, p in zip(rows["rotations"], rows["p"]))
@@ -85,13 +85,13 @@ def claims_of(lab, runs, rows, filtered):
 
 
 def gain_of(times):
-    """Milliseconds of supersampling, with comparison and communication, that p = 16 saves against p = 0."""
+    """Returns the milliseconds of supersampling, with comparison and communication, that p = 16 saves against p = 0."""
     total = times["smooth_ms"] + times["supersample_ms"] + times["ring_ms"]
     return total[0] - total[16]
 
 
 def mean_factor(*times):
-    """Geometric mean of the factors (>= 1) by which two times differ from the printed times."""
+    """Returns the geometric mean of the factors (>= 1) by which two times differ from the printed times."""
     return np.exp(np.abs(np.log(np.divide(times, (papers.SUPERSAMPLE_0_MS, papers.SUPERSAMPLE_16_MS)))).mean())
 
 

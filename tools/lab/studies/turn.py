@@ -1,6 +1,6 @@
 """A turn round the scene
 
-Does the balance of one picture hold while the camera turns, and does the best offset of the first frame stay good?
+Does the balance of one picture hold while the camera turns, and does the offset that is best for the first frame also suit the others?
 
 - Source: Kohata & Ito 1993, Fig. 8, which shows one picture.
 - {frames} frames, {step_degrees} degrees apart, about the axis through the point that the camera looks at, as in `raya render --frames
@@ -24,13 +24,13 @@ DEGREES = [360 * i / FRAMES for i in range(FRAMES)]
 
 
 def turn_of(lab, scene, size):
-    """u of each offset in each frame, [frame, offset]."""
+    """Returns u as an array [frame, offset]."""
     return np.array([raya.imbalances(lab.costs(scene.turned(degrees), size).trace, size, range(size))
                      for degrees in DEGREES])
 
 
 def choices_of(u, root):
-    """The offsets that are best for frame 1 and for the odd frames, and the mean u of the even frames with each of these offsets."""
+    """Returns the offsets that are best for frame 1 and for the odd frames, and the mean u of the even frames with each of these offsets."""
     odd, even = u[0::2], u[1::2]
     first, half = int(u[0].argmin()), int(odd.mean(0).argmin())
     return {"best p of frame 1": first, "its u": even[:, first].mean(), "best p of odd frames": half,
