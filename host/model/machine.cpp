@@ -234,7 +234,7 @@ Machine torus() {
         {"cycle of a node", fmt::format("{:g} ns", kT805CycleNs), "[T] the 25 MHz part"},
         {"addition, multiplication, division, square root",
          fmt::format("{}, {}, {}, {} cycles", kT805AdditionCycles, kT805MultiplicationCycles, kT805DivisionCycles,
-                     kT805RootCycles),
+                     kT805SquareRootCycles),
          "[T] typical, single precision"},
         {"message of w words, at each end", fmt::format("{} w + {} cycles", kT805MessageWordCycles, kT805MessageCycles),
          "[T]"},
