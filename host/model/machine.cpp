@@ -275,7 +275,7 @@ const Machine& machine_named(const std::string& name) {
     if (found != all.end()) return *found;
     for (const CitedMachine& cited : cited_machines())
         if (cited.name == name)
-            throw UserError(fmt::format("--machine {}: not modelled: {}; known: {}", name, cited.reason, cited.facts));
+            throw UserError(fmt::format("--machine {}: raya does not model this machine: {}. {}", name, cited.reason, cited.facts));
     std::vector<std::string> names;
     for (const Machine& m : all) names.push_back(m.name);
     throw UserError(fmt::format("--machine {}: no such machine; available: {}", name, fmt::join(names, ", ")));

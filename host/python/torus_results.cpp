@@ -97,13 +97,15 @@ const History& history_of(const Render& r) {
     return *r.history;
 }
 
-// Returns the default machine with the given parameters changed: message_cycles, word_cycles, one_way, both_ways,
+// Returns the default machine with the given parameters changed: cycle_ns, message_cycles, word_cycles, one_way, both_ways,
 // buffer (see AsyncMachine).
 AsyncMachine async_machine(const py::kwargs& changes) {
     AsyncMachine machine;
     for (const auto& [key, value] : changes) {
         const std::string name = py::str(key);
-        if (name == "message_cycles")
+        if (name == "cycle_ns")
+            machine.cycle_ns = value.cast<double>();
+        else if (name == "message_cycles")
             machine.message_cycles = value.cast<std::uint32_t>();
         else if (name == "word_cycles")
             machine.word_cycles = value.cast<std::uint32_t>();

@@ -102,7 +102,7 @@ TEST_CASE("render --exchange bus: the report has number and time of the transfer
         CHECK(communication[by_transfers ? "transfer_words" : "pe_broadcast_words"] == moves * kBlock);
         CHECK(launches_of(report, by_transfers ? "bus.send" : "bus.broadcast_from") == moves);
         CHECK(report["modelled_ms"]["communication"] ==
-              Approx(static_cast<double>(moves) * (0.1845 + kBlock / 6e3)).epsilon(1e-9));
+              Approx(1.375 + static_cast<double>(moves) * (0.1845 + kBlock / 6e3)).epsilon(1e-9));
         const std::string line = by_transfers ? " transfers between PEs, " : " broadcasts by PEs, ";
         CHECK_THAT(files->run().out, Catch::Contains("bus     " + std::to_string(moves) + line +
                                                      std::to_string(moves * kBlock) + " words"));

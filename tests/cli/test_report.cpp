@@ -161,7 +161,7 @@ TEST_CASE("report: marks dynamic and hybrid mappings as simulated", "[cli]") {
         CHECK(report["image"]["hash"] == static_report["image"]["hash"]);
     }
     CHECK(static_report["load"]["simulated"] == false);
-    CHECK(RenderFiles("planes", {"--machine", "links"}).report()["machine"]["mapping"] == "dynamic:1");
+    CHECK(RenderFiles("planes", {"--machine", "links"}).report()["machine"]["mapping"] == "dynamic:1,0,568");
 }
 
 TEST_CASE("report: the hash is that of the image file, and the costs in the cost image sum to the load", "[cli]") {

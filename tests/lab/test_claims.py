@@ -262,11 +262,11 @@ def judge_objects(ratios, even, random):
 
     runs, rows = {}, []
     for count in objects.COUNTS:
-        times = np.resize(ratios, objects.SEEDS)
-        runs[count, objects.EVEN, objects.PAPER] = [SimpleNamespace(asynchronous_ms=40.0)]
+        times = np.resize(ratios, objects.VARIANTS)
+        runs[count, objects.EVEN, objects.PAPER] = [SimpleNamespace(asynchronous_ms=40.0) for _ in times]
         runs[count, objects.RANDOM, objects.PAPER] = [SimpleNamespace(asynchronous_ms=40.0 * ratio) for ratio in times]
         rows.append({"objects": count, "kind": objects.RANDOM, "protocol": objects.PAPER, **dict.fromkeys(objects.TIMES, estimate(times))})
-    return objects.claims_of(runs, pd.DataFrame(rows), [(objects.EVEN, objects.PAPER, growth(*even, np.zeros(1))),
+    return objects.claims_of(runs, pd.DataFrame(rows), [(objects.EVEN, objects.PAPER, growth(*even, np.array([-2, -1, 0, 1, 2]) / 50)),
                                                         (objects.RANDOM, objects.PAPER, growth(*random, np.array([-2, -1, 0, 1, 2]) / 50))])
 
 

@@ -116,5 +116,5 @@ TEST_CASE("every number of every machine has a source, and every ring machine ha
 TEST_CASE("a cited machine without a model is refused with the reason", "[machine]") {
     CHECK_THROWS_AS(machine_named("sight"), UserError);
     CHECK_THROWS_WITH(machine_named("sight"),
-                      Contains("--machine sight: not modelled: no public description") && Contains("16 PEs"));
+                      Contains("--machine sight: raya does not model this machine: no public") && Contains("16 PEs"));
 }

@@ -12,27 +12,32 @@ Are random objects slower than even ones, are their copies the reason, and why d
   has 16 words. Each term of a ray (ambient light, a light or the background) is a return of 8 words.
 - The model moves the returns of a ray separately, so that the image is the same; under the protocol of Yoshitani & Yamazaki they are
   charged as one message. Shading is charged to the node where the ray hits.
-- Even: every voxel holds the same number of spheres, each within its voxel.
+- {variants} variants of each scene, with the radii of a uniform scene times {radii} (at most {largest} of a voxel's side), each from a random
+  view. Ratios compare the scenes of a variant.
+- Even: every voxel holds the same number of spheres, at random places within it.
 - Random: the even scene's spheres, with their radii, surfaces, light and view, at random centres in the cube; spheres that stick out are
-  moved into the cube; {seeds} scenes.
+  moved into the cube.
 - Random, none across voxels: the random spheres, moved until each lies within the voxel of its centre. Each voxel still has its number
   of spheres, but no sphere is in two voxels. This separates the effect of copies from that of unequal numbers.
-- In all three kinds the outermost spheres touch the sides of one cube, so that all scenes have the same voxels. Registration enlarges each
-  sphere by up to a 16th of a voxel's side; even and moved spheres keep that distance from the sides.
+- In all three kinds the outermost spheres touch the sides of one cube, so that all scenes have the same voxels. Registration has a margin
+  for rounding errors; the column "copies without margin" counts the voxels that the spheres' surfaces meet exactly.
 - The claims use the asynchronous machine, because the paper describes it. It is simulated packet by packet: a node has two tasks, links transfer
   while nodes compute, and buffers are finite. Overlapped (nothing waits) and stepwise (everything waits) are shown as bounds.
 - The depth of primary rays is counted without lights. The growth of time is analysed from the fewest to the most objects, overlapped:
   objects over time is a product of four ratios, see the table.
-- Output: objects.csv (modelled times in ms and counts), objects-ratios.csv, objects-growth.csv, objects-primary.csv and objects-words.csv.
+- Output: objects.csv (modelled times in ms and counts), objects-ratios.csv, objects-growth.csv, objects-primary.csv, objects-words.csv and
+  objects-sweep.csv (random over even by radius and by the processors' clock).
   Columns +- are half widths of 95 % intervals.
 """
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Series, Table, above, counted, estimate, every, judged, papers, series_by, study
+from raya.lab import Page, Plot, Series, Table, above, estimate, every, judged, papers, series_by, study
 from raya.lab.voxels import CLOCK, even_scene, run_on_torus
 
-COUNTS, SEEDS, OTHER_WORDS = (64, 192, 256, 512, 1024, 8320), 5, (32, 48)
+COUNTS, OTHER_WORDS, SIDES = (64, 192, 256, 512, 1024, 8320), (32, 48), 4  # numbers of objects; words a ray; voxels along each axis
+RADII, VARIANTS, MAX_RADIUS = (0.5, 1, 2), 9, 0.45  # factors of the radii; variants of a scene; largest radius / voxel side
+CLOCKS = {"20 MHz": 50.0, "25 MHz": 40.0, "30 MHz": 1e3 / 30}  # {clock of the processors: ns a cycle}; links keep their rates
 EVEN, RANDOM, WITHIN = "even", "random", "random, none across voxels"
 PAPER, RAYA = "Yoshitani & Yamazaki", "raya"
 PROTOCOLS = {PAPER: {"inject": "root", "packet_words": papers.RAY_WORDS, "returns": "rays"}, RAYA: {}}
@@ -44,12 +49,39 @@ def render(lab, scene, size, **options):
     return run_on_torus(lab, scene, size, (4, 4, 4), (4, 4, 4), links="torus2d", bounces=0, **options)
 
 
+def even_variant(count, seed):
+    """Returns an even scene: its spheres have the radii of even_scene() times a factor, and random places within their voxels."""
+    rng, lines = np.random.default_rng(seed), []
+    side = 2 / SIDES  # of a voxel: the cube is [-1, 1]^3
+    for line in even_scene(count).nff.splitlines():
+        if line.startswith("s "):
+            *centre, radius = map(float, line.split()[1:])
+            radius = min(RADII[seed % len(RADII)] * radius, MAX_RADIUS * side)
+            voxel = np.floor((np.array(centre) + 1) / side)
+            centre = -1 + side * voxel + rng.uniform(radius, side - radius, 3)
+            line = "s " + " ".join(f"{value:.7g}" for value in (*centre, radius))
+        lines.append(line)
+    return raya.parse("\n".join(lines) + "\n", f"even-{count}, variant {seed}").random_view(seed).moved_into_voxels()
+
+
 def scenes_of(count):
-    """{kind: scenes}: the even scene; for each seed, a random scene, and the same scene with its spheres moved within their voxels."""
-    even = even_scene(count).moved_into_voxels()
-    random = [even.scattered(seed) for seed in range(1, SEEDS + 1)]
-    return {EVEN: [even.touching_walls()], RANDOM: [one.touching_walls() for one in random],
+    """{kind: scenes}: for each variant an even scene, a random scene, and the same with its spheres moved within their voxels."""
+    even = [even_variant(count, seed) for seed in range(1, VARIANTS + 1)]
+    random = [one.scattered(seed) for seed, one in enumerate(even, 1)]
+    return {EVEN: [one.touching_walls() for one in even], RANDOM: [one.touching_walls() for one in random],
             WITHIN: [one.moved_into_voxels().touching_walls() for one in random]}
+
+
+def copies_without_margin(scene):
+    """Returns the number of pairs of a sphere and a voxel that its surface meets, minus the number of spheres."""
+    spheres = np.array([list(map(float, line.split()[1:])) for line in scene.nff.splitlines() if line.startswith("s ")])
+    centres, radii = spheres[:, None, :3], spheres[:, None, 3]
+    low, high = (centres[:, 0] - radii).min(0), (centres[:, 0] + radii).max(0)
+    corner = low + np.stack(np.meshgrid(*[range(SIDES)] * 3), -1).reshape(-1, 3) * (high - low) / SIDES  # [voxel, 3]
+    below, above_ = centres - corner, corner + (high - low) / SIDES - centres  # [sphere, voxel, 3]: distances from the voxel's sides
+    nearest, farthest = np.maximum(0, np.maximum(-below, -above_)), np.maximum(below, above_)
+    meets = ((nearest**2).sum(2) <= radii**2) & ((farthest**2).sum(2) >= radii**2)
+    return int(meets.sum()) - len(spheres)
 
 
 def depth_of(lab, scene, size):
@@ -65,12 +97,17 @@ def depth_of(lab, scene, size):
 
 @study("objects", one_scene=True)
 def objects(lab, scenes):
-    size, runs, depths, words = lab.size(96), {}, [], []
+    size, runs, depths, words, exact, clocks = lab.size(96), {}, [], [], {}, {}
     for count in COUNTS:
         scenes_by_kind = scenes_of(count)
+        for kind, kind_scenes in scenes_by_kind.items():
+            exact[count, kind] = np.mean([copies_without_margin(one) for one in kind_scenes])
         for protocol, options in PROTOCOLS.items():
             for kind, kind_scenes in scenes_by_kind.items():
                 runs[count, kind, protocol] = [render(lab, one, size, async_=True, **options) for one in kind_scenes]
+        times = {kind: np.array([[run.result.simulate(cycle_ns=ns) for ns in CLOCKS.values()] for run in runs[count, kind, PAPER]])
+                 for kind in (EVEN, RANDOM)}  # [variant, clock]
+        clocks[count] = dict(zip(CLOCKS, (times[RANDOM] / times[EVEN]).T))
         for kind in (EVEN, RANDOM):
             hits, firsts, voxels = zip(*(depth_of(lab, one, size) for one in scenes_by_kind[kind]))
             depths.append({"objects": count, "kind": kind, "hit (% of primary rays)": 100 * np.mean(hits),
@@ -81,30 +118,49 @@ def objects(lab, scenes):
                 run = render(lab, scenes_by_kind[EVEN][0], size, **{**PROTOCOLS[PAPER], "packet_words": more})
                 words.append({"objects": count, "words a ray": more, "overlapped (ms)": run.overlapped_ms,
                               "stepwise (ms)": run.stepwise_ms})
-    rows = pd.DataFrame([row_of(key, kind_runs) for key, kind_runs in runs.items()])
+    rows = pd.DataFrame([row_of(key, kind_runs, exact) for key, kind_runs in runs.items()])
     ratios = pd.DataFrame([ratio_of(runs, count, kind, protocol) for protocol in PROTOCOLS for kind in (RANDOM, WITHIN)
                            for count in COUNTS])
     growth = [(kind, protocol, growth_of(runs[COUNTS[0], kind, protocol], runs[COUNTS[-1], kind, protocol]))
               for protocol in PROTOCOLS for kind in (EVEN, RANDOM)]
-    depths, words = pd.DataFrame(depths), pd.DataFrame(words)
+    depths, words, sweep = pd.DataFrame(depths), pd.DataFrame(words), sweep_of(runs, clocks)
     more = ["The scenes of the command line are not used: the study generates its own, like those of Yoshitani & Yamazaki."
             ] if scenes else []
     return Page({"nodes": "4x4x4", "voxels": "4x4x4", "links": "torus2d", "size": size, "bounces": 0, "format": "fp32",
-                 "words": papers.RAY_WORDS, "seeds": SEEDS, "objects": list(COUNTS)},
-                findings_of(runs, rows, ratios, growth, depths, words) + more,
+                 "words": papers.RAY_WORDS, "variants": VARIANTS, "objects": list(COUNTS)},
+                findings_of(runs, rows, ratios, growth, depths, words) + [finding_of_sweep(sweep)] + more,
                 claims=claims_of(runs, ratios, growth),
-                tables=tables_of(rows, ratios, growth, depths, words), plots=plots_of(rows, ratios, depths),
+                tables=[*tables_of(rows, ratios, growth, depths, words),
+                        Table("objects-sweep", "Random over even, asynchronous, protocol of Yoshitani & Yamazaki", sweep)], plots=plots_of(rows, ratios, depths),
                 news=["Yoshitani & Yamazaki print no times for Fig. 4, and have one scene of each kind. This study has intervals over "
-                      "scenes and both protocols, separates the effect of copies from that of unequal numbers, and explains the "
+                      "scenes, radii and views, and both protocols, separates the effect of copies from that of unequal numbers, and explains the "
                       "sub-linear growth."],
-                clock=CLOCK)
+                clock=CLOCK, placeholders={"radii": ", ".join(map(str, RADII)), "largest": MAX_RADIUS})
 
 
-def row_of(key, runs):
+def sweep_of(runs, clocks):
+    """Table of random over even: for each factor of the radii, at 25 MHz, and for each clock, over all variants. half: of a 95 % interval."""
+    rows = []
+    for count, by_clock in clocks.items():
+        ratio = by_clock["25 MHz"]  # [variant]: the first one has seed 1
+        groups = {f"radii x {factor}": [value for seed, value in enumerate(ratio, 1) if RADII[seed % len(RADII)] == factor]
+                  for factor in RADII} | by_clock
+        rows += [{"objects": count, "variants": name, "random / even": estimate(values).mean, "+-": estimate(values).half}
+                 for name, values in groups.items()]
+    return pd.DataFrame(rows)
+
+
+def finding_of_sweep(sweep):
+    low, high = (sweep.loc[pick] for pick in (sweep["random / even"].idxmin(), sweep["random / even"].idxmax()))
+    return (f"Over radii and clocks random over even, asynchronous, lies between {low['random / even']:.2f} ({low['objects']} objects, "
+            f"{low['variants']}) and {high['random / even']:.2f} ({high['objects']} objects, {high['variants']}).")
+
+
+def row_of(key, runs, exact):
     count, kind, protocol = key
     columns = ("copies", "tests a ray", "steps a ray", "returns", "rays discarded", "u")
     row = {"objects": count, "kind": kind, "protocol": protocol, "scenes": len(runs),
-           **pd.DataFrame([run.row(columns) for run in runs]).mean()}
+           **pd.DataFrame([run.row(columns) for run in runs]).mean(), "copies without margin": exact[count, kind]}
     for time in TIMES:
         e = estimate([getattr(run, f"{time}_ms") for run in runs])
         row[f"{time} (ms)"], row[f"{time} +- (ms)"] = e.mean, e.half
@@ -114,10 +170,9 @@ def row_of(key, runs):
 
 def ratio_of(runs, count, kind, protocol):
     """Returns the ratios of the times of random scenes to the time of the even scene with as many objects."""
-    even, random_runs = runs[count, EVEN, protocol][0], runs[count, kind, protocol]
+    pairs = list(zip(runs[count, kind, protocol], runs[count, EVEN, protocol]))
     return {"objects": count, "kind": kind, "protocol": protocol,
-            **{time: estimate([getattr(run, f"{time}_ms") / getattr(even, f"{time}_ms") for run in random_runs])
-               for time in TIMES}}
+            **{time: estimate([getattr(run, f"{time}_ms") / getattr(even, f"{time}_ms") for run, even in pairs]) for time in TIMES}}
 
 
 def growth_of(first, last):
@@ -141,20 +196,20 @@ def texts_of(time_ratios, time):
 
 def claims_of(runs, ratios, growth):
     """Judges random scenes by asynchronous times, because the paper's machine is asynchronous. The reasons also have the two bounds."""
-    random_ratios, about = select(ratios, RANDOM, PAPER), f"{SEEDS} random scenes of each number of objects"
-    slower = [above([run.asynchronous_ms / runs[count, EVEN, PAPER][0].asynchronous_ms for run in runs[count, RANDOM, PAPER]], 1)
-              for count in COUNTS]
+    random_ratios, about = select(ratios, RANDOM, PAPER), f"{VARIANTS} variants of each scene"
+    slower = [above([run.asynchronous_ms / even.asynchronous_ms
+                     for run, even in zip(runs[count, RANDOM, PAPER], runs[count, EVEN, PAPER])], 1) for count in COUNTS]
     even, random = growth[0][2], growth[1][2]
-    linear = [counted(even["objects / time"].min() > LINEAR_LIMIT), above(random["objects / time"], LINEAR_LIMIT)]
+    linear = [above(rows["objects / time"], LINEAR_LIMIT) for rows in (even, random)]
     log_fractions = [np.log(rows["fewer voxels a ray"]) / np.log(rows["objects / time"]) for rows in (even, random)]
     log_excess = [np.log(rows["fewer voxels a ray"]) - HALF * np.log(rows["objects / time"]) for rows in (even, random)]
     return [judged("random-is-slower", every(slower), about,
                    f"Random over even, asynchronous (number of objects in brackets): {texts_of(random_ratios, 'asynchronous')}. "
                    f"Bounds: overlapped {texts_of(random_ratios, 'overlapped')}; stepwise {texts_of(random_ratios, 'stepwise')}."),
             judged("not-linear", every(linear), about,
-                   f"{even['objects'][0]:.0f} times the objects take {even['time'][0]:.2f} times the time for even objects and "
+                   f"{even['objects'][0]:.0f} times the objects take {estimate(even['time']).text(2)} times the time for even objects and "
                    f"{estimate(random['time']).text(2)} times for random ones."),
-            judged("front-voxels", every([counted(log_excess[0].min() > 0), above(log_excess[1])]), about,
+            judged("front-voxels", every(above(rows) for rows in log_excess), about,
                    f"Rays end earlier: fewer voxels a ray explain a factor of {even['fewer voxels a ray'].mean():.2f} of "
                    f"{even['objects / time'].mean():.2f} for even objects and {random['fewer voxels a ray'].mean():.2f} of "
                    f"{random['objects / time'].mean():.2f} for random ones, which is {100 * log_fractions[0].mean():.0f} % and "
@@ -224,7 +279,7 @@ def plots_of(rows, ratios, depths):
         even = select(rows, EVEN, protocol)
         series = [Series(kind, kind_rows["objects"], kind_rows[column], half_widths=kind_rows[f"{time} +- (ms)"])
                   for kind in (EVEN, RANDOM, WITHIN) for kind_rows in [select(rows, kind, protocol)]]
-        linear = Series("linear, from the first even scene", even["objects"],
+        linear = Series("linear, from the fewest even objects", even["objects"],
                         even[column][0] * even["objects"] / even["objects"][0])
         return Plot(name, title, "objects", "modelled time (ms)", series + [linear], "xy")
 

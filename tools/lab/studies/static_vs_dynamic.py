@@ -11,13 +11,16 @@ Are static strategies inadequate from 128 PEs on, and static plus dynamic ones n
   row from the top), then takes C pixels at a time of the remainder. Both are simulated exactly on the cost image.
 - A request costs its PE {request_cycles} budget cycles: one word to the root and two words back at 6 Mword/s, each with the 0.18 ms that
   a rotation takes to synchronise all PEs. This is the maximum for the request of one PE; "free requests" shows the minimum. The SPA had
-  no dynamic distribution. Requests do not wait for each other.
+  no dynamic distribution. Requests do not wait for each other, except in the table of LINKS-1.
+- LINKS-1 (Nishimura et al. 1985): the root answers one request at a time, and a request takes it {request_cycles} cycles. This table has the
+  efficiency for each number of pixels a request.
 - Lower bound of the makespan, the time at which the last PE has finished: the larger of the mean load and the highest cost of a pixel.
 - A strategy is near the optimum if its makespan is at most 1.1 times the lower bound. The tables of cases (scene and number of PEs) are for
   three factors of the clock from 1 to 8.
 - The claims use {ensemble}, at {claim_size} x {claim_size} on {claim_pes} PEs.
 - Output: static-vs-dynamic.csv has a row for each scene, strategy and P: makespan (budget cycles), efficiency, makespan / lower bound,
-  requests. static-vs-dynamic-limits.csv has the first P with an efficiency below 90 % and 50 %, static-vs-dynamic-factors.csv the cases.
+  requests. static-vs-dynamic-limits.csv has the first P with an efficiency below 90 % and 50 %, static-vs-dynamic-factors.csv the cases,
+  static-vs-dynamic-root.csv LINKS-1.
 """
 import math
 
@@ -25,27 +28,27 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Page, Plot, Series, Table, above, below, counted, estimate, every, judged, papers, study
-from raya.lab.laboratory import SPA
+from raya.lab.laboratory import MACHINES
 from raya.lab.mappings import squarest_grid
-from raya.lab.spa import CLOCK, FACTOR, FACTORS, spa_ms
+from raya.lab.spa import CLOCK, FACTOR, FACTORS
 from raya.lab.voxels import powers_of_two
 
 NAME, MIN_PES, MAX_PES = "static-vs-dynamic", 128, 16_384
 NEAR_OPTIMAL = 1.1  # our limit: maximum makespan / lower bound of a nearly optimal strategy
-ROOT = "cyclic, p = sqrt(P)"
+SQUARE_ROOT = "cyclic, p = sqrt(P)"
+ROOT_CHUNKS, ROOT_PES = tuple(4**i for i in range(7)), (64, 256, 1024)  # pixels a request and numbers of PEs in the table of LINKS-1
 
 
 def request_cycles(factor):
     """Returns the budget cycles from a PE's request for work to the answer: one word to the root, two words back."""
-    ms = 2 * SPA["rotation_sync_ms"] + 1e3 * 3 / SPA["link_words_per_s"]
-    return math.floor(1e6 * ms / (factor * SPA["cycle_ns"]) + 0.5)
+    return round(MACHINES["links"]["root_cycles"] * FACTOR / factor)
 
 
 def static_mappings(size, pes):
     tile = math.gcd(size, 8)
     grid = "grid:{}x{}".format(*squarest_grid(pes))
     return {"column split": {"mapping": "column"}, "cyclic, p = 16": {"offset": 16 % size},
-            ROOT: {"offset": round(pes**0.5) % size}, "blocks of scan lines": {"mapping": "blocks"},
+            SQUARE_ROOT: {"offset": round(pes**0.5) % size}, "blocks of scan lines": {"mapping": "blocks"},
             "tiles 8 x 8": {"mapping": f"tiles:{tile}x{tile}"}, "grid": {"mapping": grid},
             "random": {"mapping": "random:1"}}
 
@@ -82,6 +85,27 @@ def outcomes_of(label, image, sizes, overhead):
                                           ignore_index=True)
 
 
+def root_rows(images):
+    """Returns a table of LINKS-1's organisation: efficiencies if requests are free, and if the root answers one at a time."""
+    rows = []
+    for name, image in images.items():
+        for pes in ROOT_PES:
+            for chunk in ROOT_CHUNKS:
+                free, serial = (raya.schedule(image, f"dynamic:{chunk},0,{cycles}", pes=pes) for cycles in (0, request_cycles(FACTOR)))
+                rows.append({"scene": name, "P": pes, "pixels a request": chunk, "requests": serial["requests"],
+                             "efficiency, free requests": free["speedup"] / pes, "efficiency, one at a time": serial["speedup"] / pes})
+    return pd.DataFrame(rows)
+
+
+def finding_of_root(rows):
+    texts = []
+    for (name, pes), group in rows.groupby(["scene", "P"], sort=False):
+        first, best = group.iloc[0], group.loc[group["efficiency, one at a time"].idxmax()]
+        texts.append(f"{name} on {pes} PEs {100 * first['efficiency, one at a time']:.0f} % with single pixels and at most "
+                     f"{100 * best['efficiency, one at a time']:.0f} % with {best['pixels a request']}")
+    return f"Efficiency if a root answers one request at a time, as on LINKS-1, by the pixels a request: {'; '.join(texts)}."
+
+
 def best_of(rows, kind):
     """Returns a row for each P, that of the best strategy of a kind. Strategies with free requests are excluded."""
     strategies = rows[(rows["kind"] == kind) & (rows["pays"] | (kind == "static"))]
@@ -110,7 +134,7 @@ def static_vs_dynamic(lab, scenes):
     tables_by_scene = by_factor[FACTOR]
     factors = pd.DataFrame([{"factor": f, "request (budget cycles)": request_cycles(f), **counts_of(rows)}
                             for f, rows in by_factor.items()])
-    tables, plots = [], []
+    tables, plots, of_root = [], [], root_rows(images)
     for number, rows in enumerate(tables_by_scene, 1):
         percent = 100 * rows.pivot_table("efficiency", "strategy", "P", sort=False)
         percent.loc["upper bound"] = 100 * rows.groupby("P")["bound"].first()
@@ -122,11 +146,15 @@ def static_vs_dynamic(lab, scenes):
         lambda one: pd.Series({f"P, under {100 * limit:.0f} %": first_below(one, limit) or "never"
                                for limit in (0.9, 0.5)})).reset_index()
     shown = outcomes.drop(columns=["kind", "pays", "bound"])
+    plots.append(Plot(f"{NAME}-root", f"A root that answers one request at a time, {outcomes['scene'][0]}", "pixels a request", "efficiency",
+                      [Series(f"P = {pes}", group["pixels a request"], group["efficiency, one at a time"])
+                       for pes, group in of_root[of_root["scene"] == outcomes["scene"][0]].groupby("P")], "x"))
     return Page({"size": size, "pes": sizes, "factor": FACTOR, "request_cycles": request_cycles(FACTOR),
                  "random_seed": 1, "scenes": list(images)},
-                findings_of(tables_by_scene, counts_of(tables_by_scene), request_cycles(FACTOR), size), claims=claims_of(lab) if not scenes else [],
+                [*findings_of(tables_by_scene, counts_of(tables_by_scene), size), finding_of_root(of_root)], claims=claims_of(lab) if not scenes else [],
                 tables=tables + [Table(f"{NAME}-limits", "The first P at which the efficiency is under 90 % and under "
                                        "50 %", limits),
+                                 Table(f"{NAME}-root", "LINKS-1: efficiency by the number of pixels a request", of_root),
                                  Table(NAME, "Every strategy, scene and number of PEs", shown, on_page=False),
                                  Table(f"{NAME}-factors", "Numbers of cases (scene and P) for each factor of the clock",
                                        factors)],
@@ -176,7 +204,7 @@ def claims_of(lab):
                    f"{sent_requests.min()} or more requests; an array with a static mapping takes none.")]
 
 
-def findings_of(scenes, counts, overhead, size):
+def findings_of(scenes, counts, size):
     inadequate, cases = counts["no static one near the bound"], counts["cases"]
     how = "holds" if inadequate == cases else "holds in part" if inadequate else "does not hold"
     findings = [f"That static strategies are inadequate from {scenes[0]['P'].min()} PEs on {how} here: in {inadequate} "
@@ -186,10 +214,7 @@ def findings_of(scenes, counts, overhead, size):
     for rows in scenes:
         findings += [static_finding(rows), hybrid_finding(rows)]
     collapse = collapse_finding(scenes[0], size)
-    queues = "; ".join(f"{rows['scene'][0]} ({requests_limit_text(rows, overhead)})" for rows in scenes)
-    return findings + ([collapse] if collapse else []) + [
-        f"A request takes {overhead} budget cycles ({FACTOR * spa_ms(overhead):.2f} ms). If the root answered one request at a time, "
-        f"as over a single bus, the requests alone would take longer than the modelled makespan: {queues}."]
+    return findings + ([collapse] if collapse else [])
 
 
 def static_finding(rows):
@@ -204,7 +229,7 @@ def static_finding(rows):
             f"{100 * first['efficiency']:.0f} % efficient, at P = {last['P']} {last['strategy']}, "
             f"{100 * last['efficiency']:.0f} % (upper bound {100 * last['bound']:.0f} %). The best of them falls below "
             f"90 % {from_text(first_below(best, 0.9))} and below 50 % {from_text(first_below(best, 0.5))}; the column "
-            f"split {limits('column split')}, cyclic with p = sqrt(P) {limits(ROOT)}.")
+            f"split {limits('column split')}, cyclic with p = sqrt(P) {limits(SQUARE_ROOT)}.")
 
 
 def hybrid_finding(rows):
@@ -218,20 +243,11 @@ def hybrid_finding(rows):
             "free requests.")
 
 
-def requests_limit_text(rows, overhead):
-    """Returns text: for each strategy, the number of PEs from which on its requests, answered one at a time, take longer than its makespan."""
-    texts = []
-    for name, strategy_rows in rows[rows["pays"]].groupby("strategy", sort=False):
-        late = strategy_rows["P"][strategy_rows["requests"] * overhead > strategy_rows["makespan (cycles)"]]
-        texts.append(f"{name} {from_text(late.iloc[0] if len(late) else 0)}")
-    return ", ".join(texts)
-
-
 def collapse_finding(rows, size):
     """Sentence on cyclic mappings that give every PE pixels of a single column, because the offset's shift repeats with the period of the shared
     rows."""
     texts = []
-    for name in ("cyclic, p = 16", ROOT):
+    for name in ("cyclic, p = 16", SQUARE_ROOT):
         for pes in sorted(rows["P"].unique()):
             owners = raya.owners(size, size, pes=int(pes), **static_mappings(size, int(pes))[name])
             pairs = owners.astype(np.int64) * size + np.arange(size)  # PE and column
