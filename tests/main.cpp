@@ -7,7 +7,7 @@
 #include "tests/kernel_cache.hpp"
 #include "tests/paths.h"
 
-// Unless the environment says otherwise, tests ignore stored tuning results (raya tune) and the kernel binaries in the
+// Unless RAYA_TUNED or RAYA_BINARIES is set, tests ignore tuning results (raya tune) and the kernel binaries in the
 // program's folder.
 int main(int argc, char** argv) {
     setenv("RAYA_TUNED", "off", 0);

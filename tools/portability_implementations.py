@@ -82,4 +82,4 @@ def mark_missing_devices(implementations, raya):
     """Marks implementations whose driver has no device here, such as a GPU's, as unable to run."""
     for implementation in implementations:
         if implementation.needs_device and implementation.run([raya, "devices"], tempfile.gettempdir(), 120)[0] == 3:
-            implementation.unavailable = "its driver is installed, and shows no device"
+            implementation.unavailable = "its driver is installed, but reports no device"

@@ -1,6 +1,6 @@
 // Error bounds. The regions follow from bounds of the rounding errors of the intersection tests in kernels/geometry/,
-// derived operation by operation, to first order in u. The constants in the code are rounded up enough to cover the
-// higher orders for Y >= 10.
+// derived operation by operation, to first order in u. The constants in the code are rounded up enough to cover terms
+// of higher order for Y >= 10.
 //
 //   u  relative rounding error of one operation      f  flush-to-zero threshold: smaller results become 0
 //   s  maximum of | |D|^2 - 1 |, D: the direction     n  maximum distance from a ray's origin O to the object
@@ -22,14 +22,15 @@
 // point at that t is off the plane by at most 4u (|d| + |O|) + 4ut. O + t'D is no farther from the plane than this
 // point or than Q.
 //
-// Cone, p = O - base. The ray's point closest to the base, p' + m'D, has an error of 3un along the ray and of 2un
-// across it; these errors shift X. All later quantities have at most the size S = |start| + |t|. Errors of the
-// coefficients of the quadratic are equivalent to an error of its value Q(t) = |side + t dside|^2 - (r0 + k z)^2, of at
-// most e = 32u (S^2 + (r0 + |k| S)^2) in total. Flushing changes the discriminant by d <= 2f, and therefore Q by d / a
-// at the zero t = q / a and by d c / q^2 at the zero t = c / q, where q = -(b +- w). As the discriminant is > 0,
-// |q| >= w >= sqrt(f), so Q changes by at most 2 sqrt(f) S. Hence the distance of X from the axis is at most
-// sqrt((r0 + k z)^2 + e), with 0 <= z <= h up to 8uS. This bounds S in turn, because start and D are perpendicular up
-// to (s + 6u) n. For a steep cone in a format with few fraction bits, no finite S satisfies the bound.
+// Cone, p = O - base; other names as in kernels/geometry/cone.clh. The ray's point closest to the base, p' + m'D,
+// has an error of 3un along the ray and of 2un across it; these errors shift X. All later quantities have at most the
+// size S = |start| + |t|. Errors of the quadratic's coefficients are equivalent to an error of its value
+// Q(t) = |side + t dside|^2 - (r0 + k z)^2, of at most e = 32u (S^2 + (r0 + |k| S)^2) in total. Flushing changes the
+// discriminant by d <= 2f, and therefore Q by d / a at the zero t = q / a and by d c / q^2 at the zero t = c / q, where
+// q = -(b +- w). As the discriminant is > 0, |q| >= w >= sqrt(f), so Q changes by at most 2 sqrt(f) S. Hence the
+// distance of X from the axis is at most sqrt((r0 + k z)^2 + e), with 0 <= z <= h up to 8uS. This bounds S in turn,
+// because start and D are perpendicular up to (s + 6u) n. For a steep cone in a format with few fraction bits, no
+// finite S satisfies the bound.
 #include "host/accel/hit_regions.hpp"
 
 #include <algorithm>
@@ -66,7 +67,7 @@ double segment_distance(const Vec3& p, const Vec3& start, const Vec3& segment) {
     return (p - start - fraction * segment).length();
 }
 
-constexpr int kMinFractionBits = 10;  // minimum Y for which the constants cover the higher orders
+constexpr int kMinFractionBits = 10;  // minimum Y for which the constants cover terms of higher order in u
 
 }  // namespace
 
@@ -91,13 +92,13 @@ HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double 
         if ((number < objects_.spheres || number >= first_polygon) &&
             !std::binary_search(separate.begin(), separate.end(), number))
             numbers_.push_back(number);
-    const int quarter = 1 << (format.exponent_bits - 2);
+    const int quarter_range = 1 << (format.exponent_bits - 2);  // a quarter of the number of exponents
     unit_ = std::ldexp(format.truncates ? 1.0 : 0.5, -format.fraction_bits) + 0x1p-24;
     smallest_ = smallest_number(format);
     stretch_ = std::ldexp(format.is_fp32() ? 32.0 : 16.0, -format.fraction_bits) +
                0x1p-21;  // RAYA_STRETCH, and the rounding of |D|^2 - 1 in is_wide()
     far_ = farthest_hit(format);
-    square_limit_ = std::ldexp(1.0, quarter - 1);
+    square_limit_ = std::ldexp(1.0, quarter_range - 1);
     extent_ = job.header().extent;
     reach_ = reach * extent_;
     all_bounded_ = format.fraction_bits >= kMinFractionBits && reach_ <= square_limit_ && cones_bounded();

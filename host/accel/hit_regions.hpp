@@ -62,7 +62,7 @@ class HitRegions {
     // `at`: index of a word in the job; in sphere(), polygon() and cone...() the index of the object's first word.
     double real(std::size_t at) const;
     Vec3 vector(std::size_t at) const;
-    // Upper bound of the distance from `point` to the origin of a ray within reach.
+    // Upper bound of the distance from `point` to a ray origin whose coordinates are at most reach_ in magnitude.
     double max_distance(const Vec3& point) const;
     HitRegion sphere(std::size_t at) const;
     HitRegion polygon(std::size_t at) const;

@@ -36,13 +36,13 @@ struct Partition {
 /// voxels. If there are no such objects, the box is the unit cube around the origin. Uses the rounded numbers in the
 /// job's words, as the kernels do.
 ///
-/// The lists are conservative, so that hits do not depend on the voxels through which the traversal passes. Consider
-/// a ray whose origin O has coordinates up to `grid.reach` in magnitude and whose direction D has length 1 up to
-/// rounding, so that is_wide() in kernels/grid/traversal.clh is false. If a kernel with that format computes a hit of
-/// an object at distance t, then the voxel in which the traversal is at distance t lists the object, in spite of the
+/// The lists are conservative, so that hits do not depend on the voxels through which the traversal passes. Consider a
+/// ray whose origin O has coordinates up to `grid.reach` in magnitude and whose direction D has length 1 up to
+/// rounding, so that is_wide() in kernels/grid/traversal.clh is false. If a kernel in the format computes a hit of an
+/// object at distance t, then the voxel in which the traversal is at distance t lists the object, in spite of the
 /// traversal's rounding errors. If the hit regions are unbounded (HitRegions::all_bounded() is false: Y < 10, squares
-/// of lengths that overflow the format, or cones too steep for it), every object is in every list, the box contains all
-/// points within RAYA_FAR, and the reach is RAYA_FAR.
+/// of lengths that overflow the format, or cones too steep for the format), every object is in every list, the box
+/// contains all points within RAYA_FAR, and the reach is RAYA_FAR.
 ///
 /// Throws UserError if a division is 0 or there are more than kMaxPartitionVoxels voxels, and TooManyEntries if the
 /// lists are too long.

@@ -12,8 +12,7 @@
 namespace raya {
 namespace {
 
-// For packet traces, level 4 takes half the time of zlib's default level, 6, and gives 8 % more
-// bytes.
+// For packet traces, level 4 takes half the time of zlib's default level, 6, and gives 8 % more bytes.
 constexpr int kCompressionLevel = 4;
 constexpr int kWindowBits = MAX_WBITS + 16;  // maximum window; + 16 for gzip's header and trailer
 constexpr int kMemLevel = 8;                 // zlib's default

@@ -25,7 +25,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 std::atomic<bool> message_suppressed{false};
 
 using Handler = void (*)(int, siginfo_t*, void*);
-std::array<std::atomic<bool>, 32> is_protected;  // [signal]: libraries cannot replace the signal's handler
+std::array<std::atomic<bool>, 32> is_protected;  // [signal]: true if libraries cannot replace its handler
 // [signal]: handler that a library tried to install; null if none.
 std::array<std::atomic<Handler>, 32> library_handlers;
 static_assert(std::atomic<Handler>::is_always_lock_free);
@@ -69,7 +69,8 @@ void install_interrupt_handlers() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) install_handler(signal);
 }
 
-void protect_handler(int signal, bool on) { is_protected.at(static_cast<std::size_t>(signal)) = on; }
+void protect_handler(int signal) { is_protected.at(static_cast<std::size_t>(signal)) = true; }
+void unprotect_handler(int signal) { is_protected.at(static_cast<std::size_t>(signal)) = false; }
 
 void suppress_interrupt_message() { message_suppressed = true; }
 

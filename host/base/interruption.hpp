@@ -13,8 +13,9 @@ void remove_files_in_progress();
 /// to install its own handler, the library's handler is called before the process ends.
 void install_interrupt_handlers();
 
-/// Prevents libraries from replacing the installed handler of `signal`, or allows it again (`on` = false).
-void protect_handler(int signal, bool on = true);
+/// Prevents libraries from replacing the installed handler of `signal`; unprotect_handler() allows it again.
+void protect_handler(int signal);
+void unprotect_handler(int signal);
 
 /// Suppresses the message of later interruptions. Call it if another process prints the message, or if this process has
 /// already printed why it ends.

@@ -41,7 +41,7 @@ class JsonText : public std::streambuf {
     }
     bool parse_error(std::size_t byte, const std::string& token, const NlohmannJson::exception& error) {
         if (dynamic_cast<const NlohmannJson::out_of_range*>(&error) == nullptr) refuse_byte(byte);
-        add_value({});
+        add_value({});  // a value at this position, for path_of()
         throw JsonError(fmt::format("{:.40} is outside the range of double precision", token), position());
     }
 
@@ -49,7 +49,7 @@ class JsonText : public std::streambuf {
     static std::string path_of(const Json* json, std::uint32_t position);
 
   private:
-    static constexpr std::size_t kMaxDepth = 100;  // levels; bounds the stack of functions that recurse into a document
+    static constexpr std::size_t kMaxDepth = 100;  // levels of nesting; limits the depth of recursive functions
 
     std::uint32_t position() const { return static_cast<std::uint32_t>(gptr() - eback()); }
     [[noreturn]] static void refuse_byte(std::size_t byte) {
@@ -244,8 +244,8 @@ Json Json::parse(const std::string& text, const JsonSource& source) {
     return json;
 }
 
-std::string json_text(const std::filesystem::path& file, const JsonSource& source, Pipes pipes,
-                      std::uint64_t max_bytes) try {
+std::string json_file_text(const std::filesystem::path& file, const JsonSource& source, Pipes pipes,
+                           std::uint64_t max_bytes) try {
     return read_file(file, pipes, max_bytes);
 } catch (const UnreadableFile& error) {
     source.refuse(fmt::format("cannot be read: {}", error.what()));

@@ -1,4 +1,4 @@
-// JSON documents as values. raya writes reports, traces and studies with them, and reads baselines and checks.
+// JSON documents as values: the format of raya's reports, traces, studies and messages between its processes.
 //
 // nlohmann's library writes and parses the text. This header does not include that library, because its templates would
 // add two to three seconds of compilation to each of fifty files.
@@ -128,14 +128,14 @@ class Json {
     };
 
     explicit Json(Tree tree);
-    Tree* tree(bool object) const;  // content of an object (true) or an array (false); null if it has another type
+    Tree* tree(bool object) const;  // members of an object (true), elements of an array (false); null: other type
     [[noreturn]] void refuse(const std::string& reason) const;
 
     std::variant<std::monostate, bool, std::uint64_t, std::int64_t, double, Box<std::string>, Box<Tree>> value_;
     std::uint32_t position_ = 0;  // as JsonError::position
 };
 
-struct Json::Tree {
+struct Json::Tree {  // an array or an object
     std::vector<Json> elements{};
     std::vector<std::string> keys{};  // names of an object's elements; empty for an array
     bool is_object = false;
@@ -164,7 +164,7 @@ inline constexpr std::uint64_t kMaxJsonBytes = 64'000'000;  // default maximum s
 
 /// Reads a JSON file into a string for read_json(). Throws UserError, as `source` formats it, if the file cannot be
 /// read or has more than `max_bytes` bytes.
-std::string json_text(const std::filesystem::path& file, const JsonSource& source, Pipes pipes = Pipes::kRefused,
-                      std::uint64_t max_bytes = kMaxJsonBytes);
+std::string json_file_text(const std::filesystem::path& file, const JsonSource& source, Pipes pipes = Pipes::kRefused,
+                           std::uint64_t max_bytes = kMaxJsonBytes);
 
 }  // namespace raya

@@ -49,9 +49,9 @@ std::string unsafe_entry_reason(const fs::path& path, const std::vector<uid_t>& 
         return fmt::format("'{}' belongs to user {}", path.string(), user_name(status.st_uid));
     if (sticky == Sticky::kAllowed && (status.st_mode & S_ISVTX) != 0) return {};
     // If the file has an access control list, the group bits are the mask of all its entries, not the group's rights.
-    const bool has_list = ::lgetxattr(path.c_str(), "system.posix_acl_access", nullptr, 0) > 0;
+    const bool has_access_list = ::lgetxattr(path.c_str(), "system.posix_acl_access", nullptr, 0) > 0;
     const bool group_may_write =
-        (status.st_mode & S_IWGRP) != 0 && (has_list || has_other_members(status.st_gid, status.st_uid));
+        (status.st_mode & S_IWGRP) != 0 && (has_access_list || has_other_members(status.st_gid, status.st_uid));
     if (!group_may_write && (status.st_mode & S_IWOTH) == 0) return {};
     return fmt::format("other users may write '{}' (mode {:04o})", path.string(), status.st_mode & ALLPERMS);
 }

@@ -25,12 +25,12 @@ struct MissingLibrary : ModuleError {
 std::string memory_limit();
 
 /// Returns the function `symbol` of the module `name` (the file NAME.so in module_folder()). The module stays loaded.
-/// Throws ModuleError if it does not load. Throws UserError if users other than root, this user and the program's owner
-/// may change the file or its folder, or if a memory limit prevents loading.
+/// Throws ModuleError if the module does not load or has no such function. Throws UserError if users other than root,
+/// this user and the program's owner may change the file or its folder, or if a memory limit prevents loading.
 void* module_function(const std::string& name, const char* symbol);
 
-/// The folder of the modules and of the other files installed with the program: ../lib/raya if the program's folder is
-/// named `bin`, else the program's folder. Throws ModuleError if the program's path cannot be read.
+/// Returns the folder of the modules and of the other files installed with the program: ../lib/raya if the program's
+/// folder is named `bin`, else the program's folder. Throws ModuleError if the program's path cannot be read.
 std::filesystem::path module_folder();
 
 /// Checks if users other than root, this user and the program's owner may change `file`, its folder, or any higher

@@ -53,7 +53,7 @@ class ProgressBar {
     void draw_until_ended();
     double stage_seconds() const;
 
-    std::mutex mutex_;  // guards all members below
+    std::mutex mutex_;  // guards ended_, stage_name_, stage_began_ and progress_
     std::condition_variable end_;
     bool ended_ = false;
     std::string stage_name_;

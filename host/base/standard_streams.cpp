@@ -18,7 +18,7 @@ namespace {
 constexpr int kNotReserved = -1;
 constexpr int kTaken = -2;  // take_stdout() has returned the descriptor
 
-int reserved_stdout = kNotReserved;  // a duplicate of stdout; while it exists, descriptor 1 refers to stderr
+int reserved_stdout = kNotReserved;  // descriptor of a duplicate of stdout, or one of the two values above
 
 }  // namespace
 
@@ -33,7 +33,7 @@ std::string output_name(const std::filesystem::path& path) {
 int take_stdin() {
     static bool taken = false;
     if (std::exchange(taken, true))
-        throw UnreadableFile("stdin can be read only once; give - once and name files for the others");
+        throw UnreadableFile("stdin can be read only once; give - once and name files for the other inputs");
     if (::isatty(STDIN_FILENO) != 0)
         print_log("raya: reading stdin from the terminal; end with Ctrl-D on a line of its own\n");
     return STDIN_FILENO;
@@ -52,7 +52,7 @@ bool stdout_is_reserved() { return reserved_stdout != kNotReserved; }
 int take_stdout() {
     reserve_stdout();
     const int descriptor = std::exchange(reserved_stdout, kTaken);
-    if (descriptor == kTaken) throw UserError("only one file can go to stdout; name files for the others");
+    if (descriptor == kTaken) throw UserError("only one file can go to stdout; name files for the other outputs");
     return descriptor;
 }
 

@@ -22,7 +22,7 @@ namespace raya {
 namespace fs = std::filesystem;
 namespace {
 
-[[noreturn]] void refuse(int error) { throw UnreadableFile(std::generic_category().message(error)); }
+[[noreturn]] void refuse_to_read(int error) { throw UnreadableFile(std::generic_category().message(error)); }
 
 struct Descriptor {
     int number;
@@ -44,7 +44,7 @@ std::string read_all(int descriptor, std::uint64_t expected_bytes, std::uint64_t
         if (end > max_bytes) throw UnreadableFile(fmt::format("larger than {} bytes", max_bytes));
         if (end == bytes.size()) bytes.resize(end + std::max(end, kBlock));
         const ssize_t read_bytes = ::read(descriptor, bytes.data() + end, bytes.size() - end);
-        if (read_bytes < 0 && errno != EINTR) refuse(errno);
+        if (read_bytes < 0 && errno != EINTR) refuse_to_read(errno);
         end += static_cast<std::size_t>(std::max<ssize_t>(read_bytes, 0));
         if (read_bytes != 0) continue;
         bytes.resize(end);
@@ -82,7 +82,7 @@ bool has_access(const fs::path& path, int mode) { return ::faccessat(AT_FDCWD, p
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-void check_folder(const fs::path& path, const fs::path& folder) {
+void check_output_folder(const fs::path& path, const fs::path& folder) {
     std::error_code error;
     const fs::file_status status = fs::status(folder, error);
     if (status.type() == fs::file_type::not_found)
@@ -90,7 +90,7 @@ void check_folder(const fs::path& path, const fs::path& folder) {
                "make it first (mkdir -p) or name another file");
     if (error) refuse(path, error.value());
     if (!fs::is_directory(status))
-        refuse(path, fmt::format("'{}' is not a folder", folder.string()), "name another file");
+        refuse(path, fmt::format("'{}' is not a folder", folder.string()), "name a file in another folder");
     if (!has_access(folder, W_OK | X_OK))
         refuse(path, fmt::format("the folder '{}' is not writable", folder.string()),
                "change its permissions or name a file in another folder");
@@ -128,7 +128,7 @@ Target checked_target(const fs::path& path) {
         refuse(path, "the file exists and is not writable", "change its permissions or name another file");
     if (exists && !fs::is_regular_file(status)) return {path, true};
     const fs::path file = resolve_links(path);
-    check_folder(path, folder_of(file));
+    check_output_folder(path, folder_of(file));
     const fs::path folder = fs::canonical(folder_of(file), error);
     if (error) refuse(path, error.value());
     return {folder / file.filename(), false};
@@ -191,10 +191,10 @@ void write_direct(const fs::path& path, const NextPiece& next_piece) {
 std::string read_file(const std::filesystem::path& path, Pipes pipes, std::uint64_t max_bytes) {
     if (is_standard_stream(path)) return read_all(take_stdin(), 0, max_bytes);
     struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) refuse(errno);
+    if (::stat(path.c_str(), &status) != 0) refuse_to_read(errno);
     check_kind(status, pipes);  // before open(), which would wait for the other end of a pipe
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-    if (file.number < 0) refuse(errno);
+    if (file.number < 0) refuse_to_read(errno);
     return read_all(file.number, static_cast<std::uint64_t>(status.st_size), max_bytes);
 }
 

@@ -149,15 +149,15 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
             fmt::format("{}: {} allows groups of 1..{} for this kernel; remedy: --group {}, or fewer lanes (--lanes)",
                         operation, info_.name, max_size, max_size));
     }
-    const bool records_build = (logs_builds_ || builds_ != nullptr) && launched_.emplace(kernel(), group_size).second;
-    const std::string name = records_build ? fmt::format("{}, groups of {}", record.target_name, group_size) : "";
-    if (records_build) finish();
+    const bool records_launch = (logs_builds_ || builds_ != nullptr) && launched_.emplace(kernel(), group_size).second;
+    const std::string name = records_launch ? fmt::format("{}, groups of {}", record.target_name, group_size) : "";
+    if (records_launch) finish();
     const Clock::time_point start = Clock::now();
     submit(operation, std::move(record), [&](cl::Event* event) {
         queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
                                      nullptr, event);
     });
-    if (!records_build) return;
+    if (!records_launch) return;
     finish();
     const cl::Program program = kernel.getInfo<CL_KERNEL_PROGRAM>();
     if (logs_builds_) log_kernel_build("launch", name, program.getBuildInfo<CL_PROGRAM_BUILD_OPTIONS>(device_), start);

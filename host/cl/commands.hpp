@@ -25,9 +25,9 @@ namespace raya {
 /// kOn: the device records the times of commands, if it supports profiling. kOff: it records no times.
 enum class Timing { kOn, kOff };
 
-/// Transfers between host and device. kStaged: all go through a pinned staging buffer (host/cl/memory.hpp). kDirect:
-/// only small writes go through a staging buffer, in plain memory. kAutomatic: kStaged on a device whose memory is
-/// separate from the host's, else kDirect.
+/// Transfers between host and device. kStaged: all transfers go through a pinned staging buffer (host/cl/memory.hpp).
+/// kDirect: only small writes go through a staging buffer, in plain memory. kAutomatic: kStaged on a device whose
+/// memory is separate from the host's, else kDirect.
 enum class Transfers { kAutomatic, kDirect, kStaged };
 
 /// A context and an in-order queue: commands run one after another, in the order in which they were enqueued.
@@ -46,7 +46,7 @@ class Session {
 
     const DeviceInfo& device() const { return info_; }
 
-    /// Total bytes of all buffers allocated so far, including those that were freed.
+    /// Returns the total size in bytes of all buffers allocated so far, including buffers that were freed.
     std::uint64_t bytes_taken() const { return bytes_taken_; }
 
     /// Allocates `count` > 0 elements; `name` is for messages. Throws DeviceError if the buffer would exceed the
@@ -60,9 +60,9 @@ class Session {
     /// options is built once per process.
     Program build(const std::string& name, const std::string& source, const std::vector<std::string>& options) const;
 
-    /// Returns the maximum amount of work of a launch with this label, in units that the kernel defines; LaunchGuard
-    /// (kernels.hpp) lowers it. The value is UINT32_MAX, which means no limit, until the device has ended loops of such
-    /// a launch early.
+    /// Returns a reference to the maximum amount of work of a launch with this label, in units that the kernel defines;
+    /// LaunchGuard (kernels.hpp) lowers the maximum. It is UINT32_MAX, which means no limit, until the device has ended
+    /// loops of such a launch early.
     std::uint32_t& launch_limit(const std::string& label) {
         return launch_limits_.try_emplace(label, UINT32_MAX).first->second;
     }
@@ -180,7 +180,7 @@ class Session {
     void save_binaries() const;
 
     /// Returns the thread of announce_compiling() (base/progress.hpp), or an empty thread if messages are not enabled.
-    /// Keep it while kernels are compiled and launched for the first time.
+    /// Keep the thread while kernels are compiled and launched for the first time.
     [[nodiscard]] std::jthread compile_notice() const;
 
     /// Starts a host span, which ends when the returned object is destroyed. Records it in the SpanLog of observe().
@@ -249,7 +249,7 @@ class Session {
     mutable std::uint64_t bytes_taken_ = 0;
     cl::Context context_;
     std::unique_ptr<cl::CommandQueue> queue_;  // its address is stable when the session moves
-    bool pinned_ = false;                      // Transfers::kStaged is in effect, else kDirect
+    bool pinned_ = false;                      // true: Transfers::kStaged is in effect; false: kDirect
     std::unique_ptr<Staging> staging_;
     std::vector<PendingCommand> pending_;
     Profile profile_;

@@ -27,7 +27,7 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-/// DeviceInfo::max_loop_iterations for a device of this name. Mesa's llvmpipe has a limit that no query reports
+/// Returns DeviceInfo::max_loop_iterations for a device of this name. Mesa's llvmpipe has a limit that no query reports
 /// (tests/portability/nested_loops.cl). On other devices the kernels detect loops that ended early
 /// (kernels/shared/loop_canary.clh).
 std::uint32_t max_loop_iterations_of(const std::string& device_name) {
@@ -169,7 +169,7 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
         const std::string limit = memory_limit();
         throw DeviceError(fmt::format(
             "no OpenCL device found; remedy: {}install a driver (Debian: apt install pocl-opencl-icd), check the "
-            "environment variable OCL_ICD_VENDORS, which may hide it, and the output of clinfo",
+            "environment variable OCL_ICD_VENDORS, which may hide the driver, and the output of clinfo",
             limit.empty() ? "" : fmt::format("raise {}, which may be too low for a driver, ", limit)));
     }
     const std::string entry = list_entry(wanted, ordinal);
@@ -177,8 +177,8 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
     const std::size_t found = named_index(entry, devices);
     if (found == devices.size()) {
         throw DeviceError(fmt::format(
-            "no OpenCL device matches '{}'; remedy: a number, a type or a part of a name or version from:{}", entry,
-            device_list(devices)));
+            "no OpenCL device matches '{}'; remedy: give a number, a type or a part of a name or version from:{}",
+            entry, device_list(devices)));
     }
     if (!is_usable(devices[found])) {
         throw DeviceError(

@@ -25,8 +25,11 @@ struct DeviceInfo {
     bool fused_multiply_add = false;             // CL_FP_FMA; kernels find FP_FAST_FMAF defined if it is fast
     // Properties of fp32: CL_FP_DENORM, CL_FP_ROUND_TO_NEAREST, CL_FP_INF_NAN.
     bool denormals = false, round_to_nearest = false, inf_nan = false;
-    bool profiling = false;
+    bool profiling = false;  // the device can record the times of commands
     bool available = false, compiler_available = false;
 };
+
+/// Returns true for Mesa's llvmpipe, the only device with a known limit of loop iterations.
+inline bool is_llvmpipe(const DeviceInfo& device) { return device.max_loop_iterations > 0; }
 
 }  // namespace raya

@@ -52,15 +52,15 @@ void write_message(const char* text) {
 }
 
 extern "C" void report_driver_crash(int signal) {
-    static std::atomic<pid_t> crashed{0};
+    static std::atomic<pid_t> crashed_thread{0};
     const pid_t thread = ::gettid();
     pid_t first_thread = 0;
-    if (!crashed.compare_exchange_strong(first_thread, thread) && first_thread != thread)
+    if (!crashed_thread.compare_exchange_strong(first_thread, thread) && first_thread != thread)
         for (;;) ::pause();  // another thread crashed first: it ends the process
     remove_files_in_progress();
     const char* operation = current_operation.load();
-    if (operation == nullptr && thread != ::getpid()) operation = "running a kernel";  // other threads are the driver's
-    if (operation == nullptr || first_thread != 0) {
+    if (operation == nullptr && thread != ::getpid()) operation = "running a kernel";  // probably a driver's thread
+    if (operation == nullptr || first_thread != 0) {  // outside of drivers, or in this handler itself
         std::signal(signal, SIG_DFL);
         ::raise(signal);
         return;
@@ -79,7 +79,7 @@ extern "C" void report_driver_crash(int signal) {
     ::_exit(kExitDeviceError);
 }
 
-/// Runs at exit(), which LLVM, used by PoCL, calls if the disk with the kernel cache is full.
+/// Runs at exit(). PoCL's LLVM calls exit() if the disk with the kernel cache is full.
 void report_driver_exit() {
     const char* const operation = current_operation.load();
     if (operation == nullptr) return;
@@ -92,7 +92,7 @@ void report_driver_exit() {
 }
 
 /// Replaces the signal's handler, if it is `old_handler`, by `new_handler`.
-void set_handler(int signal, void (*old_handler)(int), void (*new_handler)(int)) {
+void replace_handler(int signal, void (*old_handler)(int), void (*new_handler)(int)) {
     struct sigaction action {};
     if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != old_handler) return;
     action.sa_handler = new_handler;
@@ -100,9 +100,9 @@ void set_handler(int signal, void (*old_handler)(int), void (*new_handler)(int))
     ::sigaction(signal, &action, nullptr);
 }
 
-/// Returns the size, in bytes, of the stack and of the guard of a new thread: kStackBytes, or less if RLIMIT_AS limits
-/// the address space. In that case the stacks and guards of one thread per core take an eighth of the limit, but each
-/// takes at least kStackBytes / 16.
+/// Returns the size of a new thread's stack in bytes; its guard has the same size. If RLIMIT_AS limits the address
+/// space, the size is chosen so that the stacks and guards of one thread per core together take an eighth of the limit.
+/// Minimum: kStackBytes / 16; maximum, also without a limit: kStackBytes.
 std::size_t thread_stack_bytes() {
     rlimit memory{RLIM_INFINITY, RLIM_INFINITY};
     ::getrlimit(RLIMIT_AS, &memory);
@@ -138,7 +138,7 @@ fs::path default_cache_folder() {
 }
 
 /// Returns the reason why a folder is not safe for PoCL's cache: the folder is not writable, or other users may change
-/// it. Empty if it is safe. Checks the nearest existing folder above if the folder does not exist.
+/// it. Returns an empty string if it is safe. If the folder does not exist, checks the nearest existing folder above.
 std::string unsafe_reason(fs::path folder) {
     std::error_code error;
     while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
@@ -155,9 +155,8 @@ bool make_private_folder(const fs::path& folder) {
            (status.st_mode & ACCESSPERMS) == S_IRWXU;
 }
 
-/// Creates a folder among the temporary files that only this user may access, and returns its path. `reason`: why
-/// PoCL's default folder is not safe, for the message of the DeviceError that is thrown if no such folder can be
-/// created.
+/// In the folder for temporary files, creates a folder that only this user may access, and returns its path. Throws
+/// DeviceError if that fails. `reason`, for the error message: why PoCL's default folder is not safe.
 fs::path private_cache_folder(const std::string& reason) {
     std::error_code error;
     fs::path temporary = fs::canonical(fs::temp_directory_path(error), error);
@@ -166,10 +165,10 @@ fs::path private_cache_folder(const std::string& reason) {
     if (unsafe_path_reason(temporary, {::geteuid()}, Sticky::kAllowed).empty())
         for (const char* suffix : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
             if (make_private_folder(base_path + suffix)) return base_path + suffix;
-    throw DeviceError(
-        fmt::format("no safe folder for PoCL's kernel cache: {}; '{}' and '{}-1' to '-9' do not belong to this user "
-                    "alone; name another folder in POCL_CACHE_DIR",
-                    reason, base_path, base_path));
+    throw DeviceError(fmt::format(
+        "no safe folder for PoCL's kernel cache: {0}; none of the folders '{1}', '{1}-1', ... '{1}-9' can be "
+        "restricted to this user; name another folder in POCL_CACHE_DIR",
+        reason, base_path));
 }
 
 }  // namespace
@@ -207,8 +206,8 @@ void set_crash_prefix(const std::string& prefix, double delay_s) {
 void install_crash_handlers() {
     std::atexit(report_driver_exit);
     for (const int signal : kCrashSignals) {
-        set_handler(signal, SIG_DFL, report_driver_crash);
-        if (signal != SIGFPE) protect_handler(signal);  // PoCL's SIGFPE handler continues after a division by 0
+        replace_handler(signal, SIG_DFL, report_driver_crash);
+        if (signal != SIGFPE) protect_handler(signal);  // PoCL's SIGFPE handler lets kernels continue after x / 0
     }
     static AlternateStack signal_stack;
     const stack_t alternate{signal_stack.data(), 0, signal_stack.size()};
@@ -220,10 +219,10 @@ void install_crash_handlers() {
     enlarges_stacks = true;
 }
 
-void restore_crash_signals() {
+void remove_crash_handlers() {
     for (const int signal : kCrashSignals) {
-        protect_handler(signal, false);
-        set_handler(signal, report_driver_crash, SIG_DFL);
+        unprotect_handler(signal);
+        replace_handler(signal, report_driver_crash, SIG_DFL);
     }
 }
 

@@ -30,12 +30,12 @@ void install_crash_handlers();
 void set_crash_prefix(const std::string& prefix, double delay_s);
 
 /// Removes the crash handlers, so that crashes end the program by their signal and the parent process sees the signal.
-void restore_crash_signals();
+void remove_crash_handlers();
 
 /// Sets POCL_CACHE_DIR, unless it is set, to a folder that only this user and root may write: PoCL's default folder if
-/// it is safe, else, with a warning, a folder among the temporary files. The folder matters because PoCL executes
-/// the binaries in it, and offers no device if it cannot write to the folder. Call this before any OpenCL function.
-/// Throws DeviceError if there is no safe folder.
+/// it is safe, else, with a warning, a folder in the folder for temporary files. The choice matters because PoCL
+/// executes the binaries in it, and offers no device if it cannot write to the folder. Call this before any OpenCL
+/// function. Throws DeviceError if there is no safe folder.
 void set_driver_cache_folder();
 
 /// Checks if PoCL can store kernels in the folder POCL_CACHE_DIR, by writing and deleting a file in it. Returns the

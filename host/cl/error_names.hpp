@@ -9,8 +9,8 @@
 
 namespace raya {
 
-/// Returns the name of an OpenCL error code as in the headers, e.g. "CL_INVALID_KERNEL_ARGS", or "unknown OpenCL error
-/// -4711". Sources of the codes: cl.h, cl_ext.h, and NVIDIA's driver for -9999.
+/// Returns the name of an OpenCL error code as in OpenCL's headers, e.g. "CL_INVALID_KERNEL_ARGS", or "unknown OpenCL
+/// error -4711". Sources of the codes: cl.h, cl_ext.h, and NVIDIA's driver for -9999.
 std::string error_name(cl_int code);
 
 /// Returns the remedy for an error code, one line; empty if the code has no common remedy.

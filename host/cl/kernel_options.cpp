@@ -53,7 +53,7 @@ std::uint32_t trees_of(const KernelOptions& options) {
 }
 
 std::uint32_t default_lanes(const DeviceInfo& device) {
-    if (device.type != "cpu" || device.max_loop_iterations > 0) return 1;
+    if (device.type != "cpu" || is_llvmpipe(device)) return 1;
     std::uint32_t lanes = 4;
     for (const std::uint32_t width : kLanes)
         if (width <= device.native_float_width) lanes = std::max(lanes, width);
@@ -63,7 +63,7 @@ std::uint32_t default_lanes(const DeviceInfo& device) {
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus) {
     constexpr std::size_t kGpuGroupSize = 128, kLlvmpipeGroupSize = 8;
     const bool cpu = device.type == "cpu";
-    if (cpu && (torus || device.max_loop_iterations == 0)) return 1;
+    if (cpu && (torus || !is_llvmpipe(device))) return 1;
     return static_cast<std::uint32_t>(std::min(cpu ? kLlvmpipeGroupSize : kGpuGroupSize, device.max_group_size));
 }
 

@@ -66,7 +66,7 @@ std::uint32_t default_lanes(const DeviceInfo& device);
 
 /// Returns the default L. On a CPU it is 1, because a work-item's lanes fill the vectors. On llvmpipe it is 8,
 /// because llvmpipe vectorises over work-items with 256-bit vectors. On other devices it is 128: with 150 registers per
-/// work-item (kernel `trace`), a GPU's 132 multiprocessors run about 256 PEs of four warps at once
+/// work-item (kernel `trace`), a GPU with 132 multiprocessors runs about 256 PEs, of four warps each, at once
 /// (docs/gpu_resources.md). For a torus it is 1 on every CPU, because a node of one work-item keeps packets in order
 /// (docs/packets.md).
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false);

@@ -88,14 +88,15 @@ std::string expand_kernel_source(const std::string& text, const std::string& nam
     return source;
 }
 
-void check_folder(const KernelSources& sources) {
+void check_kernel_folder(const KernelSources& sources) {
     constexpr std::string_view kKernels = "kernels/";
     for (const auto& [name, text] : embedded_files())
-        if (name.starts_with(kKernels) && name.ends_with(".cl")) kernel_source(name.substr(kKernels.size()), sources);
+        if (name.starts_with(kKernels) && name.ends_with(".cl"))
+            kernel_source(name.substr(kKernels.size()), sources);  // throws if a file is missing
 }
 
 void check_patches(const KernelSources& sources) {
-    for (const SourcePatch& patch : sources.patches) kernel_file(patch.file, sources);
+    for (const SourcePatch& patch : sources.patches) kernel_file(patch.file, sources);  // throws on failure
 }
 
 }  // namespace raya

@@ -38,7 +38,7 @@ std::string expand_kernel_source(const std::string& text, const std::string& nam
 
 /// Throws UserError unless `sources.folder` contains all kernel files that are embedded in raya, and all files that
 /// they include.
-void check_folder(const KernelSources& sources);
+void check_kernel_folder(const KernelSources& sources);
 
 /// Throws as kernel_file() if a patch does not apply. Call this function before code that counts any exception as a
 /// detected fault.

@@ -28,8 +28,7 @@ struct DescribedKernel : Kernel<Params...> {
 /// The kernels for one device with one set of build options. Each requested file is built as one program.
 class Kernels {
   public:
-    /// Makes kernels for the device of `session`, which must outlive this object. Throws UserError as build_options()
-    /// does.
+    /// Makes kernels for the device of `session`, which must outlive this object. Throws as build_options().
     Kernels(Session& session, const KernelOptions& options, const KernelSources& sources = {});
 
     /// Returns the kernel `K`, a DescribedKernel. Builds its file when the first of the file's kernels is requested.

@@ -46,15 +46,15 @@ class PeakRates {
     PeakRates(Session& session, const NumberFormat& format, std::uint32_t lanes)
         : session_(session), render_rates_(session, format, lanes) {
         const NumberFormat fp32{};
-        const std::uint32_t widest_lanes = default_lanes(session.device());
-        if (format != fp32 || lanes != widest_lanes) widest_fp32_rates_.emplace(session, fp32, widest_lanes);
+        const std::uint32_t device_lanes = default_lanes(session.device());
+        if (format != fp32 || lanes != device_lanes) default_fp32_rates_.emplace(session, fp32, device_lanes);
     }
 
     DevicePeak measure_all() {
         DevicePeak peak;
         peak.multiply_per_s = render_rates_.measure(kMultiplyAdd, kSamples);
         peak.fp32_per_s =
-            widest_fp32_rates_ ? widest_fp32_rates_->measure(kMultiplyAdd, kSamples) : peak.multiply_per_s;
+            default_fp32_rates_ ? default_fp32_rates_->measure(kMultiplyAdd, kSamples) : peak.multiply_per_s;
         peak.divide_per_s = render_rates_.measure(kDivide, kSamples);
         peak.sqrt_per_s = render_rates_.measure(kSquareRoot, kSamples);
         peak.copy_bytes = copied_bytes(session_.device());
@@ -65,8 +65,8 @@ class PeakRates {
   private:
     Session& session_;
     OperationRates render_rates_;
-    std::optional<OperationRates> widest_fp32_rates_;  // fp32 with the default lanes; empty if render_rates_ has this
-                                                       // format and number of lanes
+    std::optional<OperationRates> default_fp32_rates_;  // fp32 with the default lanes; empty if render_rates_ has this
+                                                        // format and number of lanes
 };
 
 }  // namespace

@@ -21,8 +21,8 @@ class OperationRates {
   public:
     OperationRates(Session& session, const NumberFormat& format, std::uint32_t lanes);
 
-    /// Returns the number of operations kOperations[kind] per second: the maximum of `samples` launches of at least 10
-    /// ms each. Returns 0 if the device does not time its commands.
+    /// Returns the number of operations kOperations[kind] per second: the maximum over `samples` launches of at least
+    /// 10 ms each. Returns 0 if the device does not time its commands.
     double measure(std::size_t kind, int samples);
 
   private:
@@ -36,11 +36,11 @@ class OperationRates {
 
     Session& session_;
     std::uint32_t group_size_;
-    std::size_t work_items_, lanes_;  // number of work-items of a launch; V
+    std::size_t work_items_, lanes_;  // number of work-items of a launch; number of lanes
     Kernels kernels_;
     Chains chains_;
     Buffer<float> results_;
-    std::array<std::uint32_t, kOperations.size()> rounds_{};  // number of loop iterations of a launch; 0: not chosen
+    std::array<std::uint32_t, kOperations.size()> rounds_{};  // [kind]: number of loop iterations; 0: not chosen
 };
 
 /// Measures the rates of operations in fp32 with the device's default lanes, of operations in `format` with `lanes`,
@@ -50,7 +50,7 @@ class OperationRates {
 DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std::uint32_t lanes);
 
 /// Measures the offset of the device's clock. Enqueues 16 fills of one word and reads the host's clock before and after
-/// each: the time at which the command was queued lies between the two. Uses the command with the shortest interval.
+/// fill: the command was queued between these two times. Uses the command with the shortest interval.
 /// Later drift of the clocks is not detected. Clears the session's profile. Throws std::logic_error if the session does
 /// not time its commands.
 ClockOffset measure_clock_offset(Session& session);

@@ -92,7 +92,7 @@ class Readback {
 
 /// Sizes in bytes of one half of a Staging, in pinned and in plain memory. Plain halves are for devices that share the
 /// host's memory, where a thread of the driver copies the bytes of a transfer. For a small transfer, waking that thread
-/// and waiting for it takes longer than copying the bytes twice through the staging buffer.
+/// and waiting for it takes longer than copying its bytes twice through the staging buffer.
 inline constexpr std::size_t kPinnedHalfBytes = 4u << 20, kPlainHalfBytes = 64u << 10;
 
 /// Staging buffer: host memory in two halves through which transfers between host and device go. Consecutive transfers
@@ -106,7 +106,7 @@ class Staging {
 
     /// Reserved bytes of a half.
     struct Place {
-        HostMemory& half;  // register the command with half.used_by()
+        HostMemory& half;  // register each command that uses `bytes` with half.used_by()
         std::byte* bytes;
     };
 

@@ -12,7 +12,7 @@
 namespace raya {
 namespace {
 
-// Returns end - start, or 0, because some drivers report an end time before the start time.
+// Returns end - start, or 0 if the end is before the start: some drivers report such times.
 std::uint64_t duration_ns(std::uint64_t start, std::uint64_t end) { return end > start ? end - start : 0; }
 
 }  // namespace
@@ -22,9 +22,9 @@ std::vector<LabelSummary> Profile::summary() const {
     std::map<std::pair<std::string, std::string>, std::size_t> line_index;  // (label, kind) -> index into lines
     for (const CommandRecord& command : commands_) {
         const std::uint64_t duration = duration_ns(command.started, command.ended);
-        const auto [place, is_new] = line_index.try_emplace({command.label, command.kind}, lines.size());
+        const auto [entry, is_new] = line_index.try_emplace({command.label, command.kind}, lines.size());
         if (is_new) lines.push_back({.label = command.label, .kind = command.kind, .min_ns = duration});
-        LabelSummary& line = lines[place->second];
+        LabelSummary& line = lines[entry->second];
         line.launches += 1;
         line.total_ns += duration;
         line.min_ns = std::min(line.min_ns, duration);

@@ -39,7 +39,7 @@ struct LabelSummary {
 /// The commands of a session in the order in which they were enqueued.
 class Profile {
   public:
-    /// `timed`: the device measures its commands; if false, only counts and bytes are meaningful.
+    /// `timed`: the device records the times of its commands; if false, only counts and bytes are meaningful.
     explicit Profile(bool timed) : timed_(timed) {}
 
     void add(CommandRecord command) { commands_.push_back(std::move(command)); }
@@ -59,8 +59,7 @@ class Profile {
 /// Returns the host's time in nanoseconds of CLOCK_MONOTONIC_RAW, the clock of PoCL's event times.
 std::uint64_t host_clock_ns();
 
-/// The offset of a device's clock: a device time plus `offset_ns` is the same time on the host's clock,
-/// host_clock_ns().
+/// The offset of a device's clock: device time + `offset_ns` is the same time on the host's clock (host_clock_ns()).
 struct ClockOffset {
     bool same_clock = true;  // the device uses the host's clock, so offset_ns is 0
     std::int64_t offset_ns = 0;
@@ -100,8 +99,7 @@ class SpanLog {
         return std::forward<Action>(action)();
     }
 
-    /// Returns all spans in the order in which they began. A span that is still running gets the current time as its
-    /// end.
+    /// Returns all spans in the order in which they began. A running span gets the current time as its end.
     std::vector<HostSpan> spans() const;
 
   private:
@@ -116,7 +114,7 @@ struct DevicePeak {
     double multiply_per_s = 0;                // multiply-adds in that format, with the lanes of the render
     double divide_per_s = 0, sqrt_per_s = 0;  // divisions and square roots in that format and lanes
     double copy_bytes_per_s = 0;              // number of bytes that a copy from buffer to buffer reads and writes
-    std::uint64_t copy_bytes = 0;             // size of each of the two buffers
+    std::uint64_t copy_bytes = 0;             // size of each of the copy's two buffers
     double scatter = 0;                       // (best - worst) / best of three measurements of fp32_per_s
 };
 

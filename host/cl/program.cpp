@@ -66,7 +66,7 @@ void log_kernel_build(const char* step, const std::string& name, const std::stri
 }
 
 std::size_t KernelBuild::binary_bytes() const {
-    return guarded(fmt::format("size of program '{}'", name), [this] {
+    return guarded(fmt::format("querying the size of program '{}'", name), [this] {
         std::size_t sum = 0;
         for (const std::size_t bytes : program.getInfo<CL_PROGRAM_BINARY_SIZES>()) sum += bytes;
         return sum;

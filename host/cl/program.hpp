@@ -35,8 +35,7 @@ struct Uint {
     cl_uint value;
 };
 
-/// Returns the name of the parameter `index` in the kernel's source; `index` as text if the driver does not report
-/// names.
+/// Returns the name of parameter `index` in the kernel's source, or `index` as text if the driver reports no names.
 std::string argument_name(const cl::Kernel& kernel, cl_uint index);
 
 /// Returns a kernel argument as text: name and size of a buffer, bytes of local memory, a number, or the size of a

@@ -19,7 +19,7 @@ TunedValues default_values(const DeviceInfo& device, const TuningKey& key) {
     const bool ring_without_accel = !key.torus && key.accel == RAYA_ACCEL_NONE;
     return {.lanes = default_lanes(device),
             .group = default_group_size(device, key.torus),
-            .batch = ring_without_accel && key.fp32 && device.max_loop_iterations > 0 ? kSphereBatch : 0};
+            .batch = ring_without_accel && key.fp32 && is_llvmpipe(device) ? kSphereBatch : 0};
 }
 
 KernelChoice with_values(KernelChoice kernels, const TunedValues& values) {

@@ -43,8 +43,8 @@ struct BenchCommand {
     std::optional<double> limit_s;  // maximum seconds to compile a kernel
 };
 
-// Checks the values of --tolerance, --page and --compare. Call read_baseline() before the measurements, because the
-// measurements take long. Returns the report of --compare; without --compare, an empty report.
+// Returns the report of --compare; without --compare, an empty report. Checks --tolerance and --page, too. Called
+// before the measurements, so that an error is reported before the measurements take their time.
 BenchReport read_baseline(const BenchCommand& command) {
     if (!(command.tolerance_percent >= 0 && command.tolerance_percent <= 100))
         throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance_percent));
@@ -255,9 +255,9 @@ void add_bench_command(CLI::App& program) {
     add_render_options(*command, options->render, false);
     add_value(
         *command, "--variants", options->variants,
-        "Time whole renders instead of the trace kernel, in these variants, comma-separated: none, grid, bvh: the "
-        "ring machine with that --accel; torus: 4x4x4 nodes without a memory limit; raya compares the other "
-        "variants with the first")
+        "Time whole renders instead of the trace kernel, for a comma-separated list of variants; none, grid and bvh "
+        "are the ring machine with that --accel; torus is 4x4x4 nodes without a memory limit; raya compares the "
+        "other variants with the first")
         ->delimiter(',')
         ->allow_extra_args(false)  // so that the scene may follow
         ->type_name("none,grid,bvh,torus")
@@ -281,11 +281,11 @@ void add_bench_command(CLI::App& program) {
         ->capture_default_str();
     group.next("Report and comparison");
     add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
-             "Write the rows as JSON, for a later --compare; -: stdout, with the tables on stderr");
+             "Write the rows as JSON, for a later --compare; -: stdout; the tables then go to stderr");
     add_file(
         *command, FileUse::kWritten, "--page", options->page, "FILE.html",
         "Write rates, comparison and roofline as an HTML page; raya page makes the same page from a report. Measures "
-        "the device's peak for each format and number of lanes, which takes some seconds for each pair")
+        "the device's peak for each pair of a format and a number of lanes; each pair takes some seconds")
         ->excludes(build);
     CLI::Option* compare =
         add_file(*command, FileUse::kRead, "--compare", options->baseline, "FILE.json",

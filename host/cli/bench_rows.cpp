@@ -45,8 +45,8 @@ BenchMeasurement make_measurement(const std::string& kernel, const Scene& scene,
             .hash = {}};
 }
 
-// Renders one image and returns a row with the image's event counts. The functions take the result of a render:
-// `events` returns its event counts, `seconds` its measured seconds, and `work` the operations and bytes of its kernel.
+// Renders one image and returns a row with the image's event counts. `events`, `seconds` and `work` are functions that
+// return figures of a render: the event counts, the measured seconds, and the operations and bytes of the kernel.
 // `work` is null if the row measures several kernels.
 template <class Renderer, class Seconds>
 BenchRow row_of(BenchMeasurement measurement, const NumberFormat& format, std::shared_ptr<Renderer> renderer,
@@ -214,7 +214,7 @@ void print_denormals(const std::vector<BenchRow>& rows) {
                              fmt::format("{:.2f}", row.result.median_s / flushed_row.result.median_s)});
         }
     fmt::print(
-        "\nwith denormal numbers, and flushed to 0 (-cl-denorms-are-zero); ratio above 1: denormals cost time\n{}",
+        "\ntimes with denormals kept, and flushed to 0 (-cl-denorms-are-zero); ratio above 1: denormals cost time\n{}",
         text_table(table));
 }
 

@@ -22,7 +22,7 @@ struct BenchRow {
     std::string tuned{};                // source of the lanes and group size (host/cl/tuned.hpp)
     bool flushed = false;               // true with -cl-denorms-are-zero, which may change the image
     std::function<double()> image_s{};  // renders the image again; returns its seconds
-    std::optional<KernelWork> work{};   // operations and bytes of the row's kernel; empty if the row times several
+    std::optional<KernelWork> work{};   // operations and bytes of the row's kernel; empty if it times several kernels
 };
 
 /// Prepares a row that measures the trace kernel's time on the device.
@@ -40,7 +40,7 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
 void check_rows(const std::vector<BenchRow>& rows);
 
 /// Takes `samples` time samples of each row. For a sample, the row renders images for at least 20 ms; the sample is the
-/// mean time of an image. The rows alternate, so that other programs disturb all rows equally.
+/// mean time of an image. Samples of different rows alternate, so that other programs disturb all rows equally.
 void take_samples(std::vector<BenchRow>& rows, std::uint32_t samples);
 
 /// Prints the rays per second, times, speed-up and slow-down of each row.

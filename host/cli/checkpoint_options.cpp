@@ -41,8 +41,8 @@ void add_checkpoint_options(CLI::App& command, CheckpointOptions& options) {
                      "Continue the same render from the file of --checkpoint; start anew if this file does not exist");
     add_value(
         command, "--checkpoint-every", options.every_s,
-        "Minimum seconds between two checkpoints, 0..86400; more if saving would take over 5 % of the time; 0: after "
-        "every band of pixels")
+        "Minimum seconds between two checkpoints, 0..86400; raya waits longer if saving would take over 5 % of the "
+        "time; 0: a checkpoint after every band of pixels")
         ->type_name("SECONDS")
         ->capture_default_str();
 }
@@ -88,10 +88,10 @@ void CheckpointFile::save(const RingState& state, const StateSettings& settings)
     last_save_s_ = std::chrono::duration<double>(last_save_ - start).count();
 }
 
-std::optional<RingState> CheckpointFile::load(const StateSettings& settings, const RingState& sized) const {
+std::optional<RingState> CheckpointFile::load(const StateSettings& settings, const RingState& sized_state) const {
     if (!options_.resume || !fs::exists(options_.file)) return {};
     try {
-        const RingState state = read_state(read_file(options_.file), settings, sized);
+        const RingState state = read_state(read_file(options_.file), settings, sized_state);
         if (!is_quiet())
             print_log(fmt::format("raya: {}: continuing at {:.1f} %, after {:.1f} s\n", options_.file,
                                   100 * state.fraction, state.seconds));

@@ -38,11 +38,11 @@ class CheckpointFile {
   private:
     bool due() const;  // returns true if the next checkpoint is due
     void save(const RingState& state, const StateSettings& settings);
-    std::optional<RingState> load(const StateSettings& settings, const RingState& sized) const;
+    std::optional<RingState> load(const StateSettings& settings, const RingState& sized_state) const;
 
     const CheckpointOptions& options_;
     RingCheckpointing callbacks_;
-    Clock::time_point last_save_ = Clock::now();  // end of the last save; before it, time of construction
+    Clock::time_point last_save_ = Clock::now();  // end of the last save; before the first save: construction
     double last_save_s_ = 0;                      // duration of the last save, seconds
 };
 

@@ -102,7 +102,7 @@ class HelpPage {
 
     std::string entries(const Entries& list) const {
         std::string text;
-        for (const Entry& entry : list) text += line_of(entry);
+        for (const Entry& entry : list) text += text_of(entry);
         return text;
     }
 
@@ -130,7 +130,7 @@ class HelpPage {
     std::string footer_text(const std::string& footer) const {
         std::string text;
         for (const std::string& line : lines_of(footer))
-            text += line.empty() ? "\n" : is_entry(line) ? line_of(entry_of(line)) : paragraph(line, kIndent);
+            text += line.empty() ? "\n" : is_entry(line) ? text_of(entry_of(line)) : paragraph(line, kIndent);
         return text;
     }
 
@@ -168,7 +168,7 @@ class HelpPage {
         if (name.size() <= kMaxNameColumn) max_name_size_ = std::max(max_name_size_, name.size());
     }
 
-    std::string line_of(const Entry& entry) const {
+    std::string text_of(const Entry& entry) const {
         const bool two_columns = width_ >= kMinTwoColumnWidth;
         const std::size_t column = two_columns ? kIndent + max_name_size_ + 2 : kDescriptionIndent;
         std::string text = std::string(kIndent, ' ') + entry.name;
@@ -215,8 +215,8 @@ std::vector<std::string> groups_of(const CommandText& command) {
 std::string brief(const std::string& help, std::size_t max_characters) {
     std::string text = help.substr(0, std::min({help.find("; "), help.find(". "), help.find('\n')}));
     if (text.size() <= max_characters) return text;
-    const std::size_t space = text.rfind(' ', max_characters - 4);
-    return text.substr(0, space == std::string::npos ? max_characters - 4 : space) + " ...";
+    const std::size_t last_blank = text.rfind(' ', max_characters - 4);
+    return text.substr(0, last_blank == std::string::npos ? max_characters - 4 : last_blank) + " ...";
 }
 
 std::string help_text(const CommandText& command, const std::string& path, std::size_t width) {

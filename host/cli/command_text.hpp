@@ -9,7 +9,7 @@ namespace raya {
 /// An option or a positional argument.
 struct OptionText {
     std::vector<std::string> names{};    // "-o", "--output"; or "SCENE" for a positional argument
-    std::string placeholder{};           // of the value, in help: "FILE.json", "N|WxH"; empty: a flag
+    std::string placeholder{};           // stands for the value in help: "FILE.json", "N|WxH"; empty: a flag
     std::string default_value{};         // empty: no default, or `help` contains the default
     std::string help{};                  // full help text
     std::string group{};                 // heading above the option in help
@@ -83,7 +83,7 @@ std::string help_text(const CommandText& command, const std::string& path, std::
 /// exist.
 CommandText short_form(CommandText command, const std::string& path);
 
-/// A manual page of section 1, of the program or of one of its commands with all subcommands.
+/// A manual page (section 1) of the program, or of one of its commands with all subcommands.
 struct ManPage {
     std::string name{};  // "raya", "raya-render"
     std::string text{};  // troff source with man macros

@@ -78,7 +78,7 @@ void open_standard_files() {
 
 // Runs raya as a worker process. If the task fails, the last line of the worker's output contains the error.
 int run_worker(const WorkerRequest& request) {
-    restore_crash_signals();  // the parent process reports the worker's crashes
+    remove_crash_handlers();  // the parent process reports the worker's crashes
     const auto send_error = [&](const char* kind, const std::exception& error) {
         send_line(request.pipe, {{"error", error.what()}, {"kind", kind}});
         return kExitOk;
@@ -118,7 +118,7 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
     }
 }
 
-/// Flushes stdout and returns `code`. Reports lost output, and then returns kExitUserError instead of kExitOk.
+/// Flushes stdout and returns `code`. If output is lost, reports this and returns kExitUserError instead of kExitOk.
 int flush_stdout(Ranks& ranks, int code) {
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;

@@ -18,7 +18,7 @@ std::string bash_completion(const CommandText& program);
 std::string zsh_completion(const CommandText& program);
 std::string fish_completion(const CommandText& program);
 
-/// Returns the text in single quotes, for bash and zsh: it's becomes 'it'\''s'.
+/// Returns the text in single quotes, for bash and zsh. The text `it's` becomes `'it'\''s'`.
 std::string shell_quoted(const std::string& text);
 
 /// Returns the clauses of a shell's `case` statement: one body for each command path. Paths with equal bodies share

@@ -41,12 +41,12 @@ struct ExploreCommand {
 RingSettings settings_of(const ExploreCommand& command, const Scene& scene) {
     RingSettings settings = ring_settings(command.render, scene);
     if (settings.dynamic)
-        throw UserError(fmt::format(
-            "{}: a dynamic mapping: the explorer shows static mappings only; choose cyclic, column, rows, blocks, "
-            "grid, tiles or random{}",
-            command.render.mapping.empty() ? "--machine " + command.render.machine
-                                           : "--mapping " + command.render.mapping,
-            command.render.mapping.empty() ? " with --mapping" : ""));
+        throw UserError(
+            fmt::format("{}: the mapping is dynamic, but the explorer shows static mappings only; choose cyclic, "
+                        "column, rows, blocks, grid, tiles or random{}",
+                        command.render.mapping.empty() ? "--machine " + command.render.machine
+                                                       : "--mapping " + command.render.mapping,
+                        command.render.mapping.empty() ? " with --mapping" : ""));
     settings.record_costs = true;
     return settings;
 }
@@ -114,7 +114,7 @@ Json exploration(const ExploreCommand& command, const RingSettings& settings, co
 
 // Refuses an image that is too large for a page. Called before the render.
 void check_pixels(const ImageSize& size) {
-    constexpr std::uint64_t kMaxPixels = 2'000'000;  // a page of about 2 MB, twice the maximum in check_bytes()
+    constexpr std::uint64_t kMaxPixels = 2'000'000;  // their page has about 2 MB, twice the maximum in check_bytes()
     if (std::uint64_t{size.width} * size.height <= kMaxPixels) return;
     throw UserError(fmt::format("--size {}x{}: too many pixels for a page, maximum {}; remedy: a smaller --size",
                                 size.width, size.height, kMaxPixels));

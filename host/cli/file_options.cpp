@@ -28,7 +28,7 @@ class FileCheck {
 
     void add_kernels(const NamedFile& folder) {
         constexpr std::string_view kKernels = "kernels/";
-        check_folder({.folder = folder.file});
+        check_kernel_folder({.folder = folder.file});
         for (const auto& [name, text] : embedded_files())
             if (name.starts_with(kKernels))
                 add_input({folder.option, (fs::path(folder.file) / name.substr(kKernels.size())).string()});
@@ -60,7 +60,7 @@ class FileCheck {
   private:
     static std::string identity_of(const NamedFile& output) {
         if (!is_standard_stream(output.file)) return file_identity(output.file);
-        // If an earlier check has reserved stdout for a file, /dev/stdout is stderr.
+        // If an earlier check has reserved stdout for a file, /dev/stdout refers to stderr.
         const std::string stdout_file = stdout_is_reserved() ? "" : file_identity("/dev/stdout");
         return stdout_file.empty() ? output.file : stdout_file;
     }

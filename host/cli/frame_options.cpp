@@ -21,8 +21,9 @@ constexpr std::uint32_t kMaxFrames = 999'999;
 constexpr double kMaxTurnDegrees = 360'000;
 
 [[noreturn]] void refuse_frames(const std::string& text) {
-    throw UserError(fmt::format(
-        "--frames {}: must be A:B (frames A to B) or A:B/N (frames A to B of 1 to N), each 0..{}", text, kMaxFrames));
+    throw UserError(
+        fmt::format("--frames {}: must be A:B (frames A to B) or A:B/N (frames A to B of 1 to N), with numbers 0..{}",
+                    text, kMaxFrames));
 }
 
 std::uint32_t parse_frame_number(const std::string& frames, std::string_view text) {

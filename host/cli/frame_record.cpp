@@ -90,7 +90,7 @@ void FrameRecord::read() {
     if (!fs::exists(file_)) return;
     const JsonSource source{file_.string(),
                             "move this file, or change -o: raya needs this name for the record of the frames"};
-    std::map<std::uint32_t, FrameEntry> entries = read_json(json_text(file_, source), source, entries_of);
+    std::map<std::uint32_t, FrameEntry> entries = read_json(json_file_text(file_, source), source, entries_of);
     for (const std::uint32_t number : added_) entries.insert_or_assign(number, entries_.at(number));
     entries_ = std::move(entries);
 }

@@ -20,7 +20,7 @@ namespace {
 struct GenerateOptions {
     std::string output;
     int level = 4, sphere_count = 0;
-    std::uint32_t cylinders = 12, wheels = 4;  // numbers along an edge of the cube
+    std::uint32_t cylinders = 12, wheels = 4;  // number of each along an edge of the cube
     std::string voxels = "4x4x4";
     std::uint64_t seed = 1;
 };
@@ -68,7 +68,7 @@ void add_generate_command(CLI::App& program) {
                       {{"raya generate lattice -o lattice.nff", "SPD's default size: 2,197 spheres, 6,084 cylinders"},
                        {"raya generate lattice --size 2 -o small.nff", "27 spheres, 54 cylinders"}});
     add_value(*lattice, "--size", options->cylinders,
-              "Number N of cylinders along an edge, 1..64 (12, SPD's: 2,197 spheres, 6,084 cylinders)")
+              "Number N of cylinders along an edge, 1..64 (SPD's default 12: 2,197 spheres, 6,084 cylinders)")
         ->type_name("N")
         ->capture_default_str();
     lattice->callback(
@@ -123,7 +123,7 @@ void add_generate_command(CLI::App& program) {
     cluster->callback([options] { write_scene(*options, [&] { return generate_cluster(options->seed); }); });
 
     CLI::App* centre = add_generator(
-        *command, *options, "centre", "The main scene: glass and mirror spheres clustered at the centre",
+        *command, *options, "centre", "The main scene of the studies: glass and mirror spheres clustered at the centre",
         {{"raya generate centre -o centre.nff", "The scene in scenes/centre.nff"},
          {"raya generate centre -o - | raya info -", "Print the scene's objects and the machines that can hold them"}});
     centre->callback([options] { write_scene(*options, [&] { return generate_centre(); }); });

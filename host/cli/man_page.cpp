@@ -149,7 +149,7 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-// Formats an indented line: "  NAME   description" as a list entry, any other line and raya commands verbatim.
+// Formats an indented line "  NAME   description" as a list entry. Formats other lines, and commands of raya, verbatim.
 std::string indented(const std::string& source_line) {
     const std::string text = source_line.substr(std::min(source_line.find_first_not_of(' '), source_line.size()));
     const std::size_t gap = text.find("  ");

@@ -14,7 +14,7 @@ void refuse_value(const std::string& option, const std::string& value, const cha
                                   : fmt::format("{} {}: {}; {}: {}", option, value, reason, option, help));
 }
 
-// Stores the text as the description of an inactive validator.
+// CLI11 options have no notes, so that the text is stored as the description of an inactive validator.
 CLI::Option* attach_note(CLI::Option* option, const char* name, const std::string& text) {
     try {
         option->get_validator(name)->description(text);

@@ -80,13 +80,13 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value,
     });
 }
 
-/// Attaches a text with a name to an option. Help does not show the text. note_of() returns the text, or "" if there is
-/// none.
+/// Attaches `text` to an option under the name `name`. Help does not show the text. note_of() returns the text, or ""
+/// if no text has this name.
 CLI::Option* attach_note(CLI::Option* option, const char* name, const std::string& text);
 std::string note_of(CLI::Option& option, const char* name);
 
 /// Sets the values that shell completion offers. They neither restrict the option's value nor appear in help. The
-/// call is not needed if the placeholder lists the values: "ring|bus".
+/// call is not needed if the placeholder in help lists the values: "ring|bus".
 CLI::Option* offer_choices(CLI::Option* option, const std::vector<std::string>& choices);
 
 /// Returns the values that offer_choices() set; empty if offer_choices() was not called.

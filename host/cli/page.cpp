@@ -64,7 +64,7 @@ JsonSource report_source(const std::string& name) {
 void make_page(const PageCommand& command) {
     check_page_name("-o", command.page);
     const std::string name = input_name(command.report);
-    const std::string page = page_of_report(json_text(command.report, report_source(name), Pipes::kRead), name);
+    const std::string page = page_of_report(json_file_text(command.report, report_source(name), Pipes::kRead), name);
     write_whole_file(command.page, page);
     if (!is_quiet())
         fmt::print("page    {} ({:.0f} KB); open it in a browser; it needs no network\n", printable(command.page),
@@ -75,7 +75,7 @@ void make_page(const PageCommand& command) {
 
 void check_page_name(const std::string& option, const std::string& file) {
     if (!file.ends_with(".html") && !file.ends_with(".htm") && !file.starts_with("/dev/") && !is_standard_stream(file))
-        throw UserError(fmt::format("{} {}: the file is an HTML page; choose a name that ends in .html", option, file));
+        throw UserError(fmt::format("{} {}: raya writes an HTML page; choose a name that ends in .html", option, file));
 }
 
 std::string page_of_report(const std::string& text, const std::string& name) {

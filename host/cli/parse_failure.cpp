@@ -14,12 +14,12 @@
 namespace raya {
 namespace {
 
-/// Returns the innermost selected command. Appends its path without the program's name, " generate balls", to `name`.
-const CLI::App& selected_command(const CLI::App& program, std::string& name) {
+/// Returns the innermost selected command. Appends its path without the program's name, " generate balls", to `path`.
+const CLI::App& selected_command(const CLI::App& program, std::string& path) {
     const CLI::App* command = &program;
     while (!command->get_subcommands().empty()) {
         command = command->get_subcommands().front();
-        name += ' ' + command->get_name();
+        path += ' ' + command->get_name();
     }
     return *command;
 }
@@ -87,13 +87,13 @@ std::string failure_reason(const CLI::App& command, const UnparsedArgument& unpa
 
 std::string failure_text(const CLI::App& program, const CLI::ParseError& error,
                          const std::vector<std::string>& arguments) {
-    std::string name;
-    const CLI::App& command = selected_command(program, name);
+    std::string path;
+    const CLI::App& command = selected_command(program, path);
     const bool has_unparsed = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
                               dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
     const UnparsedArgument unparsed = has_unparsed ? first_unparsed(program, arguments) : UnparsedArgument{};
-    return fmt::format("{}{}{}; see raya{} --help", name.empty() ? "" : name.substr(1), name.empty() ? "" : ": ",
-                       failure_reason(command, unparsed, error), name);
+    return fmt::format("{}{}{}; see raya{} --help", path.empty() ? "" : path.substr(1), path.empty() ? "" : ": ",
+                       failure_reason(command, unparsed, error), path);
 }
 
 /// Returns the option in `argument` if the next argument is its value, otherwise null. Throws UserError for forms that
@@ -142,8 +142,8 @@ void check_argument_values(const CLI::App& program, const std::vector<std::strin
 
 /// Adds to a message such as "--fold blok: ..." the option's choice that is most similar to the value.
 std::string with_suggestion(const CLI::App& program, std::string text) {
-    std::string name;
-    for (const CLI::Option* option : selected_command(program, name).get_options()) {
+    std::string path;
+    for (const CLI::Option* option : selected_command(program, path).get_options()) {
         const std::string start = option->get_name() + ' ';
         const std::size_t end = text.find(": ");
         if (!text.starts_with(start) || end == std::string::npos || end < start.size()) continue;

@@ -47,7 +47,7 @@ std::uint32_t parse_parameter(const MappingText& mapping, std::string_view text)
     std::string legal_form = mapping.name() + ", without a parameter";
     if (mapping.rule.kind == RAYA_GRID) {
         parameter = parse_pair(text);
-        legal_form = fmt::format("grid:AxB with A rows of B PEs, each 1..{}", kMaxSide);
+        legal_form = fmt::format("grid:AxB with A rows of B PEs, A and B 1..{}", kMaxSide);
     } else if (mapping.rule.kind == RAYA_TILES) {
         parameter = parse_pair(text);
         legal_form = fmt::format("tiles:WxH with the sides of a tile in pixels, each 1..{}", kMaxSide);
@@ -65,9 +65,9 @@ std::uint32_t parse_parameter(const MappingText& mapping, std::string_view text)
 [[noreturn]] void refuse_dynamic_mapping(const std::string& text) {
     throw UserError(
         fmt::format("--mapping {}: must be dynamic:CHUNK[,OVERHEAD[,ROOT]] or hybrid:CHUNK[,OVERHEAD[,SHARE[,ROOT]]] "
-                    "with CHUNK 1..{} pixels per request, OVERHEAD 0..{} cycles of the PE per request, ROOT as many "
-                    "cycles of the root, SHARE 0..1 of the pixels assigned statically",
-                    text, kMaxChunk, kMaxOverhead));
+                    "with CHUNK 1..{} pixels per request, OVERHEAD 0..{} cycles of the PE per request, ROOT 0..{} "
+                    "cycles of the root per request, SHARE 0..1 of the pixels assigned statically",
+                    text, kMaxChunk, kMaxOverhead, kMaxOverhead));
 }
 
 std::vector<std::string_view> split_at_commas(std::string_view text) {
@@ -129,11 +129,11 @@ DynamicPlan parse_dynamic(const std::string& text, const DynamicPlan& defaults) 
     const auto fields = split_at_commas(view.substr(view.find(':') + 1));
     DynamicPlan plan = defaults;
     if (hybrid) plan.static_fraction = 0.5;
-    const std::size_t root = hybrid ? 3 : 2;  // index of the field ROOT
-    const bool is_valid = fields.size() <= root + 1 && read_number(fields[0], plan.chunk) &&
+    const std::size_t root_index = hybrid ? 3 : 2;  // index of the field ROOT
+    const bool is_valid = fields.size() <= root_index + 1 && read_number(fields[0], plan.chunk) &&
                           (fields.size() < 2 || read_number(fields[1], plan.overhead)) &&
                           (fields.size() < 3 || !hybrid || read_number(fields[2], plan.static_fraction)) &&
-                          (fields.size() <= root || read_number(fields[root], plan.root_cycles));
+                          (fields.size() <= root_index || read_number(fields[root_index], plan.root_cycles));
     if (!is_valid || !is_valid_plan(plan)) refuse_dynamic_mapping(text);
     return plan;
 }

@@ -41,7 +41,7 @@ bool is_dynamic(const std::string& text);
 
 /// Parses "dynamic:chunk[,overhead[,root]]" or "hybrid:chunk[,overhead[,share[,root]]]". `chunk`: pixels per request;
 /// `overhead`: cycles of the PE per request; `root`: cycles of the root per request; `share`: fraction of a PE's pixels
-/// that is assigned statically, default 0.5 for hybrid. Other missing numbers are those of `defaults`. Throws UserError
+/// that is assigned statically, default 0.5 for hybrid. `defaults` supplies the other missing numbers. Throws UserError
 /// with the option and its legal forms.
 DynamicPlan parse_dynamic(const std::string& text, const DynamicPlan& defaults = {});
 

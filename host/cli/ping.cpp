@@ -22,8 +22,8 @@ void run_ping(Ranks& ranks) {
 
 void add_ping_command(CLI::App& program, Ranks& ranks) {
     CLI::App* command = program.add_subcommand("ping",
-                                               "Under mpirun: measure messages of 1 B to 4 MB between ranks and print, "
-                                               "as JSON, times, latency alpha and time beta per byte");
+                                               "Under mpirun: measure messages of 1 B to 4 MB between ranks and print "
+                                               "their times, latency alpha and time per byte beta as JSON");
     add_examples(*command, {{"mpirun -n 2 raya ping", "Measure between two ranks of this machine"},
                             {"mpirun -n 2 --host one,other raya ping >network.json",
                              "Measure between two machines; raya study ranks --network takes alpha and beta"}});

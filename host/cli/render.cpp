@@ -93,8 +93,8 @@ void add_render_command_options(CLI::App& command, RenderCommand& options) {
              "times, build options; raya page makes the same page from a report. Like --profile, measures the device's "
              "peak");
     command.add_flag("--profile", options.profile,
-                     "Print launches and times of every labelled command, build times, and which fraction of the "
-                     "device's measured peak each kernel reaches (the roofline)");
+                     "Print the number of launches and the times of each labelled command, the build times, and which "
+                     "fraction of the device's measured peak each kernel reaches (the roofline)");
     add_trace_options(command, options.trace);
 }
 

@@ -17,10 +17,10 @@
 namespace raya {
 namespace {
 
-void check_packets(const std::string& file) {
+void check_packets_name(const std::string& file) {
     if (!file.ends_with(".gz") && !file.starts_with("/dev/") && !is_standard_stream(file))
         throw UserError(
-            fmt::format("--packets {}: the file is compressed with gzip; choose a name that ends in .csv.gz", file));
+            fmt::format("--packets {}: raya compresses this file with gzip; choose a name that ends in .csv.gz", file));
 }
 
 void check_replay(const CLI::App& parser, const TorusOptions& t) {
@@ -39,8 +39,8 @@ void check_output_files(const CLI::App& parser, const RenderCommand& command) {
     if (!find_launch())  // under mpirun, stdout may be a pseudoterminal although the output goes to a file
         for (const std::string& file : {command.image, command.cost, command.mask, packets})
             refuse_bytes_on_terminal(file);
-    tone_of(command.tone, command.image);
-    if (!packets.empty()) check_packets(packets);
+    tone_of(command.tone, command.image);  // throws UserError for invalid tone options
+    if (!packets.empty()) check_packets_name(packets);
     if (!command.torus.replay.empty()) check_replay(parser, command.torus);
     if (!command.page.empty()) check_page_name("--page", command.page);
     if (!command.image.empty()) check_image_name(command.image, kImageExtensions);
@@ -69,7 +69,7 @@ SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options
 void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Device& device, const NumberFormat& format,
                  const std::vector<KernelWork>& works, Warnings& warnings) {
     report.measured.builds = recorder.builds();
-    if (!report.ranks.empty()) {  // `works` covers all ranks, the times of commands only rank 0
+    if (!report.ranks.empty()) {  // `works` covers all ranks, but the times of commands cover only rank 0
         report.measured.roofline.emplace().unavailable = "the roofline is for a single device; start a single rank";
         return;
     }
@@ -77,10 +77,10 @@ void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Devic
         const DevicePeak peak =
             recorder.spans().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
         report.measured.roofline = roofline(peak, works, report.measured.commands);
-        constexpr double kMaxScatter = 0.15;  // maximum (best - worst) / best sample
+        constexpr double kMaxScatter = 0.15;  // limit for (best - worst) / best of the samples of the peak
         if (peak.scatter > kMaxScatter)
             warnings.add(
-                fmt::format("three measurements of the device's peak scatter by {:.0f} %: another program uses the "
+                fmt::format("three measurements of the device's peak differ by {:.0f} %: another program uses the "
                             "device; fractions of the peak are unreliable",
                             100 * peak.scatter));
     } catch (const DeviceError& error) {  // not rethrown: the render's figures are valid without a roofline
@@ -104,10 +104,10 @@ ImageAttributes image_attributes(const RenderReport& report, const std::string& 
     return attributes;
 }
 
-std::optional<ImageCodes> codes_of(const RenderCommand& command) {
-    if (command.image.empty() || !stores_codes(command.image)) return {};
+std::optional<CodeConversion> code_conversion_of(const RenderCommand& command) {
+    if (command.image.empty() || !stores_8bit_codes(command.image)) return {};
     const Tone tone = tone_of(command.tone, command.image);
-    return ImageCodes{tone.exposure, tone_curve_name(tone.curve), tone.gamma};
+    return CodeConversion{tone.exposure, tone_curve_name(tone.curve), tone.gamma};
 }
 
 void write_main_image(const RenderCommand& command, const Image& image, ImageAttributes attributes) {
@@ -118,7 +118,7 @@ void write_main_image(const RenderCommand& command, const Image& image, ImageAtt
 }
 
 void write_report(const RenderCommand& command, const RenderReport& report) {
-    if (command.reports()) write_report_and_page({command.report, command.page}, to_json(report));
+    if (command.needs_report()) write_report_and_page({command.report, command.page}, to_json(report));
     if (!is_quiet() && command.summary) fmt::print("{}", printable(summary_text(report)));
     if (!command.profile || !command.prints_profile) return;
     const auto& measured = report.measured;

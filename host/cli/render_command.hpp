@@ -45,15 +45,15 @@ struct RenderCommand {
         return {{"--output", image}, {"--cost", cost}, {"--mask", mask}, {"--report", report}};
     }
 
-    /// Returns kOn if the times of device commands are printed or written, otherwise kOff, because timing slows down a
-    /// GPU's queue.
+    /// Returns kOn only if times of device commands are printed or written, because timing slows down a GPU's queue.
     Timing timing() const {
-        return profile || reports() || !trace.file.empty() || verbosity() >= kDetailed ? Timing::kOn : Timing::kOff;
+        return profile || needs_report() || !trace.file.empty() || verbosity() >= kDetailed ? Timing::kOn
+                                                                                            : Timing::kOff;
     }
     /// Returns true if a report is needed: for --report, or for --page, which is made from a report.
-    bool reports() const { return !report.empty() || !page.empty(); }
+    bool needs_report() const { return !report.empty() || !page.empty(); }
     /// Returns true if the report compares kernels with the device's peak.
-    bool roofline() const { return profile || !page.empty(); }
+    bool needs_roofline() const { return profile || !page.empty(); }
 };
 
 /// The results of a render on a ring machine (`ring`) or on the torus (`torus`).
@@ -97,12 +97,12 @@ void render_frames(const CLI::App& parser, const RenderCommand& command, RenderR
 /// objects. With several ranks and a ring machine, sets `options.accel` on all ranks to rank 0's choice.
 SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks);
 
-/// Throws UserError for an output file's unsupported name, and for options that do not apply to the output files.
+/// Throws UserError for an unsupported name of an output file, and for options that do not apply to the output files.
 void check_output_files(const CLI::App& parser, const RenderCommand& command);
 
 /// Returns the tone mapping of the command's image if the image has 8-bit codes; empty for linear
 /// images, and if no image is written.
-std::optional<ImageCodes> codes_of(const RenderCommand& command);
+std::optional<CodeConversion> code_conversion_of(const RenderCommand& command);
 
 /// Adds a small copy of `image` to the report, with the tone mapping of the command's output image.
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image);
@@ -117,8 +117,8 @@ RenderReport begin_report(const RenderCommand& command, const SceneInput& input,
     report.view = view_json(input.scene);
     report.skipped = input.remarks;
     report.image = {result.image.width, result.image.height, output_name(command.image), pixel_hash(result.image),
-                    codes_of(command)};
-    if (command.reports()) add_preview(report, command, result.image);
+                    code_conversion_of(command)};
+    if (command.needs_report()) add_preview(report, command, result.image);
     report.device = {device.name,          device.platform, device.version,    device.driver,
                      result.build_options, result.lanes,    result.group_size, result.tuned};
     report.measured = {result.build_s, result.render_s, result.commands, {}, {}};
@@ -135,7 +135,7 @@ ImageAttributes image_attributes(const RenderReport& report, const std::string& 
 /// Writes the image with `attributes` and with the attributes of its tone mapping.
 void write_main_image(const RenderCommand& command, const Image& image, ImageAttributes attributes);
 
-/// Writes the report and its page, and prints the summary and the profile, each only if requested.
+/// Writes the report and its page, and prints the summary and the profile, if they are requested.
 void write_report(const RenderCommand& command, const RenderReport& report);
 
 }  // namespace raya

@@ -45,9 +45,9 @@ void add_antialias_options(CLI::App& command, RenderOptions& o) {
         ->capture_default_str();
     add_value(
         command, "--exchange", o.exchange,
-        "How PEs get their neighbours' pixels: ring: all PEs send a block to the next PE at once; bus: one PE at a "
-        "time sends to one other PE; bus-broadcast: one PE at a time sends to all PEs. All three give the same "
-        "image")
+        "How PEs get the neighbours of their pixels: ring: all PEs send a block to the next PE at once; bus: one "
+        "PE at a time sends to one other PE; bus-broadcast: one PE at a time sends to all PEs. All three give the "
+        "same image")
         ->type_name("ring|bus|bus-broadcast")
         ->default_str("ring");
     add_value(command, "--threshold", o.threshold,
@@ -206,8 +206,8 @@ void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize
     settings.mapping = make_mapping(rule_of(mapping, o, machine, image.width), image, pes);
 }
 
-// Returns --accel or, if it is not given, the machine's accelerator. Returns no accelerator if the machine's is a BVH
-// and the scene has so few objects that a BVH costs more time than it saves.
+// Returns --accel or, if it is not given, the machine's accelerator. Returns no accelerator if the machine's
+// accelerator is a BVH and the scene has so few objects that a BVH costs more time than it saves.
 Accel accel_of(const RenderOptions& o, const RingSettings& settings, const Scene& scene) {
     if (!o.accel.empty()) return parse_accel(o.accel);
     const bool use_default = settings.machine.accel.kind != AccelKind::kBvh || bvh_pays(scene, settings.format);

@@ -29,7 +29,7 @@ struct RenderOptions {
 /// Adds the options of RenderOptions except the scene, and except anti-aliasing if `antialiasing` is false.
 void add_render_options(CLI::App& command, RenderOptions& options, bool antialiasing = true);
 
-// Each of these functions returns the value of an option or, if it is not given, its default. The functions throw
+// Each function below returns the value of an option or, if it is not given, its default. The functions throw
 // UserError, with the option's name, for an invalid value.
 
 /// Returns --size, by default the scene's resolution. Width and height are 1..16384 pixels.

@@ -18,7 +18,7 @@ namespace raya {
 namespace {
 
 // Prefix of the names of the spans in which Session builds programs.
-constexpr std::string_view kBuild = "build ";
+constexpr std::string_view kBuildPrefix = "build ";
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void add_trace_options(CLI::App& command, TraceOptions& trace) {
     add_value(
         command, "--trace-pes", trace.pes,
         "Number N of PEs or nodes of the modelled machine that get a track: the N/4 busiest, the N/4 idlest, and N/2 "
-        "evenly spaced ones; 0 omits the modelled machine")
+        "with numbers at even distances; 0 omits the modelled machine")
         ->type_name("N")
         ->capture_default_str();
 }
@@ -58,11 +58,11 @@ void RenderRecorder::observe(Session& session, Ranks& ranks) {
     if (!traces() && !profile_) return;
     session.observe(spans_, traces() ? trace_.events : 0);
     if (traces() && session.profile().timed()) device_clock_offset_ = measure_clock_offset(session);
-    if (traces() && ranks.has_several()) compare_clocks(ranks);
+    if (traces() && ranks.has_several()) align_clocks(ranks);
 }
 
 // Measures the offsets of the ranks' clocks. Sets the beginning of the trace to the earliest beginning on any rank.
-void RenderRecorder::compare_clocks(Ranks& ranks) {
+void RenderRecorder::align_clocks(Ranks& ranks) {
     has_several_ranks_ = true;
     rank_clock_ = rank_clock(ranks, host_clock_ns);
     const auto offset =
@@ -93,8 +93,8 @@ void RenderRecorder::add_measured_events(TraceFile& file, Session& session, std:
 std::vector<ProgramBuild> RenderRecorder::builds() const {
     std::vector<ProgramBuild> builds;
     for (const HostSpan& s : spans_.spans())
-        if (s.name.starts_with(kBuild))
-            builds.push_back({s.name.substr(kBuild.size()), 1e-9 * static_cast<double>(s.ended - s.started)});
+        if (s.name.starts_with(kBuildPrefix))
+            builds.push_back({s.name.substr(kBuildPrefix.size()), 1e-9 * static_cast<double>(s.ended - s.started)});
     return builds;
 }
 

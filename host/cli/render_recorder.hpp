@@ -27,8 +27,8 @@ struct TraceOptions {
 /// Adds --trace, --trace-events and --trace-pes.
 void add_trace_options(CLI::App& command, TraceOptions& trace);
 
-/// Throws UserError if the file's name does not end in .json or .json.gz, if --trace-events is 0, or if the other
-/// trace options are given without --trace.
+/// Throws UserError if the file's name does not end in .json or .json.gz, if --trace-events is 0, or if one of
+/// --trace-events and --trace-pes is given without --trace.
 void check_trace(const CLI::App& command, const TraceOptions& trace);
 
 class RenderRecorder {
@@ -55,7 +55,7 @@ class RenderRecorder {
     void write(Session& session, const std::function<void(TraceFile&)>& add_machine);
 
   private:
-    void compare_clocks(Ranks& ranks);
+    void align_clocks(Ranks& ranks);
     void add_measured_events(TraceFile& file, Session& session, std::uint32_t rank);
 
     const TraceOptions& trace_;

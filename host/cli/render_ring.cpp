@@ -104,7 +104,7 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     report.measured.earlier_s = result.earlier_s;
     recorder.spans().during("write images",
                             [&] { write_images(command, result, image_attributes(report, scene.name)); });
-    if (command.roofline()) {
+    if (command.needs_roofline()) {
         run.progress.stage("measuring the device's peak");
         add_profile(report, recorder, run.device(), settings.format, ring_kernel_work(settings, result),
                     input.warnings);

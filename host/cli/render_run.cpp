@@ -38,7 +38,7 @@ void RenderProgress::end() {
 
 RenderRun::RenderRun(const RenderCommand& command, Ranks& all_ranks)
     : ranks(all_ranks),
-      recorder(command.trace, command.roofline()),
+      recorder(command.trace, command.needs_roofline()),
       progress(all_ranks.is_first(), "reading the scene"),
       options(command.render),
       input(read_scene_on_rank_0(recorder, options, all_ranks)),
@@ -47,7 +47,7 @@ RenderRun::RenderRun(const RenderCommand& command, Ranks& all_ranks)
 
 RenderRun::RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session)
     : ranks(Ranks::single()),
-      recorder(command.trace, command.roofline()),
+      recorder(command.trace, command.needs_roofline()),
       progress(command.progress),
       options(command.render),
       input(std::move(scene)),
@@ -67,8 +67,8 @@ Session& RenderRun::session() {
     progress.stage("preparing");
     device_ =
         recorder.spans().during("choose device", [&] { return choose_device(options.device, ranks.rank_on_host()); });
-    // OpenImageIO is loaded after the OpenCL drivers. Both use TBB, a process keeps the first TBB that it loads, and
-    // Intel's OpenCL runtime needs a newer TBB than OpenImageIO.
+    // OpenImageIO must be loaded after the OpenCL drivers: both use TBB, a process keeps the first TBB that it loads,
+    // and Intel's OpenCL runtime needs a newer TBB than OpenImageIO.
     for (const std::string& file : image_files_)
         if (ranks.is_first() && !file.empty()) load_encoder(file);
     opened_session_.emplace(recorder.spans().during("open device", [&] { return Session(device_, timing_); }));

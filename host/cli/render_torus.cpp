@@ -174,7 +174,7 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
         add_asynchronous_time(*report.torus, command, settings, *history, recorder.spans());
     }
     write_images(command, result, report, scene, outputs, recorder.spans());
-    if (command.roofline()) {
+    if (command.needs_roofline()) {
         run.progress.stage("measuring the device's peak");
         add_profile(report, recorder, run.device(), settings.format, torus_kernel_work(settings, result),
                     input.warnings);

@@ -26,8 +26,8 @@ void add_strict_option(CLI::App& command, bool& strict) {
     const OptionGroup group(command, kFiles);
     command.add_flag(
         "--strict", strict,
-        "Refuse a scene with degenerate or non-planar facets, or with entities that NFF does not define, instead of "
-        "omitting, triangulating or skipping them with a warning");
+        "Refuse a scene with facets that are degenerate or not planar, or with entities that NFF does not define; "
+        "without --strict, raya omits or triangulates such facets and skips such entities, with a warning");
 }
 
 SceneInput read_scene(const std::string& file, bool strict) {

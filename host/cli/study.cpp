@@ -121,10 +121,9 @@ void add_study_options(CLI::App& command, StudyCommand& options) {
         add_file(command, FileUse::kRead, "STUDY", options.study, "STUDY|all|FILE.py",
                  "Name of a study in the list below, all for all studies, or a file with your own study");
     offer_choices(study->required(), study_names());
-    add_file(
-        command, FileUse::kRead, "SCENE", options.scenes, "SCENE.nff",
-        "Scenes in NFF, at most one of them - for stdin; with `all`, studies of a single scene take the first scene; "
-        "default: the study's own scenes");
+    add_file(command, FileUse::kRead, "SCENE", options.scenes, "SCENE.nff",
+             "Scenes in NFF; one of them may be -: stdin; with `all`, studies of a single scene take the first scene; "
+             "default: the study's own scenes");
     add_file(command, FileUse::kWrittenFolder, "-o,--output", options.folder, "DIR",
              "Folder for index.html, Markdown, CSV, JSON and plots; created if missing")
         ->required();
@@ -136,8 +135,9 @@ void add_study_options(CLI::App& command, StudyCommand& options) {
               "Number of pictures in the ensembles of the studies of load, 20..5000, divided among the scene families; "
               "default: 108")
         ->type_name("N");
-    add_value(command, "--seed", options.seed,
-              "Seed of the first picture of a family, 1..90000; the others count up from it; default: 1")
+    add_value(
+        command, "--seed", options.seed,
+        "Seed S of the first picture of a family, 1..90000; the next pictures have the seeds S + 1, ...; default: 1")
         ->type_name("S");
     group.next(kMachine);
     add_value(command, "--network", options.network,

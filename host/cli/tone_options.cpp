@@ -43,7 +43,7 @@ void add_tone_options(CLI::App& command, ToneOptions& t) {
 }
 
 Tone tone_of(const ToneOptions& options, const std::string& file) {
-    if (!stores_codes(file)) {
+    if (!stores_8bit_codes(file)) {
         if (options.exposure) refuse_linear_image(file, "--exposure");
         if (options.gamma) refuse_linear_image(file, "--gamma");
         if (!options.curve.empty()) refuse_linear_image(file, "--tone");

@@ -76,8 +76,8 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
             "simgrid"),
         {"simgrid"});
     command.add_flag("--async", t.async,
-                     "Also simulate the machine without supersteps, whose nodes compute while links transfer: adds a "
-                     "modelled time to the lower bound and the time with supersteps");
+                     "Also simulate the machine without supersteps, whose nodes compute while links transfer: raya "
+                     "reports this modelled time, the lower bound and the time with supersteps");
 }
 
 namespace {

@@ -103,8 +103,8 @@ void print_tunings(const std::vector<Tuning>& tunings) {
     fmt::print("{}", text_table(table));
     fmt::print(
         "speed-up: time of a render with the defaults / time with the best values, median of 9 pairs of renders "
-        "after the search;\ntried: candidates that were rendered and compared with the image of the defaults; own: the "
-        "kernels' own default\n");
+        "after the search;\ntried: candidates whose image was compared with that of the defaults; default: a value "
+        "that the kernels choose\n");
     if (std::any_of(tunings.begin(), tunings.end(), [](const Tuning& t) { return !t.complete; }))
         fmt::print("time limit: the limit ended the search; a larger --seconds allows a longer search\n");
     for (const Tuning& tuning : tunings) print_dropped_trials(tuning);
@@ -157,11 +157,11 @@ void add_rendered_options(CLI::App& command, TuneCommand& options) {
     OptionGroup group(command, "Workload");
     add_file(command, FileUse::kRead, "SCENE", render.scene, "SCENE.nff",
              "Scene in NFF to render with candidates for lanes, group and other values that change only the time; "
-             "default: 30 spheres and a plane, with an accelerator: SPD's balls, 7,381 spheres");
+             "default: without accelerator, 30 spheres and a plane; with an accelerator, SPD's balls of 7,381 spheres");
     add_strict_option(command, render.strict);
     add_value(command, "--variants", options.variants,
               "Kernels to tune, comma-separated: none, grid, bvh: the ring machine with that --accel; torus: 4x4x4 "
-              "nodes; default: none in fp32 and e6m15, grid, bvh and torus in fp32")
+              "nodes; default: none in fp32 and in e6m15; grid, bvh and torus in fp32")
         ->delimiter(',')
         ->allow_extra_args(false)  // so that the scene may follow
         ->type_name("none,grid,bvh,torus");
@@ -198,7 +198,7 @@ void add_search_options(CLI::App& command, TuneCommand& options) {
         "After the search, try every candidate without a time limit, and compare the tuned values with the "
         "best candidate");
     add_file(command, FileUse::kWritten, "--report", options.report, "FILE.json",
-             "Write all trials in the T4 format of Kernel Tuner; -: stdout, with the tables on stderr");
+             "Write all trials in the T4 format of Kernel Tuner; -: stdout; the tables then go to stderr");
 }
 
 }  // namespace

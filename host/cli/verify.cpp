@@ -125,14 +125,14 @@ void run_verify(const VerifyCommand& command) {
 
 void add_verify_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
-        "verify", "Check a device, its driver and its compiler bit by bit: arithmetic, hits, machines and images");
-    add_examples(*command, {{"raya verify", "Run the default checks, a line for each"},
+        "verify", "Check arithmetic, hits, machines and images of a device, its driver and its compiler bit for bit");
+    add_examples(*command, {{"raya verify", "Run the default checks and print a line for each check"},
                             {"raya verify --brief --only number --report verify.json",
                              "Run only the brief checks of arithmetic, and write a report"}});
     const auto options = std::make_shared<VerifyCommand>();
     OptionGroup group(*command, "Checks");
     command->add_flag("--quick", options->quick,
-                      "The device's default lanes, common formats, a dozen images: the default");
+                      "Check with the device's default lanes, common formats and a dozen images (the default depth)");
     command->add_flag("--brief", options->brief,
                       "Few kernels with few rays: for simulators, and for compilers that take a minute for a kernel");
     command->add_flag(
@@ -141,8 +141,8 @@ void add_verify_command(CLI::App& program) {
         "slow on wide vectors");
     add_value(
         *command, "--lanes", options->lanes,
-        "Check only this number of lanes, for compilers that are slow on wide vectors; default: the device's default, "
-        "with --full all")
+        "Check only this number of lanes, for compilers that are slow on wide vectors; if not given: the device's "
+        "default number of lanes, or with --full, every number of lanes")
         ->check(CLI::IsMember({1, 4, 8, 16}))
         ->type_name("V");
     add_value(*command, "--only", options->only,
@@ -156,7 +156,7 @@ void add_verify_command(CLI::App& program) {
              "Read the kernels from this folder, for kernel development");
     group.next(kDiagnostics);
     add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
-             "Write all checks and their failures as JSON; -: stdout, with the lines on stderr");
+             "Write all checks and their failures as JSON; -: stdout; the lines about the checks then go to stderr");
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
              "Write all checks, and the first failure in full, as an HTML page; raya page makes the same page from a "
              "report");

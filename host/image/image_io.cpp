@@ -59,7 +59,7 @@ void check_shape(int width, int height, std::size_t channels, std::size_t floats
 
 [[noreturn]] void refuse_to_encode(const fs::path& path, const std::string& reason, const std::string& remedy = "") {
     // A format of the same precision that needs no library.
-    const char* plain_extension = stores_codes(path) ? ".ppm" : ".pfm";
+    const char* plain_extension = stores_8bit_codes(path) ? ".ppm" : ".pfm";
     throw UserError(
         fmt::format("cannot write '{}': {}; {}name a {} file instead", path.string(), reason, remedy, plain_extension));
 }
@@ -148,7 +148,7 @@ void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttribu
 
 }  // namespace
 
-bool stores_codes(const fs::path& path) {
+bool stores_8bit_codes(const fs::path& path) {
     const std::string extension = lower_case_extension(path, kImageExtensions);
     return extension != ".exr" && extension != ".pfm";
 }

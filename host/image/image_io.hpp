@@ -17,7 +17,7 @@ inline constexpr std::array<std::string_view, 8> kImageExtensions{".png", ".exr"
 inline constexpr std::array<std::string_view, 2> kGreyImageExtensions{".exr", ".pfm"};  // formats that store floats
 
 /// Returns true if a colour image in the file `path` is stored as 8-bit codes, to which a Tone applies.
-bool stores_codes(const std::filesystem::path& path);
+bool stores_8bit_codes(const std::filesystem::path& path);
 
 /// Throws UserError, with file, reason and remedy, if the extension of `path` (upper or lower case) is not one of
 /// `extensions`. Images on stdout ("-") are PPM if ".ppm" is one of `extensions`, else PFM.

@@ -27,14 +27,14 @@ const CodeBorders& srgb_borders() {
     return borders;
 }
 
-std::uint8_t code_between(const CodeBorders& borders, double linear) {
+std::uint8_t nearest_code(const CodeBorders& borders, double linear) {
     const auto border = std::lower_bound(borders.begin(), borders.end(), linear);
     return static_cast<std::uint8_t>(border - borders.begin());
 }
 
 float srgb_light(std::uint8_t code) { return static_cast<float>(linear_from_srgb(code / 255.0)); }
 
-std::uint8_t srgb_code(float linear) { return code_between(srgb_borders(), static_cast<double>(linear)); }
+std::uint8_t srgb_code(float linear) { return nearest_code(srgb_borders(), static_cast<double>(linear)); }
 
 const char* tone_curve_name(ToneCurve curve) { return curve == ToneCurve::kReinhard ? "reinhard" : "clip"; }
 
@@ -57,7 +57,7 @@ std::array<std::uint8_t, 3> ToneCodes::operator()(const float* rgb) const {
     const double pixel_luminance = luminance(linear);
     const double scale = curve_ == ToneCurve::kReinhard && pixel_luminance > 0 ? 1 / (1 + pixel_luminance) : 1;
     std::array<std::uint8_t, 3> codes{};
-    for (std::size_t i = 0; i < 3; ++i) codes[i] = code_between(borders_, linear[i] * scale);
+    for (std::size_t i = 0; i < 3; ++i) codes[i] = nearest_code(borders_, linear[i] * scale);
     return codes;
 }
 

@@ -27,7 +27,7 @@ const CodeBorders& srgb_borders();
 
 /// Returns the code 0..255 that is nearest to 255 curve(linear), for the curve of `borders`; 0 for negative values and
 /// NaN, 255 above 1.
-std::uint8_t code_between(const CodeBorders& borders, double linear);
+std::uint8_t nearest_code(const CodeBorders& borders, double linear);
 
 /// Returns the nearest code on the sRGB curve. The code follows from comparisons with the 255 borders, which are
 /// computed with the C library's pow(). The code is the same on every machine, because the relative error of pow() is

@@ -96,8 +96,8 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .moves = 2,
      .branches = kSphereHitBranches + 8,
      .work = "square root, point, normal, margin, mirror direction, tint and ambient term for a sphere; a plane needs "
-             "no square root and no normalisation, a cone 7 operations more. Excluded: spheres hit farther away, a "
-             "patch's normal, and a checker's two divisions"},
+             "no square root and no normalisation, a cone needs 7 more operations. Excluded: spheres hit farther "
+             "away, a patch's normal, and a checker's two divisions"},
     // N.L: 3, times tint: 3, R.L: 3, times I: 3, added to the sum: 3. Branches: Ks > 0, R.L > 0.
     {.event = RAYA_LIT,
      .multiply_accumulates = 3 + 3 + 3 + 3 + 3,
@@ -111,7 +111,7 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .divisions = 1,
      .moves = 2 + 1 + 2,
      .branches = 1,
-     .work = "x^n as 2^(n log2 x); both series have fp32's length, 16 bits would need one term less in each"},
+     .work = "x^n as 2^(n log2 x); both series have the length for fp32; 16 bits would need one term less in each"},
     // 1 / D: three divisions; entry to and exit from the box: 6 planes x 2, and 4 comparisons; first voxel: 3 times
     // (O + t D, minus corner, times 1 / cell, integer part: 4); its far sides: 3 times (plane: 1, minus O: 1, times
     // 1 / D: 1). Moves: voxel numbers and signs of D. Branches: misses the box, sign of each component.

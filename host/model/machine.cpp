@@ -18,12 +18,12 @@ namespace {
 // Marks of sources: [P] printed in the paper that describes the machine, [D] derived from printed figures, [T] data
 // sheet, [?] assumed here.
 
-constexpr double kNoTime = std::numeric_limits<double>::infinity();  // rate of a transfer that takes no time
+constexpr double kInfiniteRate = std::numeric_limits<double>::infinity();  // rate of a transfer that takes no time
 constexpr const char *kCyclePrinted = "[P] 100 ns, 20 MFLOPS: one multiply-accumulate a cycle",
-                     *kOfSpa = "[?] as the SPA";
+                     *kAsSpa = "[?] as the SPA";
 
 std::string rate_text(double per_s, const char* unit) {
-    return per_s == kNoTime ? "takes no time" : fmt::format("{:.4g} M{}/s", 1e-6 * per_s, unit);
+    return per_s == kInfiniteRate ? "takes no time" : fmt::format("{:.4g} M{}/s", 1e-6 * per_s, unit);
 }
 
 std::string memory_text(const std::optional<std::uint64_t>& bytes) {
@@ -36,21 +36,21 @@ struct RingSources {
         *display;
 };
 
-std::vector<Fact> ring_facts(const Machine& m, const std::string& mapping, const RingSources& from) {
+std::vector<Fact> ring_facts(const Machine& m, const std::string& mapping, const RingSources& sources) {
     const MachineClock& c = m.clock;
-    return {{"PEs", m.pes ? fmt::format("{}", *m.pes) : "one per image column", from.pes},
-            {"memory of a PE", memory_text(m.pe_memory_bytes), from.memory},
-            {"reflections and refractions", fmt::format("at most {}", m.bounces), from.bounces},
-            {"number format", format_name(m.format), from.format},
-            {"mapping of pixels", mapping, from.mapping},
-            {"cycle of a PE", fmt::format("{:g} ns", c.cycle_ns), from.cycle},
-            {"cycles per budget cycle", fmt::format("{:.4g}", c.cycle_factor), from.factor},
-            {"link to a neighbour", rate_text(c.link_words_per_s, "words"), from.link},
-            {"synchronisation of a rotation", fmt::format("{:g} ms", c.rotation_sync_ms), from.sync},
-            {"set-up of a transfer", fmt::format("{:g} ms", c.setup_ms), from.setup},
-            {"broadcast by the host", rate_text(c.broadcast_words_per_s, "words"), from.broadcast},
-            {"gather of the image", rate_text(c.gather_words_per_s, "words"), from.gather},
-            {"display", rate_text(c.display_pixels_per_s, "pixels"), from.display}};
+    return {{"PEs", m.pes ? fmt::format("{}", *m.pes) : "one per image column", sources.pes},
+            {"memory of a PE", memory_text(m.pe_memory_bytes), sources.memory},
+            {"reflections and refractions", fmt::format("at most {}", m.bounces), sources.bounces},
+            {"number format", format_name(m.format), sources.format},
+            {"mapping of pixels", mapping, sources.mapping},
+            {"cycle of a PE", fmt::format("{:g} ns", c.cycle_ns), sources.cycle},
+            {"cycles per budget cycle", fmt::format("{:.4g}", c.cycle_factor), sources.factor},
+            {"link to a neighbour", rate_text(c.link_words_per_s, "words"), sources.link},
+            {"synchronisation of a rotation", fmt::format("{:g} ms", c.rotation_sync_ms), sources.sync},
+            {"set-up of a transfer", fmt::format("{:g} ms", c.setup_ms), sources.setup},
+            {"broadcast by the host", rate_text(c.broadcast_words_per_s, "words"), sources.broadcast},
+            {"gather of the image", rate_text(c.gather_words_per_s, "words"), sources.gather},
+            {"display", rate_text(c.display_pixels_per_s, "pixels"), sources.display}};
 }
 
 // Kohata & Ito 1993. The clock is derived from the printed times in Tables 2 to 4, each rounded to 1 ms; docs/clock.md
@@ -76,10 +76,10 @@ constexpr RingSources kSpaSources = {
     .format = "[P] 22 bits; [?] their division into 1 sign, 6 exponent and 15 fraction bits",
     .mapping = "[P] the offset with the smallest imbalance",
     .cycle = kCyclePrinted,
-    .factor = "[D] Tables 3 and 4: the filter's arithmetic takes 9 - 2 = 19 - 12 = 7 ms; its budget is 1.0752 ms",
+    .factor = "[D] Tables 3 and 4: the filter's arithmetic takes 7 ms (9 - 2 and 19 - 12); its budget is 1.0752 ms",
     .link = "[P] DMA; [?] the bus between PEs has the same rate",
     .sync = "[D] Table 4: 34 rotations of 768 words take 10 ms longer than 2",
-    .setup = "[D] Table 4: 2 ms for 2 rotations; [?] a broadcast or gather takes the same",
+    .setup = "[D] Table 4: 2 ms minus the time of 2 rotations; [?] a broadcast or gather takes the same",
     .broadcast = "[?] as the gather",
     .gather = "[D] Table 2: 140 ms for 256 x 256 pixels of 3 words",
     .display = "[P] Table 2: 1,130 ms for 256 x 256 pixels"};
@@ -140,19 +140,19 @@ Machine array_of_spa_pes(const std::string& name, const std::string& title, cons
     return machine;
 }
 
-constexpr RingSources kOtherSources = {.pes = "",
-                                       .memory = "[?] no limit, so that loads can be compared",
-                                       .bounces = kOfSpa,
-                                       .format = kOfSpa,
-                                       .mapping = "",
-                                       .cycle = kOfSpa,
-                                       .factor = kOfSpa,
-                                       .link = kOfSpa,
-                                       .sync = kOfSpa,
-                                       .setup = kOfSpa,
-                                       .broadcast = kOfSpa,
-                                       .gather = "[P] PEs hold the frame buffer",
-                                       .display = "[P] PEs hold the frame buffer"};
+constexpr RingSources kComparedArraySources = {.pes = "",
+                                               .memory = "[?] no limit, so that loads can be compared",
+                                               .bounces = kAsSpa,
+                                               .format = kAsSpa,
+                                               .mapping = "",
+                                               .cycle = kAsSpa,
+                                               .factor = kAsSpa,
+                                               .link = kAsSpa,
+                                               .sync = kAsSpa,
+                                               .setup = kAsSpa,
+                                               .broadcast = kAsSpa,
+                                               .gather = "[P] PEs hold the frame buffer",
+                                               .display = "[P] PEs hold the frame buffer"};
 
 // Ishii, Sato et al., "Cellular array processor CAP and applications", 1988: 256 cells; an interface chip with two
 // buses for broadcasts, 2 MB/s each, and six serial ports, 15 Mbit/s each; every cell holds and displays its part of
@@ -163,9 +163,9 @@ Machine cap() {
     constexpr double kWordBytes = 4;
     machine.clock.link_words_per_s = 15e6 / 8 / kWordBytes;
     machine.clock.broadcast_words_per_s = 2e6 / kWordBytes;
-    machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kNoTime;
+    machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kInfiniteRate;
     machine.clock.rotation_sync_ms = machine.clock.setup_ms = 0;
-    RingSources sources = kOtherSources;
+    RingSources sources = kComparedArraySources;
     sources.pes = "[P] 256 cells";
     sources.mapping = "[P] Kohata & Ito 1993, Fig. 5: every 16th pixel in both directions";
     sources.link = "[P] six serial ports of 15 Mbit/s; [?] words of 4 bytes";
@@ -182,8 +182,8 @@ Machine pixel_machine() {
     Machine machine = array_of_spa_pes("pixel-machine", "the array of the Pixel Machine, on PEs of the SPA",
                                        "pipeline and 2-D array", grid_mapping(8, 8), 64);
     machine.clock.cycle_ns = 200;
-    machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kNoTime;
-    RingSources sources = kOtherSources;
+    machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kInfiniteRate;
+    RingSources sources = kComparedArraySources;
     sources.pes = "[P] 64 pixel nodes";
     sources.mapping = "[P] every m-th pixel on every n-th scan line; [D] m = n = 8";
     sources.cycle = "[D] 820 MFLOPS of 82 nodes are two operations in 200 ns; the 18 pipe nodes only pass the scene on";
@@ -194,14 +194,14 @@ Machine pixel_machine() {
 // Nishimura et al. 1982 and 1985: a root computer and up to 256 node computers in a star. An idle node requests work
 // from the root, which serves one node at a time; nodes write pixels into the frame memory through a FIFO.
 Machine links() {
-    Machine machine =
-        array_of_spa_pes("links", "an array as LINKS-1's, on PEs of the SPA", "root and nodes", cyclic_mapping(0), 256);
-    machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kNoTime;
+    Machine machine = array_of_spa_pes("links", "an array like LINKS-1's, on PEs of the SPA", "root and nodes",
+                                       cyclic_mapping(0), 256);
+    machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kInfiniteRate;
     const MachineClock& c = machine.clock;
     const double request_ms = 2 * c.rotation_sync_ms + 1e3 * 3 / c.link_words_per_s;
     const double cycle_ms = 1e-6 * c.cycle_ns * c.cycle_factor;
     machine.dynamic = DynamicPlan{.root_cycles = static_cast<std::uint64_t>(std::lround(request_ms / cycle_ms))};
-    RingSources sources = kOtherSources;
+    RingSources sources = kComparedArraySources;
     sources.pes = "[P] up to 256 node computers and a root";
     sources.mapping = "[P] idle nodes request pixels from the root; [?] one pixel a request";
     sources.gather = sources.display = "[P] pixels pass a FIFO to the frame memory without conflicts";
@@ -209,7 +209,7 @@ Machine links() {
     machine.facts.push_back(
         {"request to the root",
          fmt::format("{:.3g} ms = {} budget cycles, one at a time", request_ms, machine.dynamic->root_cycles),
-         "[?] a transfer of one word and one of two over the SPA's bus"});
+         "[?] a transfer of one word and a transfer of two words over the SPA's bus"});
     return machine;
 }
 
@@ -261,9 +261,8 @@ const std::vector<Machine>& machines() {
 const std::vector<CitedMachine>& cited_machines() {
     static const std::vector<CitedMachine> all = {
         {"sight",
-         "Kohata & Ito 1993 names it in one sentence, as a machine with processors of its own (Yoshida et al. 1985); "
-         "its "
-         "successor SIGHT-2 had 16 PEs, static load distribution and an efficiency above 99 % (Yoshida, Naruse & "
+         "Kohata & Ito 1993 names it in one sentence, as a machine with its own processors (Yoshida et al. 1985); "
+         "its successor SIGHT-2 had 16 PEs, static load distribution and an efficiency above 99 % (Yoshida, Naruse & "
          "Takahashi 1989)",
          "no public description states which pixels each of its PEs computes"}};
     return all;
@@ -275,7 +274,8 @@ const Machine& machine_named(const std::string& name) {
     if (found != all.end()) return *found;
     for (const CitedMachine& cited : cited_machines())
         if (cited.name == name)
-            throw UserError(fmt::format("--machine {}: raya does not model this machine: {}. {}", name, cited.reason, cited.facts));
+            throw UserError(
+                fmt::format("--machine {}: raya does not model this machine: {}. {}", name, cited.reason, cited.facts));
     std::vector<std::string> names;
     for (const Machine& m : all) names.push_back(m.name);
     throw UserError(fmt::format("--machine {}: no such machine; available: {}", name, fmt::join(names, ", ")));

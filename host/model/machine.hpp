@@ -29,7 +29,7 @@ struct Accel {
     std::optional<Divisions> divisions{};  // of a grid; empty: accel_partition() chooses them
 };
 
-/// Returns a value of the option `--accel`: "none", "grid", "grid:4x4x4", "bvh".
+/// Returns the value of the option `--accel` for this choice: "none", "grid", "grid:4x4x4", "bvh".
 std::string accel_text(const Accel& accel);
 
 /// Size of an acceleration structure, for reports.
@@ -70,7 +70,7 @@ struct MachineClock {
     double cycle_factor = 1;           // number of the machine's cycles per cycle of the budgets (model/budget.hpp)
     double link_words_per_s = 0;       // rate of a link from a PE to its neighbour, and of the bus between PEs
     double rotation_sync_ms = 0;       // overhead of one rotation, or of one transfer over the bus between PEs
-    double setup_ms = 0;               // set-up of a broadcast, of a gather, and of an exchange of neighbours
+    double setup_ms = 0;               // set-up of a broadcast, of a gather, and of an exchange of neighbours' pixels
     double broadcast_words_per_s = 0;  // from the host to the PEs
     double gather_words_per_s = 0;     // from the PEs to the host
     double display_pixels_per_s = 0;   // display of the image
@@ -110,8 +110,8 @@ struct CitedMachine {
 };
 const std::vector<CitedMachine>& cited_machines();
 
-/// Returns the machine called `name`. Throws UserError if there is no such machine, with a list of all machines, or if
-/// raya does not model it, with the reason.
+/// Returns the machine called `name`. Throws UserError if there is no such machine (the message lists all machines), or
+/// if raya does not model it (the message states the reason).
 const Machine& machine_named(const std::string& name);
 
 /// Returns the modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h) on a PE of the SPA, from

@@ -60,7 +60,7 @@ inline MappingRule tiles_mapping(std::uint32_t width, std::uint32_t height) {
 inline MappingRule random_mapping(std::uint32_t seed) { return {RAYA_RANDOM, seed}; }
 
 inline constexpr std::uint32_t kMaxChunk = kMaxSide * kMaxSide;  // pixels of the largest image
-inline constexpr std::uint64_t kMaxOverhead = 1'000'000'000;     // cycles; kMaxOverhead x kMaxChunk < 2^58
+inline constexpr std::uint64_t kMaxOverhead = 1'000'000'000;     // cycles; kMaxChunk requests take < 2^58
 
 /// A dynamic distribution: PEs request pixels at run time.
 struct DynamicPlan {

@@ -17,7 +17,7 @@ namespace {
 [[noreturn]] void throw_invalid_format(const std::string& text) {
     throw UserError(
         fmt::format("--format {}: must be fp32, spa22 (e6m15), or eXmY with X = 5..8 exponent and Y = 4..21 fraction "
-                    "bits, and t to truncate",
+                    "bits; append t to truncate",
                     text));
 }
 

@@ -38,10 +38,10 @@ inline constexpr std::uint32_t kT805MessageCycles = 19, kT805MessageWordCycles =
 /// PacketCharge::one_return_per_ray, a part of the ray's return packet.
 enum class CreatedPacket { kNone, kRay, kReturn, kContribution };
 
-/// Packet sizes, in 32-bit words, that the time model charges for the creation and the transfer of packets. The default
-/// sizes are those of the kernels (kernels/shared/packet.h), which create a return packet for each contribution of a
-/// ray. `one_return_per_ray` selects Yoshitani & Yamazaki's protocol instead: one return packet per ray other than a
-/// shadow ray, sent after the ray's shadow rays, with the fields that their Table 1 marks (Layx, Layy, kind of ray,
+/// Numbers of 32-bit words that the time model charges for creating a packet and for transferring it over a link. The
+/// default sizes are those of the kernels (kernels/shared/packet.h), which create a return packet for each contribution
+/// of a ray. `one_return_per_ray` selects Yoshitani & Yamazaki's protocol instead: one return packet per ray other than
+/// a shadow ray, sent after the ray's shadow rays, with the fields that their Table 1 marks (Layx, Layy, kind of ray,
 /// luminance r, g, b).
 struct PacketCharge {
     std::uint32_t ray_words = RAYA_PACKET_WORDS;

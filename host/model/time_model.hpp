@@ -81,11 +81,11 @@ struct TorusTime {
 ModelledTime modelled_time(const MachineClock& clock, std::span<const Load> phases, const Communication& communication,
                            const SmoothingCycles& smoothing = {});
 
-/// Returns the time of `rotations` rotations or transfers between PEs in which each link carries `words` words in
-/// total, with the set-up of the exchange; 0 if there are none.
+/// Returns the time, in milliseconds, of an exchange: its set-up, and `rotations` rotations or transfers between PEs in
+/// which each link carries `words` words in total. Returns 0 if `rotations` is 0.
 double exchange_ms(const MachineClock& clock, std::uint64_t rotations, double words);
 
-/// Returns the time of a PE for `cycles` cycles of the budgets, milliseconds.
+/// Returns the time, in milliseconds, that a PE takes for `cycles` cycles of the budgets.
 double compute_ms(const MachineClock& clock, double cycles);
 
 }  // namespace raya

@@ -113,11 +113,11 @@ py::dict schedule(const py::array& costs, const std::string& plan, const std::st
     return results;
 }
 
-// Returns the number of rotations that bring each PE the neighbours of its pixels once from each of the four sides, if
-// each PE sends all its pixels in every rotation. If every slot belongs to one PE, the number depends only on the pairs
-// of slots that own neighbouring pixels. Two rows of the image have the same pairs as all rows, so that two rows are
-// enough. Proof for horizontal neighbours: a row has all pairs (s, s + 1 mod W) except the pair of its last and first
-// pixel. For an offset p > 0, successive rows miss different pairs; for p = 0, all rows miss the same pair.
+// Returns the number of rotations that bring each PE the neighbours of its pixels on all four sides, if each PE sends
+// all its pixels in every rotation. If every slot belongs to one PE, the number depends only on the pairs of slots that
+// own neighbouring pixels. Two rows of the image have the same pairs as all rows, so that two rows are enough. Proof
+// for horizontal neighbours: a row has all pairs (s, s + 1 mod W) except the pair of its last and first pixel. For an
+// offset p > 0, successive rows miss different pairs; for p = 0, all rows miss the same pair.
 std::uint64_t neighbour_rotations(raya_mapping mapping) {
     if (raya_has_slots(mapping) && mapping.pes <= mapping.width) mapping.height = std::min(mapping.height, 2u);
     std::uint64_t rotations = 0;
@@ -144,8 +144,8 @@ std::uint32_t pixels_of_largest_share(std::uint32_t width, std::uint32_t height,
 }
 
 // Computes modelled times of the SPA for every offset of the cyclic mapping: the time of the busiest PE in each pass,
-// of filtering and comparing neighbouring pixels, and of the rotations that bring the neighbouring pixels. Excludes the
-// times of broadcast and gather. `trace`, `supersample`: cycles of each pixel in the two passes, [H, W].
+// the time to filter and compare neighbouring pixels, and the time of the rotations that bring these pixels. Excludes
+// the times of broadcast and gather. `trace`, `supersample`: cycles of each pixel in the two passes, [H, W].
 py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::string& antialias,
                       const std::optional<py::array>& supersample) {
     const CostImage trace_cost = cost_image_of(trace);
@@ -270,8 +270,8 @@ void add_loads(py::module_& module) {
                          "Number of rotations of the ring that bring each PE the neighbours of its pixels from all "
                          "four sides, if every PE sends all its pixels in each rotation.");
     add_mapping_function("exchange_rotations", exchange_rotations,
-                         "The same number as rotations() returns, counted by the renderer's function over all rows of "
-                         "the image.");
+                         "Returns the same number as rotations(), but counts it with the renderer's function over all "
+                         "rows of the image.");
     add_mapping_function("largest_share", pixels_of_largest_share,
                          "Number of pixels of the PE that owns the most pixels.");
     module.def("loads", loads, py::arg("cost"), py::arg("mapping") = "", py::arg("offset") = py::none(),
@@ -280,7 +280,7 @@ void add_loads(py::module_& module) {
                "[H, W], the cost of each pixel.");
     module.def("imbalances", imbalances, py::arg("cost"), py::arg("pes"), py::arg("offsets"),
                py::arg("fold") = "cyclic",
-               "float64 [n]: u = (max - mean) / mean of the loads with the cyclic mapping, for each offset.");
+               "float64 [n]: u = (max - mean) / mean of the loads with the cyclic mapping, for each of the n offsets.");
     module.def(
         "speedups", speedups, py::arg("cost"), py::arg("pes"), py::arg("offsets"), py::arg("fold") = "cyclic",
         "float64 [n]: sum / max of the loads with the cyclic mapping, for each number of PEs pes[i] with the offset "
@@ -290,7 +290,7 @@ void add_loads(py::module_& module) {
         py::arg("fold") = "", py::arg("pes") = py::none(),
         "Simulates a dynamic or hybrid distribution of pixels. plan: 'dynamic:CHUNK[,OVERHEAD[,ROOT]]' or "
         "'hybrid:CHUNK[,OVERHEAD[,SHARE[,ROOT]]]' with CHUNK in pixels per request, OVERHEAD in cycles of the PE per "
-        "request, SHARE the fraction of each PE's pixels that is assigned statically, and ROOT in cycles of the "
+        "request, SHARE as the fraction of each PE's pixels that is assigned statically, and ROOT in cycles of the "
         "root, which answers one request at a time. mapping, offset, fold: the mapping of the static part. Returns a "
         "dict: loads (uint64 [P]: finishing time of each PE in cycles), requests (number of requests to the root), "
         "makespan (cycles), speedup (total cycles / makespan).");
@@ -307,14 +307,14 @@ void add_loads(py::module_& module) {
         "Modelled ms that the SPA takes with each offset of the cyclic mapping, without broadcast and gather. cost, "
         "supersample: modelled cycles of each pixel in the two passes, [H, W]. Returns a dict of arrays [W]: offset, "
         "imbalance (of the first pass), trace_ms and supersample_ms (of the busiest PE), smooth_ms (filter and "
-        "comparison), ring_ms (exchange of neighbours), rotations (their number).");
+        "comparison), ring_ms (exchange of neighbours), rotations (number of rotations).");
     module.def("ranks_of_pes", ranks_of_pes, py::arg("pes"), py::arg("ranks"),
                "uint32 [P]: the MPI rank of each PE of a ring.");
     module.def("ranks_of_nodes", ranks_of_torus, py::arg("nodes"), py::arg("ranks"),
-               "uint32 [nodes]: the MPI rank of each node of a 3-D torus of nodes = (I, J, K).");
+               "uint32 [nodes]: the MPI rank of each node of a 3-D torus. nodes: number of nodes (I, J, K).");
     module.def("link_ends", link_ends, py::arg("nodes"),
                "uint32 [nodes, 6]: the node at the other end of each link +x, -x, +y, -y, +z, -z of each node of a 3-D "
-               "torus of nodes = (I, J, K).");
+               "torus. nodes: number of nodes (I, J, K) along x, y and z.");
     module.def("machines", all_machines,
                "Returns all machines, as a list of dicts. None means: for pes, one PE per image column; for "
                "pe_memory_bytes, no limit; for a rate, unknown.");

@@ -110,7 +110,7 @@ void add_result(py::module_& module) {
             "png", [](const Result& r) { return py::bytes(plain_png(r->image())); }, "bytes: an 8-bit PNG, sRGB.")
         .def_property_readonly(
             "hash", [](const Result& r) { return r->report.image.hash; }, "str: hash of the pixels' bits.")
-        .def_property_readonly("mask", mask_of, "bool [H, W]: the supersampled pixels; None without supersampling.")
+        .def_property_readonly("mask", mask_of, "bool [H, W]: True if supersampled; None without supersampling.")
         .def_property_readonly(
             "cost", cost_of,
             "uint64 [H, W]: modelled cycles of each pixel, summed over all phases. Raises ValueError "

@@ -125,9 +125,9 @@ void add_scenes(py::module_& module) {
              "up, angle, background and light of raya render. Raises ValueError.")
         .def(
             "random_view", random_view, py::arg("seed"),
-            "Returns the scene seen from a random eye: at the same distance from the target, 5 to 75 degrees above the "
-            "target.")
-        .def("turned", turned_scene, py::arg("degrees"), "Returns the scene with the eye turned around the target.")
+            "Returns the scene seen from a random eye, at the same distance from the point `at`, 5 to 75 degrees above "
+            "it.")
+        .def("turned", turned_scene, py::arg("degrees"), "Returns the scene with the eye turned around the point `at`.")
         .def("without_lights", without_lights,
              "Returns the scene without lights, for which the kernels trace no shadow rays.")
         .def("scattered", scattered, py::arg("seed"),

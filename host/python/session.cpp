@@ -80,14 +80,14 @@ RenderCommand parse_options(CLI::App& program, const py::dict& options) {
 
 // If the option `name` has the value True, removes the option from `options` and returns true. For `cost` and
 // `packets`, True stores the arrays in the Result; any other value is the name of the file for the arrays.
-bool takes_true(py::dict& options, const char* name) {
+bool pop_if_true(py::dict& options, const char* name) {
     if (!options.contains(name) || options[name].ptr() != Py_True) return false;
     options.attr("pop")(name);
     return true;
 }
 
 // Removes pixels=(stride, first), which is not an option of the command line, from `options` and returns its value.
-PixelSubset pixels_of(py::dict& options) {
+PixelSubset pop_pixels(py::dict& options) {
     if (!options.contains("pixels")) return {};
     const auto [stride, first] = options.attr("pop")("pixels").cast<std::pair<std::uint32_t, std::uint32_t>>();
     if (stride == 0 || first >= stride) throw py::value_error("pixels: must be (stride, first), 0 <= first < stride");
@@ -143,8 +143,8 @@ PythonSession& PythonSession::shared(const std::string& device) {
 
 std::shared_ptr<Render> PythonSession::render(const Scene& scene, const py::dict& kwargs, const py::object& progress) {
     py::dict options(kwargs.attr("copy")());
-    const bool stores_costs = takes_true(options, "cost"), stores_packets = takes_true(options, "packets");
-    const PixelSubset pixels = pixels_of(options);
+    const bool stores_costs = pop_if_true(options, "cost"), stores_packets = pop_if_true(options, "packets");
+    const PixelSubset pixels = pop_pixels(options);
     CLI::App program;
     RenderCommand command = parse_options(program, options);
     command.pixels = pixels;

@@ -43,7 +43,7 @@ using ResultClass = py::class_<Render, Result>;
 /// Adds the members for renders on a torus to the Python class Result.
 void add_torus_results(py::module_& module, ResultClass& result);
 
-// Each of these functions adds the functions and classes of one source file to the Python module.
+// Each function below adds the functions and classes of one source file to the Python module.
 void add_scenes(py::module_& module);
 void add_renders(py::module_& module);
 void add_loads(py::module_& module);

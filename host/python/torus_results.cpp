@@ -53,8 +53,8 @@ py::dict supersteps_of(const Result& r) {
     return arrays;
 }
 
-// Returns modelled times of the root node, computed as in torus_time(): the time of its processor, which computes and
-// handles all messages over the root's links, and the time of the root's busiest link.
+// Returns modelled times of the root node: the time of its processor, which computes and handles all messages over the
+// root's links, and the time of the root's busiest link.
 py::dict root_times(const Result& r) {
     const TorusResult& result = torus_of(*r, "root");
     const raya_torus& torus = r->torus_settings->torus;
@@ -97,8 +97,8 @@ const History& history_of(const Render& r) {
     return *r.history;
 }
 
-// Returns the default machine with the given parameters changed: cycle_ns, message_cycles, word_cycles, one_way, both_ways,
-// buffer (see AsyncMachine).
+// Returns the default machine with the given parameters changed: cycle_ns, message_cycles, word_cycles, one_way,
+// both_ways, buffer (see AsyncMachine).
 AsyncMachine async_machine(const py::kwargs& changes) {
     AsyncMachine machine;
     for (const auto& [key, value] : changes) {
@@ -136,13 +136,13 @@ std::size_t write_replay(const Result& r, const std::string& platform, const std
     return history_of(*r).messages.size();
 }
 
-py::array steps_array(const py::object& self, std::vector<std::uint64_t> Render::*member, std::size_t links) {
+py::array steps_array(const py::object& self, std::vector<std::uint64_t> Render::*member, std::size_t values_per_node) {
     const Result r = self.cast<Result>();
     const auto nodes = static_cast<py::ssize_t>(torus_of(*r, "supersteps").load.per_pe.size());
     const std::vector<std::uint64_t>& values = (*r).*member;
-    const auto steps = static_cast<py::ssize_t>(values.size() / links) / nodes;
+    const auto steps = static_cast<py::ssize_t>(values.size() / values_per_node) / nodes;
     std::vector<py::ssize_t> shape = {steps, nodes};
-    if (links > 1) shape.push_back(static_cast<py::ssize_t>(links));
+    if (values_per_node > 1) shape.push_back(static_cast<py::ssize_t>(values_per_node));
     return view_of<std::uint64_t>(values, shape, self);
 }
 
@@ -177,7 +177,7 @@ void add_torus_results(py::module_& module, ResultClass& result) {
             "kernels read the scene in global memory.")
         .def_property_readonly("supersteps", supersteps_of,
                                "dict of arrays uint64 [S], one number per superstep: 'cycles' of the busiest node, "
-                               "'link_words' sent over the busiest link, 'live': packets in flight at the end.")
+                               "'link_words' sent over the busiest link, 'live': packets in flight at its end.")
         .def_property_readonly(
             "step_cycles", [](const py::object& self) { return steps_array(self, &Render::cycles, 1); },
             "uint64 [S, nodes]: cycles of each node in each superstep. Empty unless rendered with packets=True.")
@@ -187,11 +187,11 @@ void add_torus_results(py::module_& module, ResultClass& result) {
             "uint64 [S, nodes, 6]: number of words that each node sends over each link in each superstep. Empty unless "
             "rendered with packets=True.")
         .def("simulate", simulated_ms,
-             "Modelled ms that the torus takes without supersteps. Keyword arguments change the machine: "
-             "message_cycles and word_cycles (cycles of the processor per message and per word), one_way and both_ways "
-             "(rate of a link in bytes/s if one direction or both directions transfer; 0: transfers take no time), "
-             "buffer (number of rays, and of returns, that an output thread holds). Raises ValueError unless rendered "
-             "with async_=True.")
+             "Modelled ms that the torus takes without supersteps. Keyword arguments change the machine: cycle_ns (of "
+             "the processor), message_cycles and word_cycles (processor cycles per message and per word), one_way and "
+             "both_ways (rate of a link in bytes/s if one direction or both directions transfer; 0: transfers take no "
+             "time), buffer (number of rays, and of returns, that an output thread holds). Raises ValueError unless "
+             "rendered with async_=True.")
         .def("write_replay", write_replay, py::arg("platform"), py::arg("replay"),
              "Writes the machine to the file `platform` and the history of messages to the file `replay`, for SimGrid "
              "(docs/packets.md). Takes the keyword arguments of simulate(). Returns the number of messages.");

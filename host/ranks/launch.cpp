@@ -45,13 +45,14 @@ std::unique_ptr<Transport> open_transport(const Launch& launch) {
     const std::string processes =
         launch.count ? std::to_string(*launch.count) : "several";  // some launchers do not set the number
     try {
-        auto* const open_mpi = reinterpret_cast<OpenMpi*>(module_function(kMpiModule, kOpenMpi));
+        auto* const make_transport =
+            reinterpret_cast<MakeMpiTransport*>(module_function(kMpiModule, kMakeMpiTransport));
         const std::string timeout_message = fmt::format(
-            "raya: rank 0 has waited {:g} s for all of {} ranks to start; remedy: look for a process that hangs or has "
+            "raya: rank 0 has waited {:g} s for the start of {} ranks; remedy: look for a process that hangs or has "
             "ended, or raise the limit with RAYA_RANK_TIMEOUT=SECONDS\n",
             limit_s, processes);
         const Deadline deadline(limit_s, launch.rank == 0 ? timeout_message : "", kExitDeviceError);
-        return std::unique_ptr<Transport>(open_mpi(limit_s));
+        return std::unique_ptr<Transport>(make_transport(limit_s));
     } catch (const ModuleError& error) {
         throw UserError(
             fmt::format("started as one of {} processes, but raya cannot load its MPI module: {}; remedy: install "
@@ -107,9 +108,9 @@ std::unique_ptr<Ranks> open_ranks() {
         const std::string library = ranks->library();
         ranks->close(0);
         throw UserError(
-            fmt::format("started as one of {} processes, but {}, with which raya was built, reports {}; remedy: use "
-                        "the mpirun of that MPI",
-                        *launch->count, library, ranks->count()));
+            fmt::format("started as one of {} processes, but as one of {} according to {}, with which raya was built; "
+                        "remedy: use the mpirun of that MPI library",
+                        *launch->count, ranks->count(), library));
     }
     if (!ranks->has_several()) {
         ranks->close(0);
@@ -128,8 +129,8 @@ void check_same_program(Ranks& ranks, const std::vector<std::string>& arguments)
     const auto first_line = [](const std::string& text) { return text.substr(0, text.find('\n')); };
     const std::string own_version = first_line(own_text), rank_0_version = first_line(rank_0_text);
     throw UserError(own_version != rank_0_version
-                        ? fmt::format("this rank is {}, rank 0 is {}; start the same program everywhere", own_version,
-                                      rank_0_version)
+                        ? fmt::format("this rank runs {}, rank 0 runs {}; start the same program in all ranks",
+                                      own_version, rank_0_version)
                         : "this rank was started with other arguments than rank 0; use the same for all ranks");
 }
 

@@ -32,7 +32,7 @@ std::unique_ptr<Ranks> open_ranks();
 void check_same_program(Ranks& ranks, const std::vector<std::string>& arguments);
 
 /// Returns the number of threads, at least 1, for a rank's OpenCL CPU device. `usable_cores`: number of cores to which
-/// the process is bound. The result is `usable_cores` if less than `host_cores`, else `host_cores` / `ranks_of_host`.
+/// the process is bound. Returns `usable_cores` if it is less than `host_cores`, else `host_cores` / `ranks_of_host`.
 std::uint32_t threads_of_rank(std::uint32_t usable_cores, std::uint32_t host_cores, std::uint32_t ranks_of_host);
 
 }  // namespace raya

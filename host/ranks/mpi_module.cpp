@@ -84,7 +84,7 @@ class MpiTransport final : public Transport {
 
     void all_gather(std::span<const std::byte> own_bytes, std::span<std::byte> all_bytes,
                     std::span<const std::size_t> sizes) override {
-        if (all_bytes.size() > INT_MAX) throw std::length_error("all_gather: more than 2^31 bytes");
+        if (all_bytes.size() > INT_MAX) throw std::length_error("all_gather: 2^31 bytes or more");
         std::vector<int> counts, starts;
         int end = 0;
         for (const std::size_t size : sizes) {
@@ -182,8 +182,8 @@ class MpiTransport final : public Transport {
 
     // Waits until all requests are complete; returns false if they are not complete after `limit_s` seconds. Ranks may
     // share cores, so the function polls without sleeping only for spin_s_ seconds and then sleeps between polls. It
-    // sleeps instead of calling sched_yield, because the scheduler prefers a thread that wakes up to computing threads,
-    // but does not prefer a thread that has yielded.
+    // sleeps instead of calling sched_yield, because the scheduler gives a thread that has just woken up priority over
+    // computing threads, but not a thread that has yielded.
     bool complete_within(double limit_s, std::vector<MPI_Request>& requests) {
         constexpr auto kSleep = std::chrono::microseconds(20);
         const Clock::time_point start = Clock::now();
@@ -210,8 +210,8 @@ class MpiTransport final : public Transport {
         MPI_Get_count(&status, MPI_BYTE, &size);
         std::string message(static_cast<std::size_t>(size), ' ');
         MPI_Recv(message.data(), size, MPI_BYTE, status.MPI_SOURCE, kFailureTag, failure_comm_, MPI_STATUS_IGNORE);
-        const std::size_t space = message.find(' ');
-        throw RankFailure(message.substr(space + 1), std::atoi(message.c_str()));
+        const std::size_t blank_at = message.find(' ');
+        throw RankFailure(message.substr(blank_at + 1), std::atoi(message.c_str()));
     }
 
     const double limit_s_;
@@ -225,6 +225,6 @@ class MpiTransport final : public Transport {
 }  // namespace
 }  // namespace raya
 
-extern "C" __attribute__((visibility("default"))) raya::Transport* raya_open_mpi(double limit_s) {
+extern "C" __attribute__((visibility("default"))) raya::Transport* raya_make_mpi_transport(double limit_s) {
     return new raya::MpiTransport(limit_s);
 }

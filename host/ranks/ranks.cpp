@@ -168,7 +168,7 @@ int Ranks::fail(const RankFailure& failure) { return abort_all(failure.what(), f
 
 int Ranks::abort_all(const std::string& message, int code) {
     if (!is_first()) transport_->report_failure(message, code);
-    suppress_interrupt_message();  // mpirun also ends this rank, by a signal
+    suppress_interrupt_message();  // mpirun ends this rank too, by a signal that is not a Ctrl-C
     print_log(fmt::format("raya: {}\n", message));
     transport_->abort(code);
     return code;

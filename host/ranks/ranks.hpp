@@ -41,9 +41,9 @@ class Ranks {
 
     std::uint32_t rank() const { return rank_; }
     std::uint32_t count() const { return count_; }
-    bool is_first() const { return rank_ == 0; }  // rank 0 reads, prints and writes
+    bool is_first() const { return rank_ == 0; }  // rank 0 prints, and reads and writes files
     bool has_several() const { return count_ > 1; }
-    std::uint32_t rank_on_host() const { return rank_on_host_; }    // index of this rank among those of its host
+    std::uint32_t rank_on_host() const { return rank_on_host_; }    // index of this rank among the ranks of its host
     std::uint32_t ranks_on_host() const { return ranks_on_host_; }  // number of ranks of this host
     std::string host() const { return transport_->host(); }
     std::string library() const { return transport_->library(); }
@@ -80,7 +80,8 @@ class Ranks {
         gather_bytes(std::as_bytes(own_elements), std::as_writable_bytes(std::span(gathered)), sizes);
         return gathered;
     }
-    /// Collective: returns the elements of all ranks in rank 0, and an empty vector in other ranks. Suits large data.
+    /// Collective: returns the elements of all ranks in rank 0, and an empty vector in other ranks. Unlike
+    /// all_gather(), gather() can return more than 2^31 bytes. sizes[rank]: number of elements of the rank.
     template <Sendable T>
     std::vector<T> gather(std::span<const T> own_elements, const std::vector<std::size_t>& sizes) {
         if (!is_first()) {
@@ -130,7 +131,7 @@ class Ranks {
 
     const RankTraffic& traffic() const { return traffic_; }
 
-    /// With several ranks, prints an error of this rank, once for all ranks, and ends all ranks with exit code `code`.
+    /// With several ranks, rank 0 prints the error of this rank and ends all ranks with exit code `code`.
     /// With a single rank, prints the error and returns the code.
     int fail(const std::string& text, int code);
 

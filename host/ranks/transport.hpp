@@ -84,11 +84,11 @@ class Transport {
     virtual void close() = 0;
 };
 
-/// Type of the function kOpenMpi of raya_mpi.so. The function starts MPI and returns the transport, which the caller
-/// owns. `limit_s`: time limit of each wait for other ranks.
-using OpenMpi = Transport*(double limit_s);
+/// Type of the function `kMakeMpiTransport` in raya_mpi.so. The function starts MPI and returns the transport, which
+/// the caller owns. `limit_s`: time limit of each wait for other ranks.
+using MakeMpiTransport = Transport*(double limit_s);
 
-inline constexpr const char *kMpiModule = "raya_mpi", *kOpenMpi = "raya_open_mpi";
+inline constexpr const char *kMpiModule = "raya_mpi", *kMakeMpiTransport = "raya_make_mpi_transport";
 
 /// Time limit for calls that have no time limit themselves, such as MPI_Init and MPI_Finalize. If the Deadline is not
 /// destroyed within `limit_s` seconds, it prints `text` on stderr and ends the process with exit code `code`.

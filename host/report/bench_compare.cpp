@@ -39,9 +39,10 @@ std::vector<std::string> joined(std::vector<std::string> first, const std::vecto
 
 std::string rate_cell(double value) { return fmt::format("{:.1f}", value); }
 
-/// Returns the verdict on a row that both runs have, and counts the row in `comparison`.
-std::string verdict(BenchComparison& comparison, const BenchMeasurement& before, const BenchMeasurement& now,
-                    double tolerance) {
+/// Counts a row in `comparison` and returns the verdict on it. `before`, `now`: the row in the baseline and in this
+/// run.
+std::string count_row(BenchComparison& comparison, const BenchMeasurement& before, const BenchMeasurement& now,
+                      double tolerance) {
     const double best_change = percent_change(before.best_rate(), now.best_rate());
     const double median_change = percent_change(before.median_rate(), now.median_rate());
     ++comparison.compared;
@@ -60,12 +61,11 @@ std::string verdict(BenchComparison& comparison, const BenchMeasurement& before,
 void add_difference(BenchComparison& comparison, const char* property, const std::string& before,
                     const std::string& now) {
     if (before == now) return;
-    comparison.remarks.push_back(fmt::format("another {}: {}, the baseline's is {}", property, now, before));
+    comparison.remarks.push_back(fmt::format("the {} differs from the baseline's: {}, was {}", property, now, before));
     comparison.text += "warning: " + comparison.remarks.back() + "\n";
 }
 
-/// Returns the JSON of a row. `before`, `now`: the row in the baseline and in this run; null if the run does not have
-/// it.
+/// Returns the JSON of a row. `before`, `now`: the row in the baseline and in this run; null: the run has no such row.
 Json row_json(const BenchMeasurement* before, const BenchMeasurement* now, const std::string& verdict_text) {
     Json json = row_key_json(now != nullptr ? *now : *before);
     json["mrays_per_s"] = now != nullptr ? rates_json(*now) : Json{};
@@ -91,7 +91,7 @@ BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& no
     for (const BenchMeasurement& row : now.rows) {
         const BenchMeasurement* before = find_row(baseline.rows, row);
         const std::string verdict_text =
-            before == nullptr ? "not in the baseline" : verdict(comparison, *before, row, tolerance);
+            before == nullptr ? "not in the baseline" : count_row(comparison, *before, row, tolerance);
         comparison.rows.push_back(row_json(before, &row, verdict_text));
         if (before == nullptr) {
             table.push_back(joined(key_cells(row), {rate_cell(row.best_rate()), "-", "-", rate_cell(row.median_rate()),

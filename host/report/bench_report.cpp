@@ -63,7 +63,7 @@ BenchReport report_of(const Json& json) {
     if (report.rows.empty()) throw JsonError("the report has no measurements");
     std::set<std::string> keys;
     for (const BenchMeasurement& row : report.rows) {
-        const std::string name = fmt::format("row {} of {} lanes", row.format, row.lanes);
+        const std::string name = fmt::format("row with {} and {} lanes", row.format, row.lanes);
         if (!is_valid_time(row.best_s) || !is_valid_time(row.median_s) || row.rays == 0)
             throw JsonError(name + ": rays and times must be positive");
         if (!keys.insert(row_key_json(row).dump()).second) throw JsonError(name + " occurs twice");
@@ -108,7 +108,7 @@ Json to_json(const BenchReport& report) {
 
 BenchReport read_bench_report(const fs::path& path) {
     const JsonSource source{input_name(path), "make a baseline with: raya bench --report " + path.string()};
-    return read_json(json_text(path, source), source, report_of);
+    return read_json(json_file_text(path, source), source, report_of);
 }
 
 }  // namespace raya

@@ -24,7 +24,7 @@ struct BenchMeasurement {
     int samples = 0;                     // number of samples
     std::string hash;                    // of the image
     std::string build_options = {};      // options passed to the compiler
-    std::optional<Roofline> roofline{};  // one row, of the best sample; empty: the peak was not measured
+    std::optional<Roofline> roofline{};  // one row: the best sample; empty: the peak was not measured
 
     double best_rate() const { return static_cast<double>(rays) / best_s * 1e-6; }  // Mrays/s
     double median_rate() const { return static_cast<double>(rays) / median_s * 1e-6; }

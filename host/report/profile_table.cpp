@@ -17,7 +17,8 @@ std::string build_line(double build_s, const std::vector<ProgramBuild>& builds) 
     std::string text = fmt::format("kernel build {:.3f} s, not among the commands", build_s);
     for (std::size_t i = 0; i < builds.size(); ++i)
         text += fmt::format("{} {} {:.3f} s", i == 0 ? ":" : ",", builds[i].name, builds[i].seconds);
-    return text + (builds.empty() ? "\n" : "; the remainder is first launches, at which some drivers compile\n");
+    return text +
+           (builds.empty() ? "\n" : "; the remainder is the time of first launches, in which some drivers compile\n");
 }
 
 }  // namespace

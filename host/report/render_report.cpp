@@ -15,7 +15,7 @@ Json skipped_json(const std::vector<NffRemark>& skipped) {
     return json;
 }
 
-Json codes_json(const std::optional<ImageCodes>& codes) {
+Json codes_json(const std::optional<CodeConversion>& codes) {
     if (!codes) return {};
     return {{"exposure", codes->exposure}, {"tone", codes->tone}, {"gamma", codes->gamma}};
 }

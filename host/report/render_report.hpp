@@ -29,7 +29,7 @@ struct Antialiasing {
 };
 
 /// Conversion of linear colours to the values of an 8-bit image.
-struct ImageCodes {
+struct CodeConversion {
     double exposure = 0;          // stops: colours were multiplied by 2^exposure
     std::string tone;             // "clip" or "reinhard"
     std::optional<double> gamma;  // empty: the sRGB curve
@@ -52,7 +52,7 @@ struct RenderReport {
     struct {
         int width = 0, height = 0;  // pixels
         std::string file, hash;     // hash: of the linear pixel values
-        std::optional<ImageCodes> codes{};
+        std::optional<CodeConversion> codes{};
         struct {
             int width = 0, height = 0;  // pixels
             std::string png;            // contents of the PNG file; empty: no preview
@@ -85,8 +85,8 @@ struct RenderReport {
     std::optional<Antialiasing> antialias;
     std::optional<AccelSummary> accel;  // empty: no accelerator
     Communication communication;
-    ModelledTime modelled;                 // of a ring
-    std::optional<TorusReport> torus;      // torus machine only; replaces antialias, accel, communication and modelled
+    ModelledTime modelled;             // ring machine only
+    std::optional<TorusReport> torus;  // torus machine only; replaces antialias, accel, communication and modelled
 
     std::vector<Json> ranks;  // device, times and messages of each MPI rank; empty for one rank
 

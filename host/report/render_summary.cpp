@@ -68,7 +68,7 @@ std::string accel_line(const RenderReport& r) {
 
 std::string scale_line(const RenderReport& r) {
     if (r.machine.length_exponent == 0) return {};
-    return fmt::format("scale   lengths x 2^{}, into the range of {}\n", r.machine.length_exponent, r.machine.format);
+    return fmt::format("scale   lengths x 2^{}, to fit the range of {}\n", r.machine.length_exponent, r.machine.format);
 }
 
 std::string memory_line(const RenderReport& r) {
@@ -79,8 +79,7 @@ std::string memory_line(const RenderReport& r) {
                        r.torus ? torus_memory_text(*r.torus) : "");
 }
 
-// Returns a line with the number and size of the messages of all ranks, and the longest time that a rank waited for
-// other ranks.
+// Returns a line with the number and size of the messages of all ranks, and the longest waiting time of a rank.
 std::string ranks_line(const RenderReport& r) {
     if (r.ranks.empty()) return {};
     double max_waiting_s = 0;
@@ -92,7 +91,7 @@ std::string ranks_line(const RenderReport& r) {
         bytes += rank.at("bytes_sent").integer();
         hosts.insert(rank.at("host").text());
     }
-    return fmt::format("ranks   {} on {}; {}, {} sent; longest wait for others {:.3f} s\n", r.ranks.size(),
+    return fmt::format("ranks   {} on {}; {}, {} sent; longest wait for other ranks {:.3f} s\n", r.ranks.size(),
                        counted(hosts.size(), "host"), counted(messages, "message"), required_size_text(bytes),
                        max_waiting_s);
 }

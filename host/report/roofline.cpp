@@ -80,7 +80,7 @@ std::string format_remark(const DevicePeak& p) {
     if (p.format == "fp32") return text + "\n";
     return text +
            "; each operation takes many instructions;\n"
-           "        above 100 % if most operations are cheaper: comparisons, and spheres that the fp32 filter "
+           "        it is above 100 % if most operations are cheaper: comparisons, and spheres that the fp32 filter "
            "rejects\n";
 }
 
@@ -90,7 +90,7 @@ std::string verdict(const RooflineRow& r, const DevicePeak& p) {
     std::string line =
         fmt::format("roof    {}: {} bound, {:.2f} % of {}", r.work.label, bound_name(r.bound), 100 * r.roof_fraction,
                     compute ? "the fp32 multiply-add rate" : "the copy bandwidth");
-    if (r.format_fraction) line += fmt::format(", {:.2f} % of {}'s own rates", 100 * *r.format_fraction, p.format);
+    if (r.format_fraction) line += fmt::format(", {:.2f} % of the rates of {}", 100 * *r.format_fraction, p.format);
     return line + "\n";
 }
 

@@ -2,9 +2,9 @@
 // Performance Model for Multicore Architectures", 2009).
 //
 // Operations are defined in host/model/budget.hpp: an addition, multiplication, comparison, multiply-add, division or
-// square root counts as one; moves and branches do not count. The number of operations of a kernel is the sum over its
-// counted events of the number of events times the event's budget. It does not depend on device, number format or
-// compiler. Bytes are the minimum that a kernel must read plus the minimum that it must write.
+// square root counts as one; moves and branches do not count. The number of operations of a kernel is the sum of the
+// budgets of all its counted events. It does not depend on device, number format or compiler. Bytes are the minimum
+// that a kernel must read plus the minimum that it must write.
 #pragma once
 #include <cstdint>
 #include <optional>

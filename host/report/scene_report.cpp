@@ -119,7 +119,7 @@ std::string extent_text(const SceneReport& r) {
     if (!r.box.isEmpty())
         box = fmt::format("{:.6g}..{:.6g} x {:.6g}..{:.6g} x {:.6g}..{:.6g}", r.box.min.x, r.box.max.x, r.box.min.y,
                           r.box.max.y, r.box.min.z, r.box.max.z);
-    return fmt::format("{}; with the camera at most {:.6g} from the origin along each axis", box,
+    return fmt::format("{}; objects and camera at most {:.6g} from the origin along each axis", box,
                        scene_extent(r.scene));
 }
 

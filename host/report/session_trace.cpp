@@ -21,7 +21,7 @@ class DeviceTimes {
     DeviceTimes(const ClockOffset& offset, std::uint64_t begin)
         : shift_(offset.offset_ns - static_cast<std::int64_t>(begin)) {}
 
-    // Returns the later of the converted time `device_ns` and the time `not_before`.
+    // Returns the converted time `device_ns`, or `not_before` if that is later; counts the latter as moved.
     std::uint64_t trace_ns(std::uint64_t device_ns, std::uint64_t not_before) {
         const std::int64_t shifted = static_cast<std::int64_t>(device_ns) + shift_;
         if (shifted >= static_cast<std::int64_t>(not_before)) return static_cast<std::uint64_t>(shifted);
@@ -72,8 +72,8 @@ Json clock_json(const ClockOffset& offset) {
         {"offset_ns", offset.offset_ns},
         {"uncertainty_ns", offset.uncertainty_ns},
         {"note", offset.same_clock ? "device times are on the host's clock (CLOCK_MONOTONIC_RAW)"
-                                   : "host time = device time + offset, from one command between two readings of the "
-                                     "host's clock; drift is not corrected"}};
+                                   : "host time = device time + offset; offset measured with one command between two "
+                                     "readings of the host's clock; drift is not corrected"}};
 }
 
 }  // namespace

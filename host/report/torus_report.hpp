@@ -21,7 +21,7 @@ struct TorusReport {
     std::string link_exchange;                       // how the device transfers packets: "copies" or "kernel"
     std::string link_origin;      // source of link_exchange: "options", "measured", "defaults" or "FILE, DATE"
     PacketCharge packets;         // modelled message sizes
-    std::uint64_t returns = 0;    // number of returns that are charged as messages
+    std::uint64_t returns = 0;    // number of returns that the model counts as messages
     std::uint64_t discarded = 0;  // number of primary rays that nodes generated and discarded
     std::uint64_t supersteps = 0;
     std::uint64_t live_max = 0;                             // maximum number of packets at a superstep's end
@@ -58,13 +58,13 @@ const char* returns_name(const PacketCharge& packets);
 /// Returns the numbers of operations of all counted events on T805s (host/model/t805.hpp).
 Json t805_budget_json(const EventCounts& events, const PacketCharge& packets);
 
-/// Returns the part of the summary's first line with nodes, links and voxels.
+/// Returns nodes, links and voxels as text, for the summary's first line.
 std::string torus_machine_text(const TorusReport& report);
 
-/// Returns the lines of the summary with packets, links and modelled time.
+/// Returns the summary's lines about packets, links and modelled time.
 std::string torus_lines(const TorusReport& report);
 
-/// Returns the part of the summary's memory line with queues and copies.
+/// Returns queues and copies as text, for the summary's line about memory.
 std::string torus_memory_text(const TorusReport& report);
 
 }  // namespace raya

@@ -14,13 +14,13 @@
 namespace raya {
 namespace {
 
-std::string json_text(const Json& json) { return json.dump(); }
+std::string text_of(const Json& json) { return json.dump(); }
 
 std::string microseconds(std::uint64_t ns) { return fmt::format("{}.{:03}", ns / 1000, ns % 1000); }
 
 std::string name_record(const char* record_name, TraceTrack track, const Json& arguments) {
     return fmt::format(R"({{"ph":"M","name":"{}","pid":{},"tid":{},"args":{}}})", record_name, track.process,
-                       track.thread, json_text(arguments));
+                       track.thread, text_of(arguments));
 }
 
 }  // namespace
@@ -62,9 +62,9 @@ void TraceFile::slice(TraceTrack track, const std::string& name, std::uint64_t s
         throw std::logic_error(fmt::format("trace: slice '{}' from {} to {} overlaps another slice", name, start, end));
     last = start;
     ends.push_back(end);
-    add(fmt::format(R"({{"ph":"X","name":{},"pid":{},"tid":{},"ts":{},"dur":{},"args":{}}})", json_text(name),
+    add(fmt::format(R"({{"ph":"X","name":{},"pid":{},"tid":{},"ts":{},"dur":{},"args":{}}})", text_of(name),
                     track.process, track.thread, microseconds(start), microseconds(end - start),
-                    arguments.is_null() ? "{}" : json_text(arguments)));
+                    arguments.is_null() ? "{}" : text_of(arguments)));
 }
 
 void TraceFile::counter(std::uint32_t process, const std::string& name, std::uint64_t at_ns,
@@ -75,8 +75,8 @@ void TraceFile::counter(std::uint32_t process, const std::string& name, std::uin
         if (!std::isfinite(value)) throw std::logic_error(fmt::format("trace: counter '{}' is {}", name, value));
         arguments[series] = value;
     }
-    add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{}}})", json_text(name), process,
-                    microseconds(at_ns), json_text(arguments)));
+    add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{}}})", text_of(name), process, microseconds(at_ns),
+                    text_of(arguments)));
 }
 
 void TraceFile::flow(const std::string& name, TraceTrack start_track, std::uint64_t start_ns, TraceTrack end_track,
@@ -87,8 +87,8 @@ void TraceFile::flow(const std::string& name, TraceTrack start_track, std::uint6
     if (!reserve(2)) return;
     ++flows_;
     const auto add_end = [&](const char* phase, TraceTrack track, std::uint64_t at_ns) {
-        add(fmt::format(R"({{"ph":{},"cat":"flow","name":{},"id":{},"pid":{},"tid":{},"ts":{}}})", phase,
-                        json_text(name), flows_, track.process, track.thread, microseconds(at_ns)));
+        add(fmt::format(R"({{"ph":{},"cat":"flow","name":{},"id":{},"pid":{},"tid":{},"ts":{}}})", phase, text_of(name),
+                        flows_, track.process, track.thread, microseconds(at_ns)));
     };
     add_end(R"("s")", start_track, start_ns);
     add_end(R"("f","bp":"e")", end_track, end_ns);
@@ -108,7 +108,7 @@ std::string TraceFile::tail() const {
     Json about = metadata_;
     about["events"] = events_;
     about["events_left_out"] = left_out_;
-    return "\n],\"otherData\":" + json_text(about) + "}\n";
+    return "\n],\"otherData\":" + text_of(about) + "}\n";
 }
 
 std::string TraceFile::finish(bool compressed) const {

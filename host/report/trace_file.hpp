@@ -84,7 +84,7 @@ class TraceFile {
     std::size_t max_events_, events_ = 0, left_out_ = 0, flows_ = 0;
     // [track]: end times of the open slices, outer slices first.
     std::map<TraceTrack, std::vector<std::uint64_t>> open_;
-    std::map<TraceTrack, std::uint64_t> last_start_;
+    std::map<TraceTrack, std::uint64_t> last_start_;  // [track]: start of the slice added last
     std::string names_, text_;
     Json metadata_ = Json::object();
 };

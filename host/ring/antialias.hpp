@@ -16,8 +16,8 @@ enum class AntialiasMethod {
 
 struct Antialias {
     AntialiasMethod method = AntialiasMethod::kNone;
-    double threshold = 0.125;            // supersampling: minimum difference of a colour component, 0..1
-    raya_u32 points = RAYA_POINTS_AXES;  // supersampling: RAYA_POINTS_AXES or RAYA_POINTS_DIAGONALS
+    double threshold = 0.125;            // supersampling: minimum colour difference that marks a pixel, 0..1
+    raya_u32 points = RAYA_POINTS_AXES;  // supersampling: added samples, RAYA_POINTS_AXES or RAYA_POINTS_DIAGONALS
     ExchangeMethod exchange = ExchangeMethod::kRing;
 };
 

@@ -1,5 +1,5 @@
 // Bus and ring of the machine (Kohata & Ito 1993, section on the array), and the distribution of PEs over ranks.
-// Labelled buffer transfers, which are counted, model the transfers of bus and ring.
+// Buffer transfers with labels model the transfers of bus and ring; raya counts them.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -51,8 +51,8 @@ class Bus {
           pes_(pes),
           segment_(own_segment(pes, ranks)) {}
 
-    /// Sends words from the host to all PEs, by writing them to the device buffer `target`. The PEs copy them into
-    /// their memories at the start of a kernel.
+    /// Sends words from the host to all PEs, by writing them to the device buffer `target`. The PEs copy the words
+    /// into their memories at the start of a kernel.
     void broadcast(Buffer<std::uint32_t>& target, std::span<const std::uint32_t> words);
 
     /// Sends `words` words of each row from one PE (`source`, in `pe_memory`) to another (`target`, in `blocks`). The
@@ -99,14 +99,14 @@ class Ring {
          Ranks& ranks = Ranks::single());
 
     /// Fills each PE's block from its own memory `pe_memory`, [PE][rows][memory_row_words]: copies the words of each
-    /// row from `begin` on, at most row_words of them. Not counted, because no data moves between PEs.
+    /// row from `begin` on, at most row_words of them. `communication` excludes it: no data leaves a PE.
     void load(const Buffer<float>& pe_memory, std::size_t memory_row_words, std::size_t begin);
 
     /// Every PE sends its block to the next PE in the direction, with wrap-around at the end of the ring.
     void rotate(RingDirection direction);
 
     /// For each PE i, copies the block of PE (i + distance) mod P from `all_blocks` into the block of PE i.
-    /// `all_blocks`: blocks broadcast over the bus, which has counted them; [PE of all ranks][rows][row_words].
+    /// `all_blocks`: blocks that Bus::broadcast_from() has sent and counted, [PE of all ranks][rows][row_words].
     void take(const Buffer<float>& all_blocks, std::size_t distance);
 
     /// Current blocks of the PEs of this rank's segment, [PE][rows][row_words].

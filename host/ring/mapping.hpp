@@ -8,8 +8,8 @@
 namespace raya {
 
 /// Returns the mapping of an image of W x H pixels by this rule. Throws UserError, with the option and its legal range,
-/// if W or H is outside 1..16384, the number of PEs is outside 1..W*H or differs from that of a grid mapping
-/// (grid:RxC), the offset is outside 0..W-1, or tiles do not divide the image.
+/// if W or H is outside 1..16384, the number of PEs is outside 1..W*H or is not R C for a mapping grid:RxC,
+/// the offset is outside 0..W-1, or tiles do not divide the image.
 raya_mapping make_mapping(const MappingRule& rule, const ImageSize& image, std::uint32_t pes);
 
 /// Returns the argument of --mapping for this mapping, without the fold: "cyclic:16", "grid:16x16". The mapping of

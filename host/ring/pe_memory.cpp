@@ -17,10 +17,10 @@ constexpr std::uint64_t kPixelBytes = 12;  // three colour components of 4 bytes
 
 [[noreturn]] void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes,
                          const std::string& remedy) {
-    const char* other_remedy = machine.name == "grande" ? "a larger --pe-memory, or none" : "--machine grande";
+    const char* memory_remedy = machine.name == "grande" ? "a larger --pe-memory, or none" : "--machine grande";
     throw DoesNotFit(
         fmt::format("{}: needs {} in every PE, a PE of {} has {}; use {}{}", what, required_size_text(bytes),
-                    machine.title, available_size_text(*machine.pe_memory_bytes), remedy, other_remedy),
+                    machine.title, available_size_text(*machine.pe_memory_bytes), remedy, memory_remedy),
         bytes, *machine.pe_memory_bytes);
 }
 
@@ -28,10 +28,10 @@ constexpr std::uint64_t kPixelBytes = 12;  // three colour components of 4 bytes
 
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
     PeMemory memory{.job_words = demand.job_words, .tree_words = kRayTreeWords + kPendingRayWords * demand.bounces};
-    const bool exchanges = demand.antialias != AntialiasMethod::kNone;
+    const bool antialiased = demand.antialias != AntialiasMethod::kNone;
     // The number of pixels that is reduced until the PE's memory suffices.
-    std::uint32_t& fitted_pixels = exchanges ? memory.band_pixels : memory.block_pixels;
-    if (exchanges) memory.block_pixels = demand.share_pixels;
+    std::uint32_t& fitted_pixels = antialiased ? memory.band_pixels : memory.block_pixels;
+    if (antialiased) memory.block_pixels = demand.share_pixels;
     if (demand.antialias == AntialiasMethod::kFilter) memory.sum_pixels = demand.share_pixels;
     if (demand.antialias == AntialiasMethod::kSupersample) memory.marks = demand.share_pixels;
     const std::uint64_t fixed_bytes = memory.bytes();
@@ -39,13 +39,13 @@ PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
     if (!machine.pe_memory_bytes || memory.bytes() <= *machine.pe_memory_bytes) return memory;
 
     const std::uint64_t limit_bytes = *machine.pe_memory_bytes;
-    if (fixed_bytes + kPixelBytes > limit_bytes && exchanges)
+    if (fixed_bytes + kPixelBytes > limit_bytes && antialiased)
         refuse(machine, fmt::format("{} with --antialias {}", demand.scene, antialias_name(demand.antialias)),
                fixed_bytes + kPixelBytes, "more PEs, a smaller image or ");
     if (fixed_bytes + kPixelBytes > limit_bytes) refuse(machine, demand.scene, fixed_bytes + kPixelBytes, "");
     fitted_pixels = static_cast<std::uint32_t>(
         std::min<std::uint64_t>(demand.share_pixels, (limit_bytes - fixed_bytes) / kPixelBytes));
-    if (exchanges) {
+    if (antialiased) {
         const std::uint32_t bands = (demand.share_pixels + fitted_pixels - 1) / fitted_pixels;
         fitted_pixels = (demand.share_pixels + bands - 1) / bands;
     }

@@ -14,7 +14,7 @@
 namespace raya {
 namespace {
 
-constexpr std::uint32_t kFirstBands = 64;        // the first band is 1 / kFirstBands of a share
+constexpr std::uint32_t kFirstBandDivisor = 64;  // the first band is 1 / kFirstBandDivisor of a share
 constexpr std::uint32_t kMinPixelsPerLane = 16;  // minimum in the first band, so that no lane is idle
 
 std::string words_hash(const std::vector<std::uint32_t>& words) {
@@ -101,7 +101,7 @@ RingState RingRenderer::checkpoint_state(const RingResult& result) {
 
 void RingRenderer::save_checkpoint(std::uint32_t pass, PixelRange range, RingResult& result) {
     const SpanLog::Span span = session_.span("save checkpoint");
-    prepare_memory(result);  // also copies the gathered pixels into the image
+    place_gathered_and_allocate(result);
     RingState s = checkpoint_state(result);
     s.pass = pass;
     s.window = range.window_start;
@@ -117,9 +117,9 @@ void RingRenderer::resume(RingResult& result) {
     if (ranks_.has_several())
         throw UserError("a render on several ranks cannot save checkpoints; start raya without mpirun");
     const std::uint32_t lanes_per_pe = settings_.kernels.lanes * settings_.kernels.group_size;
-    band_ = std::max(share_pixels_ / kFirstBands, kMinPixelsPerLane * lanes_per_pe);
+    band_ = std::max(share_pixels_ / kFirstBandDivisor, kMinPixelsPerLane * lanes_per_pe);
     if (!checkpointing_->resume) return;
-    prepare_memory(result);
+    place_gathered_and_allocate(result);
     resumed_ = checkpointing_->resume(state_settings(), host_state(result));
     if (!resumed_) return;
     const SpanLog::Span span = session_.span("resume");

@@ -94,7 +94,7 @@ void RingRenderer::collect(std::vector<T>& elements, std::size_t per_pe, const T
 
 // Copies the pixels of the last gather into the image, and allocates the host memory for the next gather in advance, as
 // the first access to new memory is slow. trace() calls this function while the device traces.
-void RingRenderer::prepare_memory(RingResult& result) {
+void RingRenderer::place_gathered_and_allocate(RingResult& result) {
     const SpanLog::Span span = session_.span("prepare memory");
     if (result.image.rgb.empty() && ranks_.is_first()) result.image = black_image(settings_.mapping);
     place_gathered_pixels(result);

@@ -29,7 +29,7 @@ bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel
 constexpr std::size_t kTestsPerRay = 20;  // approximate number of object tests of a ray with an accelerator
 
 // Returns the maximum work of a launch, in tests and traversal steps of a lane's rays, so that the device does not
-// exceed its limit of loop iterations. A lane checks its limit only after each ray and its shadow rays, so it may
+// exceed its limit of loop iterations. A lane checks its work limit only after each ray and its shadow rays, so it may
 // exceed the limit by the work `overrun`. The constants convert work to iterations. Measured with the images of `raya
 // verify` on llvmpipe: 12 iterations per test were too few and 16 enough. A BVH step has one iteration for each of
 // sixteen boxes and a few more. kIterationsPerLaunch is for the loop that copies words.

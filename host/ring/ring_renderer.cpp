@@ -45,7 +45,7 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
       bus_(session, communication_, settings_.mapping.pes, ranks),
       broadcast_(session.buffer<std::uint32_t>("broadcast words", job_.job.words().size())),
       pixels_(session.buffer<float>("pixel blocks", 3ull * pes_.count * window_)),
-      marks_(session.buffer<std::uint8_t>("no marks", 1)) {
+      no_marks_(session.buffer<std::uint8_t>("no marks", 1)) {
     ranks_.one_rank_per_host_first([this] { build(); });
 }
 
@@ -61,7 +61,7 @@ void RingRenderer::build() {
     counters_.push_back(tracer_->make_counters(kTracePass));
     bus_.broadcast(broadcast_, job_.job.words());
     tracer_->clear(counters_.front());
-    tracer_->warm_up(broadcast_, marks_, pixels_, counters_.front());
+    tracer_->warm_up(broadcast_, no_marks_, pixels_, counters_.front());
     if (settings_.antialias.method != AntialiasMethod::kNone) build_exchange(options);
     session_.finish();
     build_s_ = seconds_since(start);
@@ -97,8 +97,8 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const RingChec
     prepare(result);
     bus_.broadcast(broadcast_, job_.job.words());
     resume(result);
-    for (std::uint32_t block = 0; block < share_pixels_; block += memory_.block_pixels)
-        render_block(block, result, progress);
+    for (std::uint32_t block_begin = 0; block_begin < share_pixels_; block_begin += memory_.block_pixels)
+        render_block(block_begin, result, progress);
     place_gathered_pixels(result);
     if (contrast_) collect_marks(result);
     collect_events(result);
@@ -112,13 +112,13 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const RingChec
 }
 
 // Renders one block (the pixels of a share that fit the PE's memory at a time), one device window after another.
-void RingRenderer::render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress) {
-    const std::uint32_t end = std::min(share_pixels_, block + memory_.block_pixels);
+void RingRenderer::render_block(std::uint32_t block_begin, RingResult& result, const ProgressCallback& progress) {
+    const std::uint32_t end = std::min(share_pixels_, block_begin + memory_.block_pixels);
     if (resumed_ && resumed_->window >= end) return;
     if (!resumed_) bus_.begin_gather();
-    for (std::uint32_t window = block; window < end; window += window_) {
-        if (resumed_ && resumed_->window > window) continue;
-        const PixelRange range{window, window, std::min(end, window + window_)};
+    for (std::uint32_t window_begin = block_begin; window_begin < end; window_begin += window_) {
+        if (resumed_ && resumed_->window > window_begin) continue;
+        const PixelRange range{window_begin, window_begin, std::min(end, window_begin + window_)};
         trace(range, result, progress);
         if (filter_) filter_->apply(pixels_, *exchange_);
         if (contrast_) supersample(result, progress);
@@ -153,8 +153,9 @@ void RingRenderer::trace(PixelRange range, RingResult& result, const ProgressCal
     };
     trace_in_bands(0, range, result, [&](PixelRange band) {
         range = band;
-        tracer_->trace(kTracePass, broadcast_, band, RAYA_POINTS_OWN, marks_, pixels_, counters_[0],
-                       progress || polls_failures() ? report : ProgressCallback{}, [&] { prepare_memory(result); });
+        tracer_->trace(kTracePass, broadcast_, band, RAYA_POINTS_OWN, no_marks_, pixels_, counters_[0],
+                       progress || polls_failures() ? report : ProgressCallback{},
+                       [&] { place_gathered_and_allocate(result); });
     });
 }
 

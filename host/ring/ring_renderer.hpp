@@ -45,7 +45,7 @@ class RingRenderer {
     void build();
     void build_exchange(KernelOptions options);
     void prepare(RingResult& result);
-    void render_block(std::uint32_t block, RingResult& result, const ProgressCallback& progress);
+    void render_block(std::uint32_t block_begin, RingResult& result, const ProgressCallback& progress);
     void trace(PixelRange range, RingResult& result, const ProgressCallback& progress);
     void supersample(RingResult& result, const ProgressCallback& progress);
     void trace_in_bands(std::uint32_t pass, PixelRange range, RingResult& result,
@@ -55,7 +55,7 @@ class RingRenderer {
     RingState checkpoint_state(const RingResult& result);
     void resume(RingResult& result);
     void save_checkpoint(std::uint32_t pass, PixelRange range, RingResult& result);
-    void prepare_memory(RingResult& result);
+    void place_gathered_and_allocate(RingResult& result);
     void gather(PixelRange range, RingResult& result);
     void place_gathered_pixels(RingResult& result);
     void place_pixels(const PeSegment& pes, PixelRange range, std::span<const float> pixels, RingResult& result) const;
@@ -79,20 +79,20 @@ class RingRenderer {
     Communication communication_;
     Bus bus_;
     double build_s_ = 0;
-    Buffer<std::uint32_t> broadcast_;
-    Buffer<float> pixels_;         // [PE][3][window]
-    std::vector<float> gathered_;  // pixels of gathered_range_: read, but not yet copied into the image
+    Buffer<std::uint32_t> broadcast_;  // words of the job
+    Buffer<float> pixels_;             // [PE][3][window]
+    std::vector<float> gathered_;      // pixels of gathered_range_: read, but not yet copied into the image
     PixelRange gathered_range_;
-    Buffer<std::uint8_t> marks_;  // dummy argument of the first pass, which has no marks
+    Buffer<std::uint8_t> no_marks_;  // dummy argument of the first pass, which has no marks
     std::unique_ptr<Tracer> tracer_;
-    std::vector<PassCounters> counters_;  // one for each phase
+    std::vector<PassCounters> counters_;  // one for each pass
     std::unique_ptr<NeighbourExchange> exchange_;
     std::unique_ptr<RingFilter> filter_;
     std::unique_ptr<RingContrast> contrast_;
 
     // State of a render with checkpoints.
     const RingCheckpointing* checkpointing_ = nullptr;
-    std::optional<RingState> resumed_;  // the loaded checkpoint, until the window of its pixels is complete
+    std::optional<RingState> resumed_;  // the loaded checkpoint; empty once its window has been traced and gathered
     std::uint32_t band_ = 0;            // length of the next band, in pixels of each PE's share
     double earlier_s_ = 0;              // seconds of earlier runs
     Clock::time_point started_;

@@ -70,8 +70,8 @@ double trace_seconds(const RingResult& result);
 ///     the counters. It writes 12 bytes of colour and 8 bytes of cycles for each traced pixel. Supersampling also reads
 ///     a mark of each pixel and the colour of each marked pixel. Words that a kernel reads without copying (--accel
 ///     grid) are not included.
-///   - sums of neighbours: for each neighbour of each pixel, reads the neighbour's colour and the sum, writes the sum.
-///     Comparisons: reads the colours of pixel and neighbour. Means: for each pixel, reads the sum, writes the mean.
+///   - for each neighbour of each pixel, filter.sum_* reads its colour and the pixel's sum and writes the sum;
+///     supersample.compare reads both colours. For each pixel, filter.take_means reads the sum and writes the mean.
 std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const RingResult& result);
 
 /// Adds the modelled run of the machine to a trace, from time 0 on: a track for the machine's phases and a track for
@@ -80,7 +80,7 @@ std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const Rin
 /// Counters: live rays (one for each PE that traces) and the imbalance u of the phase. The times are those of
 /// modelled_time() (host/model/time_model.hpp) and end at its total. Each phase is shown as a whole, even if a PE's
 /// memory holds only a block of its share, and each side of the neighbourhood shows a quarter of the cycles of
-/// filtering or comparing. If the machine's rates are unknown or `pes` is 0, adds only a remark to the metadata.
+/// filtering or comparing. If `pes` is 0, adds only a remark to the metadata.
 void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes);
 
 }  // namespace raya

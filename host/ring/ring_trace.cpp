@@ -25,7 +25,7 @@ class RingTimeline {
         for (const TracedPe& p : pes_) trace.name_track(track_of(p), traced_pe_name("PE", p));
     }
 
-    // Adds a phase that all PEs spend in the same way: a slice of `ms` milliseconds on each track. If `rotations` > 1,
+    // Adds a phase that is the same for all PEs: a slice of `ms` milliseconds on each track. If `rotations` > 1,
     // the slice contains that many rotations of equal duration.
     void add_common_phase(const std::string& name, double ms, const Json& arguments, std::uint64_t rotations = 1) {
         const double begin = now_ms_;
@@ -102,9 +102,9 @@ Load quarter_load(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_
     return load_of(std::move(cycles));
 }
 
-// `move`: name of the slice of a side's moves. `moves`: name of the slice's argument with the number of moves.
+// `slice`: name of the slice of a side's moves. `count`: name of the slice's argument with the number of moves.
 struct MoveNames {
-    const char *move, *moves;
+    const char *slice, *count;
 };
 constexpr std::array<MoveNames, 3> kMoves = {  // in the order of ExchangeMethod
     {{"rotate", "rotations"}, {"send over the bus", "transfers"}, {"broadcast from each PE", "broadcasts"}}};
@@ -118,9 +118,9 @@ void add_smoothing(RingTimeline& timeline, const RingSettings& s, const RingResu
     for (std::uint32_t side = 0; side < RAYA_SIDES; ++side) {
         const std::uint64_t moves = moves_of_sides[side] * bands;
         if (moves > 0)
-            timeline.add_common_phase(fmt::format("{}, for neighbours {}", names.move, kSides[side]),
+            timeline.add_common_phase(fmt::format("{}, for neighbours {}", names.slice, kSides[side]),
                                       communication_ms * static_cast<double>(moves_of_sides[side]) / all_moves,
-                                      {{names.moves, moves}},
+                                      {{names.count, moves}},
                                       s.antialias.exchange == ExchangeMethod::kRing ? moves : 1);
         timeline.add_compute_phase(fmt::format("{} {}", filter ? "filter" : "compare", kSides[side]),
                                    quarter_load(s.mapping, filter ? filter_cycles : compare_cycles, side));

@@ -25,7 +25,7 @@ std::string dynamic_text(const DynamicPlan& plan);
 struct Schedule {
     Load load;  // finishing time of each PE in cycles, including overhead and waiting for the root. load.max is the
                 // makespan. load.speedup is total_cycles() / makespan: the gain over one PE without requests
-    std::uint64_t requests = 0;  // number of requests to which the host answered with pixels
+    std::uint64_t requests = 0;  // number of requests to which the root answered with pixels
 };
 
 // The functions below throw std::invalid_argument if cycles.size() is not W H, if the mapping is for another image
@@ -42,9 +42,9 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
 /// Simulates list scheduling. Each PE first renders its static part: the first floor(static_fraction x n) of the n
 /// pixels that it owns under `static_mapping`. The other pixels, in scan-line order, are divided into chunks of
 /// plan.chunk pixels; the last chunk may be smaller. The PE that becomes idle first (in a tie, the one with the lowest
-/// number) takes the next chunk: it waits until the root has answered all earlier requests and its own, and then spends
-/// the overhead plus the costs of the pixels. If static_fraction is 0, only the image size and the number of PEs of
-/// `static_mapping` are used; if it is 1, the result is that of static_load(). Time: O(pixels + P + chunks log P).
+/// number) takes the next chunk: it waits until the root has answered all earlier requests and the PE's own, then
+/// spends the overhead plus the costs of the pixels. If static_fraction is 0, only the image size and the number of PEs
+/// of `static_mapping` are used; if it is 1, the result is that of static_load(). Time: O(pixels + P + chunks log P).
 Schedule dynamic_schedule(const CostImage& image, const raya_mapping& static_mapping, const DynamicPlan& plan);
 
 /// Returns the sum of all pixels' costs, without overhead.

@@ -54,7 +54,7 @@ class Tracer {
     void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                  PassCounters& counters);
 
-    /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; supersampling points only for marked
+    /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; supersampling points only of the marked
     /// pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of work,
     /// so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Calls `host_work` on the
     /// host while the first launch runs. Throws DeviceError if the device ends loops early even in the smallest launch.

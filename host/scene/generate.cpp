@@ -166,7 +166,7 @@ Scene generate_centre() {
 }
 
 Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
-    constexpr int kMaxRedraws = 200;  // maximum number of redraws of a sphere that touches another sphere
+    constexpr int kMaxRedraws = 200;  // maximum number of new places and radii of a sphere that touches another one
     enum { kGlass, kMirror, kMatt, kFloor };
     Scene scene;
     scene.name = fmt::format("cluster{}.nff", seed);

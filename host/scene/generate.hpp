@@ -13,7 +13,7 @@ inline constexpr int kMaxBallsLevel = 6;    // `level` of generate_balls(); make
 inline constexpr int kMaxLatticeSize = 64;  // `size` of generate_lattice(); makes 274,625 spheres and 811,200 cylinders
 inline constexpr int kMaxGearsSize = 16;    // `size` of generate_gears(); makes 598,017 polygons
 inline constexpr int kMaxSpheres = 1'000'000;  // `count` of generate_uniform() and generate_random()
-inline constexpr int kMaxVoxelsPerAxis = 256;  // each of `voxels` of generate_uniform()
+inline constexpr int kMaxVoxelsPerAxis = 256;  // each element of `voxels` of generate_uniform()
 inline constexpr int kMaxVoxels = 1'048'576;   // product of `voxels` of generate_uniform()
 
 /// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six decimals). Rounding keeps
@@ -67,9 +67,9 @@ struct ClusterShape {
     int spheres() const { return glass + mirrors + matt; }
 };
 
-/// A cluster of random spheres above a checkered floor, with one light. A sphere that touches another sphere is drawn
-/// again, up to a maximum number of times. The means of load and imbalance over many seeds match Kohata & Ito's
-/// figures. 256 x 256 pixels.
+/// A cluster of random spheres above a checkered floor, with one light. While a sphere touches another sphere, it gets
+/// a new random place and radius, at most 200 times. The means of load and imbalance over many seeds match Kohata &
+/// Ito's figures. 256 x 256 pixels.
 Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape = {});
 
 /// Number of voxels along each axis of the cube in moved_into_voxels().

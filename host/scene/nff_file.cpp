@@ -15,7 +15,7 @@ namespace {
 
 std::string text_of(const Vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
-std::string after_blank(const Vec3& v) { return fmt::format(" {}", text_of(v)); }
+std::string with_leading_blank(const Vec3& v) { return fmt::format(" {}", text_of(v)); }
 
 class NffWriter {
   public:
@@ -55,7 +55,7 @@ class NffWriter {
         write_line("v\nfrom {}\nat {}\nup {}", text_of(view.from), text_of(view.at), text_of(view.up));
         write_line("angle {}\nhither {}\nresolution {} {}", view.angle_degrees, view.hither, view.width, view.height);
         for (const Light& light : scene_.lights)
-            write_line("l {}{}", text_of(light.position), light.colour ? after_blank(*light.colour) : "");
+            write_line("l {}{}", text_of(light.position), light.colour ? with_leading_blank(*light.colour) : "");
     }
 
     /// Writes an `f` if it differs from the last `f`. Always writes the surface's checker, if it has one, because
@@ -75,7 +75,7 @@ class NffWriter {
         const bool patch = !polygon.normals.empty();
         write_line("{} {}", patch ? "pp" : "p", polygon.vertices.size());
         for (std::size_t i = 0; i < polygon.vertices.size(); ++i)
-            write_line("{}{}", text_of(polygon.vertices[i]), patch ? after_blank(polygon.normals[i]) : "");
+            write_line("{}{}", text_of(polygon.vertices[i]), patch ? with_leading_blank(polygon.normals[i]) : "");
     }
 
     const Scene& scene_;

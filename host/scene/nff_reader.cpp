@@ -134,7 +134,7 @@ class NffReader {
             if (!seen[i]) missing += fmt::format(" {}", parts[i]);
         const NffToken& token = tokens_.peek();
         const std::string found = token.text.empty() ? "the file ends" : in_quotes(token.text) + " follows";
-        tokens_.refuse(token.line, fmt::format("'v' is incomplete: {}, but still missing:{}", found, missing));
+        tokens_.refuse(token.line, fmt::format("'v' is incomplete: {}; missing parts:{}", found, missing));
     }
 
     void read_background() {
@@ -189,7 +189,7 @@ class NffReader {
         const int min_count = remarks_ ? 0 : 3;
         const auto count =
             static_cast<std::size_t>(tokens_.take_integer("the number of vertices", min_count, kMaxVertices));
-        const std::size_t min_characters = patch ? 12 : 6;  // of a vertex: a digit and a blank for each number
+        const std::size_t min_characters = patch ? 12 : 6;  // per vertex: a digit and a blank for each number
         if (count > tokens_.characters_left() / min_characters + 2)
             refuse(fmt::format("the file is too short for a polygon of {} vertices", count));
         for (std::size_t i = 0; i < count; ++i) {
@@ -247,7 +247,7 @@ class NffReader {
     }
 
     void read_directive() {
-        const std::string_view name = tokens_.take_name("the word");
+        const std::string_view name = tokens_.take_name("'plane' or 'checker'");
         if (name == "plane") return read_plane();
         if (name == "checker") return read_checker();
         refuse("unknown extension " + in_quotes(name) + "; raya knows '#raya plane' and '#raya checker'");

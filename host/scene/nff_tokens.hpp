@@ -55,8 +55,7 @@ class NffTokens {
     /// Returns true if the next token starts with a number; more characters may follow it.
     bool number_follows() const;
 
-    /// Returns the line on which the current entity started.
-    int entity_line() const { return entity_line_; }
+    int entity_line() const { return entity_line_; }  // line on which the current entity started
 
     /// Returns the number of characters after the next token.
     std::size_t characters_left() const { return text_.size() - position_; }

@@ -49,13 +49,13 @@ AsyncResult AsyncSimulation::run() {
 }
 
 void AsyncSimulation::handle(const Event& event) {
-    const bool valid = event.kind == EventKind::kMessageDone ||
+    const bool valid = event.kind == EventKind::kJobDone ||
                        event.version == (event.kind == EventKind::kTaskDone ? nodes_[event.location].version
                                                                             : channels_[event.location].version);
     if (!valid) return;  // the event is obsolete
     now_ = event.time;
     result_.finish_ms = now_ * kMsPerNs;
-    if (event.kind == EventKind::kMessageDone) finish_job(event.location);
+    if (event.kind == EventKind::kJobDone) finish_job(event.location);
     if (event.kind == EventKind::kTaskDone) finish_task(event.location);
     if (event.kind == EventKind::kTransferDone) end_transfer(event.location);
 }

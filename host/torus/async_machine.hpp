@@ -46,7 +46,7 @@ struct AsyncMachine {
     double cycle_ns = kT805CycleNs;                      // cycle time of a processor
     std::uint32_t message_cycles = kT805MessageCycles;   // processor cycles per message at each end of a link
     std::uint32_t word_cycles = kT805MessageWordCycles;  // processor cycles per word at each end of a link
-    double one_way = kT805OneWayBytesPerS;               // rate of a link in one direction, bytes/s; 0: no time
+    double one_way = kT805OneWayBytesPerS;               // rate of a link in one direction, bytes/s; 0: infinite
     double both_ways = kT805BothWaysBytesPerS;           // rate of a link, sum of both directions, bytes/s
     std::uint32_t buffer = 4;       // number of slots of a port for rays, and for returns; >= `entry_slots`
     std::uint32_t entry_slots = 2;  // number of free slots that a ray needs to enter a ring; 1 allows deadlocks

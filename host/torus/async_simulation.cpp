@@ -33,7 +33,7 @@ void AsyncSimulation::run_processor(std::uint32_t node) {
         const std::uint32_t words = history_.messages[n.jobs.front().message].words;
         const double ns = machine_.cycle_ns * (machine_.message_cycles + machine_.word_cycles * words);
         result_.nodes[node].messages_ms += ns * kMsPerNs;
-        return schedule(ns, EventKind::kMessageDone, node, 0);
+        return schedule(ns, EventKind::kJobDone, node, 0);
     }
     if (n.task == kNone || n.computing || n.sent_count != kNone) return;
     n.computing = true;

@@ -26,12 +26,12 @@ class AsyncSimulation {
     static constexpr std::uint32_t kClasses = 2;  // number of message classes: class 0 is returns, class 1 rays
     static constexpr double kMsPerNs = 1e-6;
 
-    enum class EventKind : std::uint8_t { kMessageDone, kTaskDone, kTransferDone };
+    enum class EventKind : std::uint8_t { kJobDone, kTaskDone, kTransferDone };
     struct Event {
         double time = 0;           // ns
         std::uint64_t number = 0;  // index in the order of scheduling; orders events of equal time
         EventKind kind{};
-        std::uint32_t location = 0;  // node (kMessageDone, kTaskDone) or channel
+        std::uint32_t location = 0;  // node (kJobDone, kTaskDone) or channel
         // Version of the node or channel at the time of scheduling. After a later change the event is obsolete.
         std::uint32_t version = 0;
         bool operator>(const Event& other) const {
@@ -47,7 +47,7 @@ class AsyncSimulation {
 
     // One direction of a link: the output thread at its start, the transfer, and the input thread at its end.
     struct Channel {
-        std::uint32_t start = 0, end = 0, opposite = 0;               // nodes at both ends; channel
+        std::uint32_t start = 0, end = 0, opposite = 0;               // nodes at both ends; the link's other channel
         std::array<std::deque<std::uint32_t>, kClasses> port{};       // [class]: messages in the port
         std::array<std::vector<BlockedMessage>, kClasses> blocked{};  // [class]: messages that wait for the port
         std::array<bool, kClasses> input_occupied{};                  // [class]: the input thread's slot is occupied

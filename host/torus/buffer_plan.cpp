@@ -126,7 +126,7 @@ std::array<std::uint32_t, 3> doubled(std::array<std::uint32_t, 3> nodes) {
 
 // Returns options such as "--nodes 16x16x8", with which the scene fits; empty if it does not fit any machine of up to
 // 65,536 nodes.
-std::string larger_machine(const MemoryDemand& demand, const NodeTrial& trial) {
+std::string larger_machine_options(const MemoryDemand& demand, const NodeTrial& trial) {
     const std::uint32_t* const present_nodes = demand.torus.nodes;
     // A torus with sides I x J x 1 may be 2-D or 3-D. It is taken as 3-D, because a 3-D torus needs at least as much
     // memory.
@@ -155,7 +155,7 @@ std::string remedies(const MemoryDemand& demand, std::uint64_t words, std::uint3
         return fmt::format("use --queue {} or {}",
                            longest_queue(words, links, demand.limit, min_queue, demand.buffers.queue), memory);
     if (!trial) return "use " + memory;
-    const std::string machine = larger_machine(demand, trial);
+    const std::string machine = larger_machine_options(demand, trial);
     if (machine.empty()) return fmt::format("no machine of up to {} nodes is large enough; use {}", kMaxNodes, memory);
     return fmt::format("use {} or {}", machine, memory);
 }
@@ -167,8 +167,8 @@ std::string remedies(const MemoryDemand& demand, std::uint64_t words, std::uint3
         fitting += demand.bytes(demand.words(node)) <= demand.limit;
     const std::uint64_t words = demand.words(fullest);
     throw NodesDoNotFit(
-        fmt::format("{}: does not fit: {} of {} nodes can hold their voxels, {} cannot; {} needs {} and {} of "
-                    "buffers, a node has {}; {}",
+        fmt::format("{}: does not fit: {} of {} nodes can hold their voxels, {} cannot; {} needs {} for the "
+                    "scene and {} for buffers, a node has {}; {}",
                     demand.scene, fitting, demand.nodes(), demand.nodes() - fitting,
                     node_text(demand.memories, fullest), required_size_text(4 * words),
                     required_size_text(demand.bytes(0)), available_size_text(demand.limit),

@@ -95,7 +95,7 @@ struct NodesDoNotFit : DoesNotFit {
 /// buffers_for() determines the size of the mailboxes. Throws NodesDoNotFit if words and buffers exceed `memory_bytes`.
 /// The message states how many nodes fit, the voxels, objects and bytes of the fullest node, and a remedy: more memory
 /// or a shorter queue. If `trial` is given, the remedy may be more nodes; the search for a sufficient number takes
-/// about a second. `min_queue`: maximum number of packets that the ray tree of a single primary ray needs. Throws
+/// about a second. `min_queue`: number of packets that the ray tree of a single primary ray may need. Throws
 /// UserError if 0 < `queue` < `min_queue`.
 NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,
                          std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t min_queue,

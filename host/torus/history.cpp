@@ -157,7 +157,7 @@ void HistoryRecorder::add_injection_tasks(const NodeWork& work) {
         sent_messages.push_back(
             {{.destination = destination, .words = words_of(RAYA_KIND_PRIMARY), .kind = RAYA_KIND_PRIMARY}, ray});
     }
-    std::uint64_t cycles = uncharged_cycles_[work.node] + work.injection_cycles, remaining_rays = sent_messages.size();
+    std::uint64_t cycles = unassigned_cycles_[work.node] + work.injection_cycles, remaining_rays = sent_messages.size();
     for (SentMessage& ray : sent_messages) {
         const std::uint64_t ray_cycles = cycles / remaining_rays--;
         cycles -= ray_cycles;
@@ -166,7 +166,7 @@ void HistoryRecorder::add_injection_tasks(const NodeWork& work) {
             {.node = work.node, .cycles = ray_cycles, .first_message = checked_index(history_.messages.size())});
         append(ray);
     }
-    uncharged_cycles_[work.node] = cycles;
+    unassigned_cycles_[work.node] = cycles;
 }
 
 void HistoryRecorder::add_processing_tasks(const NodeWork& work) {
@@ -209,10 +209,10 @@ void HistoryRecorder::add_messages(const NodeWork& work, std::size_t first_task)
 }
 
 History HistoryRecorder::finish() {
-    for (std::uint32_t node = 0; node < uncharged_cycles_.size(); ++node)
-        if (uncharged_cycles_[node] > 0)
+    for (std::uint32_t node = 0; node < unassigned_cycles_.size(); ++node)
+        if (unassigned_cycles_[node] > 0)
             history_.tasks.push_back({.node = node,
-                                      .cycles = uncharged_cycles_[node],
+                                      .cycles = unassigned_cycles_[node],
                                       .first_message = checked_index(history_.messages.size())});
     check_history(history_, raya_nodes(torus_));
     return std::move(history_);

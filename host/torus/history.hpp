@@ -98,7 +98,7 @@ class HistoryRecorder {
     /// `packets`: numbers of words charged for messages. The history omits returns that are not charged because they
     /// are part of another return.
     explicit HistoryRecorder(const raya_torus& torus, const PacketCharge& packets = {})
-        : torus_(torus), packets_(packets), uncharged_cycles_(raya_nodes(torus)) {}
+        : torus_(torus), packets_(packets), unassigned_cycles_(raya_nodes(torus)) {}
 
     /// Adds the work of a node in a superstep. Throws std::logic_error for a packet that no task sent, and for more
     /// than 2^32 - 2 tasks or messages.
@@ -133,8 +133,8 @@ class HistoryRecorder {
     PacketCharge packets_;
     History history_;
     RayNumbers numbers_;
-    std::vector<RayProgress> rays_;                // [ray number]
-    std::vector<std::uint64_t> uncharged_cycles_;  // [node]: injection cycles not yet part of a task
+    std::vector<RayProgress> rays_;                 // [ray number]
+    std::vector<std::uint64_t> unassigned_cycles_;  // [node]: injection cycles not yet part of a task
 };
 
 }  // namespace raya

@@ -35,8 +35,8 @@ class LaunchPlan {
     /// The bound of a node is the number of packets in its queue and in the mailboxes of links that end at the node.
     void update(const NodeStatus& status);
 
-    /// Return the budgets of the next launches. inject() also raises the upper bounds to the number of packets up to
-    /// which inject.cl fills a queue.
+    /// Return the budgets of the next launches. inject() also raises the upper bounds of packets to the number up
+    /// to which inject.cl fills a queue.
     LaunchBudget inject();
     LaunchBudget trace_voxel() const;
     LaunchBudget route() const;
@@ -46,7 +46,7 @@ class LaunchPlan {
     struct Node {
         std::uint64_t voxels = 0;       // number of voxels of the node
         std::uint64_t max_objects = 0;  // maximum number of objects in a voxel of the node
-        std::uint64_t inject_work = 0;  // work of inject in an image: number of rows plus batches of their pixels
+        std::uint64_t inject_work = 0;  // work of inject in an image: numbers of rows and of pixel batches
         std::uint64_t packets = 0;      // upper bound of the number of packets in the queue
     };
     /// A kernel's unit of work.

@@ -137,7 +137,7 @@ std::vector<LinkExchange::RankLink> LinkExchange::find_rank_links() const {
     return rank_links;
 }
 
-// Sender and receiver of a message read the number of packets in each mailbox from the status, so both know its length.
+// Sender and receiver of a message read the number of packets in each mailbox from the status, so both know the length.
 void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<OutgoingMessage>& out,
                                    std::vector<IncomingMessage>& in) {
     outgoing_.clear();

@@ -1,4 +1,4 @@
-// The torus nodes of this rank, on its device: their memories, queues and counters, and the launches of their kernels.
+// The torus nodes on the device of this rank: their memories, queues and counters, and the launches of their kernels.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -110,9 +110,9 @@ class NodeArray {
     /// KernelOptions::costs and a single rank.
     void report_work(const NodeStatus& injected, const NodeWorkSink& sink);
 
-    /// In rank 0, appends to `returns` the packets that the previous call started to read. Then starts to read the
+    /// In rank 0, appends to `returns` the packets that the previous gather() started to read. Then starts to read the
     /// returns that have reached the root since the previous call. After the last superstep, gather_remaining() appends
-    /// the packets that the last call started to read.
+    /// the packets that the last gather() started to read.
     void gather(const NodeStatus& status, std::vector<raya_head>& returns);
     void gather_remaining(std::vector<raya_head>& returns);
 
@@ -121,7 +121,7 @@ class NodeArray {
     /// superstep. An empty sink skips the superstep; it must be empty in all ranks or in none.
     void record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
-    std::vector<std::uint64_t> read_events();  // rank 0: [node][RAYA_EVENTS] of all nodes; others: empty
+    std::vector<std::uint64_t> read_events();  // rank 0: [node][RAYA_EVENTS] of all nodes; other ranks: empty
     PacketCounts read_made();                  // numbers of packets that nodes created, sums over all ranks
     PacketCounts read_ended();  // numbers of packets that nodes processed to the end, sums over all ranks
 

@@ -26,7 +26,7 @@ class JobParts {
     const std::uint32_t* at(std::uint32_t word) const { return words_.data() + word; }
     std::uint32_t first_polygon() const { return header.objects.spheres + header.objects.planes; }
     std::uint32_t first_cone() const { return first_polygon() + header.objects.polygons; }
-    std::size_t surfaces() const { return surface(header.objects.spheres_at); }  // spheres follow surfaces
+    std::size_t surfaces() const { return surface(header.objects.spheres_at); }  // number of surfaces; spheres follow
     // Returns the number of the surface that starts at word `word` of the job.
     std::size_t surface(std::uint32_t word) const { return (word - kWordsOf<raya_job>) / RAYA_SURFACE_WORDS; }
 

@@ -1,5 +1,5 @@
-// The part of node_array.hpp that evaluates the nodes' status, chooses the method of link exchange by a measurement,
-// and records packets for a trace.
+// The functions of node_array.hpp that evaluate the nodes' status, choose the method of link exchange, and record
+// packets for a trace.
 #include <algorithm>
 #include <limits>
 
@@ -68,8 +68,8 @@ MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::u
     return state;
 }
 
-// Chooses the faster method by a measurement, except on CPUs, where the kernel is at least as fast as buffer copies
-// (docs/tuning.md).
+// If neither an option nor `raya tune` chose the method, measures both and chooses the faster one. CPUs are not
+// measured: there the kernel is at least as fast as buffer copies (docs/tuning.md).
 void NodeArray::choose_link_method(Kernels& kernels) {
     const LinkMove chosen = settings_.kernels.link_move;
     const bool cpu = session_.device().type == "cpu";

@@ -10,7 +10,7 @@
 namespace raya {
 namespace {
 
-constexpr double kNoTimeBytesPerS = 1e18;  // rate of links whose transfers take no time
+constexpr double kUnlimitedBytesPerS = 1e18;  // rate of links whose transfers take no time
 
 // Text to which formatted text is appended.
 struct Text {
@@ -23,8 +23,8 @@ struct Text {
 
 std::string channel_name(std::uint32_t node, std::uint32_t link) { return fmt::format("{}{}", node, link_name(link)); }
 
-// Returns the name of the wire, whose bandwidth the two channels (directions) of a link share. The name contains that
-// of the channel in the direction of ascending coordinates.
+// Returns the name of the wire, whose bandwidth the two channels (directions) of a link share. The name contains the
+// name of the channel in the direction of ascending coordinates.
 std::string wire_name(const raya_torus& torus, std::uint32_t node, std::uint32_t link) {
     return "wire " +
            (link % 2 == 0 ? channel_name(node, link) : channel_name(raya_link_end(torus, node, link), link ^ 1u));
@@ -33,8 +33,8 @@ std::string wire_name(const raya_torus& torus, std::uint32_t node, std::uint32_t
 }  // namespace
 
 std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machine) {
-    const double one_way = machine.one_way > 0 ? machine.one_way : kNoTimeBytesPerS;
-    const double both_ways = machine.one_way > 0 ? machine.both_ways : kNoTimeBytesPerS;
+    const double one_way = machine.one_way > 0 ? machine.one_way : kUnlimitedBytesPerS;
+    const double both_ways = machine.one_way > 0 ? machine.both_ways : kUnlimitedBytesPerS;
     Text hosts, links, routes;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
         hosts.add("    <host id=\"{}\" speed=\"{:.17g}f\"/>\n", node, 1e9 / machine.cycle_ns);

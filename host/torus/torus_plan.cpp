@@ -136,7 +136,7 @@ JobSettings job_settings(const TorusSettings& s, const LengthScale& scale) {
     return {{s.width, s.height}, s.sampling, s.bounces, t805_cycles(s.packets), s.format, scale.exponent};
 }
 
-void check_packets(const TorusSettings& s, const Scene& scene) {
+void check_packet_fields(const TorusSettings& s, const Scene& scene) {
     for (std::uint32_t axis = 0; axis < 3; ++axis)
         if (s.voxels[axis] > RAYA_MAX_PLACES)
             throw UserError(
@@ -147,7 +147,7 @@ void check_packets(const TorusSettings& s, const Scene& scene) {
 }
 
 TorusSettings checked_settings(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
-    check_packets(s, scene);
+    check_packet_fields(s, scene);
     s.kernels = chosen_kernels(s.kernels, device, {.torus = true, .fp32 = s.format.is_fp32()});
     check_kernel_options({.lanes = s.kernels.lanes, .group_size = s.kernels.group_size, .bounces = s.bounces}, device);
     return s;
@@ -183,7 +183,7 @@ void set_windows(NodeMemories& memories, const TorusSettings& s, const PackedJob
 }
 
 NodeNeeds node_needs(const Scene& scene, const TorusSettings& s) {
-    check_packets(s, scene);
+    check_packet_fields(s, scene);
     const LengthScale scale = length_scale(scene, s.format);
     const PackedJob job = pack_job(scene, job_settings(s, scale));
     const NodeMemories memories = pack_nodes(job, partition(job, s.format, s.voxels), s.torus);

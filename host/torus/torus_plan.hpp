@@ -42,10 +42,10 @@ TorusSettings default_torus(const ImageSize& size);
 JobSettings job_settings(const TorusSettings& settings, const LengthScale& scale);
 
 /// Throws UserError if there are more voxels or lights than the fields of a packet can number.
-void check_packets(const TorusSettings& settings, const Scene& scene);
+void check_packet_fields(const TorusSettings& settings, const Scene& scene);
 
 /// Returns the settings with the lanes, group size and other kernel settings chosen for the device. Throws UserError
-/// like check_packets(), and if the kernels cannot be built with the settings. Needs neither the packed scene nor
+/// like check_packet_fields(), and if the kernels cannot be built with the settings. Needs neither the packed scene nor
 /// device memory, so that raya can fail early.
 TorusSettings checked_settings(TorusSettings settings, const Scene& scene, const DeviceInfo& device);
 
@@ -75,7 +75,7 @@ struct NodeNeeds {
     std::uint64_t bytes = 0;  // number of bytes of scene words and buffers together
 };
 
-/// Divides the scene as a render does, but without a device. Throws UserError like check_packets(), or NodesDoNotFit.
+/// Divides the scene as a render does, but without a device. Throws NodesDoNotFit; see check_packet_fields().
 NodeNeeds node_needs(const Scene& scene, const TorusSettings& settings);
 
 /// Collective: returns, for each member, the minimum over the devices of all ranks.

@@ -94,7 +94,7 @@ void TorusRenderer::set_queue(std::uint32_t queue) {
     p.build();
 }
 
-bool TorusRenderer::completes() {
+bool TorusRenderer::runs_without_deadlock() {
     TorusResult result;
     std::vector<raya_head> returns;
     return !impl_->run_supersteps(result, returns, {}, {});
@@ -110,7 +110,7 @@ QueueTrial TorusRenderer::queue_trial() {
         .completes =
             [this](const NodeBuffers& b) {
                 set_queue(b.queue);
-                return completes();
+                return runs_without_deadlock();
             }};
 }
 

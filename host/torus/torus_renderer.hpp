@@ -41,7 +41,7 @@ class TorusRenderer {
     void set_queue(std::uint32_t queue);
 
     /// Runs the supersteps of an image without composing it. Returns false on a deadlock.
-    bool completes();
+    bool runs_without_deadlock();
 
     /// Returns limits and callbacks for find_longer_queue(). The callbacks use this renderer and change its queues.
     QueueTrial queue_trial();

@@ -45,7 +45,7 @@ using NodeWorkSink = std::function<void(const NodeWork&)>;
 struct Superstep {
     std::uint64_t max_node_cycles = 0;  // modelled cycles of the busiest node
     std::uint64_t max_link_words = 0;   // number of words sent over the busiest link, in one direction
-    std::uint64_t live = 0;             // number of packets in queues and mailboxes at the end
+    std::uint64_t live = 0;             // number of packets in queues and mailboxes at the superstep's end
 };
 
 /// Counts of a superstep, in total and for each node.
@@ -58,7 +58,7 @@ using SuperstepSink = std::function<void(const SuperstepDetail&)>;
 
 /// Callbacks during a render; an empty callback is not called. With several ranks, only rank 0 calls them.
 struct RenderObservers {
-    PacketSink packets{};             // called for each packet between nodes, by superstep, then by source
+    PacketSink packets{};  // called for each packet sent to another node, in the order of supersteps, then sources
     std::uint32_t packets_every = 1;  // `packets` is called only in supersteps 0, packets_every, ..., to save time
     SuperstepSink supersteps{};       // called for each superstep
     NodeWorkSink work{};              // called for each node and superstep; needs TorusSettings::history and one rank
@@ -83,10 +83,10 @@ struct TorusResult {
     std::uint64_t copies = 0;                         // see NodeMemories
     LengthScale scale;
     NodeBuffers buffers;
-    std::uint64_t node_bytes = 0;     // memory of the fullest node: words and buffers
+    std::uint64_t node_bytes = 0;     // number of bytes of the fullest node: words and buffers
     std::uint64_t copied_words = 0;   // number of words that all nodes together copy to local memory in each launch
     bool links_by_kernel = false;     // true: a kernel transferred packets over links; false: buffer copies did
-    std::string links_origin;         // source of links_by_kernel: "options", "FILE, DATE", "measured", "defaults"
+    std::string links_origin;         // origin of this choice: "options", "FILE, DATE" (tuned), "measured", "defaults"
     std::uint64_t contributions = 0;  // number of return packets that reached the host
     std::uint32_t parts_of_rank = 0;  // number of nodes of this rank
     RankTraffic traffic;              // messages that this rank has sent during the render

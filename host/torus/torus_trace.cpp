@@ -55,7 +55,8 @@ void check_head(const PacketRecord& record) {
 constexpr TraceTrack kSupersteps = {kTraceMachine, 1};
 constexpr std::uint32_t kFirstNodeTrack = 2;  // track of node 0
 
-double link_ms(std::uint64_t words) { return t805_link_ms(words, words); }  // as in torus_time()
+// Like torus_time(), assumes the same number of words in both directions of the link.
+double link_ms(std::uint64_t words) { return t805_link_ms(words, words); }
 TraceTrack track_of(std::uint32_t node) { return {kTraceMachine, kFirstNodeTrack + node}; }
 
 // Returns the number of links on the route of a packet. The routes of returns take the axes in another order than those
@@ -104,7 +105,7 @@ void TorusTrace::add_superstep(const SuperstepDetail& step) {
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const auto words = static_cast<std::uint32_t>(step.link_words[node * RAYA_LINKS + link]);
             nodes[node].words += words;
-            nodes[node].link_words = std::max(nodes[node].link_words, words);
+            nodes[node].busiest_link_words = std::max(nodes[node].busiest_link_words, words);
         }
     }
     steps_.push_back(std::move(nodes));
@@ -133,11 +134,11 @@ class TorusTrace::Timeline {
         for (std::size_t step = 0; step < machine_trace_.steps_.size(); ++step) {
             const Superstep& superstep = result_.supersteps[step];
             begins_ms_.push_back(now_ms_);
-            const double computed_ms = now_ms_ + t805_ms(superstep.max_node_cycles);
-            computed_ms_.push_back(computed_ms);
-            const double end_ms = computed_ms + link_ms(superstep.max_link_words);
+            const double compute_end_ms = now_ms_ + t805_ms(superstep.max_node_cycles);
+            compute_ends_ms_.push_back(compute_end_ms);
+            const double end_ms = compute_end_ms + link_ms(superstep.max_link_words);
             add_machine(step, end_ms);
-            for (const TracedPe& n : nodes_) add_node(step, n.pe, computed_ms, end_ms);
+            for (const TracedPe& n : nodes_) add_node(step, n.pe, compute_end_ms, end_ms);
             now_ms_ = end_ms;
         }
     }
@@ -153,7 +154,7 @@ class TorusTrace::Timeline {
                 arrival >= begins_ms_.size())
                 continue;
             trace_.flow(packet_kind_name(raya_state_kind(p.state)), track_of(p.source),
-                        nanoseconds(computed_ms_[p.superstep]), track_of(p.destination),
+                        nanoseconds(compute_ends_ms_[p.superstep]), track_of(p.destination),
                         nanoseconds(begins_ms_[arrival]));
             ++flows;
         }
@@ -186,7 +187,7 @@ class TorusTrace::Timeline {
                         {"mean", links > 0 ? static_cast<double>(words) / links : 0}});
     }
 
-    void add_node(std::size_t step, std::uint32_t node, double computed_ms, double end_ms) {
+    void add_node(std::size_t step, std::uint32_t node, double compute_end_ms, double end_ms) {
         const NodeStep& n = machine_trace_.steps_[step][node];
         const TraceTrack track = track_of(node);
         const auto slice = [&](const char* name, double begin_ms, double finish_ms, const Json& arguments = {}) {
@@ -194,10 +195,10 @@ class TorusTrace::Timeline {
                 trace_.slice(track, name, nanoseconds(begin_ms), nanoseconds(finish_ms), arguments);
         };
         trace_.slice(track, fmt::format("superstep {}", step), nanoseconds(now_ms_), nanoseconds(end_ms));
-        const double done_ms = now_ms_ + t805_ms(n.cycles), sent_ms = computed_ms + link_ms(n.link_words);
+        const double done_ms = now_ms_ + t805_ms(n.cycles), sent_ms = compute_end_ms + link_ms(n.busiest_link_words);
         slice("compute", now_ms_, done_ms, {{"cycles", n.cycles}});
-        slice("wait for the busiest node", done_ms, computed_ms);
-        slice("exchange", computed_ms, sent_ms, {{"busiest_link_words", n.link_words}, {"words", n.words}});
+        slice("wait for the busiest node", done_ms, compute_end_ms);
+        slice("exchange", compute_end_ms, sent_ms, {{"busiest_link_words", n.busiest_link_words}, {"words", n.words}});
         slice("wait for the busiest link", sent_ms, end_ms);
     }
 
@@ -205,7 +206,7 @@ class TorusTrace::Timeline {
     TraceFile& trace_;
     const TorusResult& result_;
     std::vector<TracedPe> nodes_;
-    std::vector<double> begins_ms_, computed_ms_;  // [superstep]: start of the superstep, end of its computation, ms
+    std::vector<double> begins_ms_, compute_ends_ms_;  // [superstep]: start, end of its computation, ms
     double now_ms_ = 0;
 };
 

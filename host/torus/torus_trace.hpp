@@ -65,8 +65,8 @@ class TorusTrace {
     };
     struct NodeStep {
         std::uint64_t cycles = 0;
-        std::uint32_t link_words = 0;  // number of words over the node's busiest link
-        std::uint32_t words = 0;       // number of words over all links of the node
+        std::uint32_t busiest_link_words = 0;  // number of words over the node's busiest link
+        std::uint32_t words = 0;               // number of words over all links of the node
     };
     class Timeline;
 

@@ -33,13 +33,13 @@ std::string value_text(const TuningParameter& parameter, std::uint32_t value) {
     if (parameter.value == &TunedValues::local_words) return value ? "yes" : "no";
     if (parameter.value == &TunedValues::link_exchange && value)
         return static_cast<LinkMove>(value) == LinkMove::kKernel ? "kernel" : "copies";
-    return value ? std::to_string(value) : "own";
+    return value ? std::to_string(value) : "default";
 }
 
 constexpr double kDroppedCost = std::numeric_limits<double>::infinity();  // cost of a candidate that failed
 
 // Limits for a candidate's time divided by the best time. Phases 1, 2 and 3 are those of search() in search.hpp.
-constexpr double kStopRatio = 1.25;  // phase 1 stops varying a parameter in a direction above this measured ratio
+constexpr double kStopRatio = 1.25;  // above this measured ratio, phase 1 tries no further values in that direction
 constexpr double kMaxPredictedRatio = 1.12;  // phase 2 tries candidates with a predicted ratio below this limit
 constexpr double kMaxPairRatio = 1.5;        // phase 3 tries neighbours with a predicted ratio below this limit
 
@@ -178,7 +178,7 @@ class CoordinateDescent {
     const ShouldStop& stop_;
     std::vector<std::size_t> parameter_order_;  // parameter indices in the order in which the search varies them
     SearchResult result_;
-    std::map<Candidate, double> costs_;  // time divided by the time of the start, or kDroppedCost
+    std::map<Candidate, double> costs_;  // time divided by the time of Space::start, or kDroppedCost
 };
 
 }  // namespace
@@ -221,8 +221,8 @@ Space space_of(const DeviceInfo& device, const TuningKey& key) {
         space.parameters.push_back({value, std::move(values)});
     };
     const std::uint32_t max_group = max_group_size_of(device);
-    // llvmpipe vectorises over work-items, so one lane suffices. It needs minutes and gigabytes of memory to compile
-    // kernels with several lanes.
+    // Only llvmpipe limits loop iterations. It vectorises over work-items, so one lane suffices, and it needs minutes
+    // and gigabytes of memory to compile kernels with several lanes.
     const bool llvmpipe = device.max_loop_iterations > 0;
     add(&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16});
     // Torus nodes on a CPU keep their default group size, which preserves the order of packets (docs/packets.md).

@@ -42,19 +42,19 @@ void for_each_candidate(const Space& space, const std::function<void(const Candi
 
 /// Returns the tuning parameters of these kernels on this device:
 ///   - lanes;
-///   - group size: few work-items on a CPU, because lanes already use its vector instructions; 1 for torus nodes on
-///     a CPU, because larger groups change the order of packets;
-///   - the memory of the job's words, local or global, without an accelerator;
-///   - the number of spheres in a batch, without an accelerator in fp32 on the ring;
-///   - the numbers of ray trees and beams that a work-item traces concurrently, with a grid;
-///   - the link exchange (buffer copies or kernel), on the torus;
+///   - group size: on a CPU few work-items, because lanes already use its vector instructions; for torus nodes on a
+///     CPU 1, because larger groups change the order of packets;
+///   - without an accelerator: the memory of the job's words (local or global);
+///   - without an accelerator, on the ring in fp32: the number of spheres in a batch;
+///   - with a grid: the numbers of ray trees and beams that a work-item traces concurrently;
+///   - on the torus: the link exchange (buffer copies or kernel);
 ///   - the register limit, if the compiler has such an option.
 /// Settings that change counts of the modelled machine, such as the width of the BVH and the queues of torus nodes, are
 /// not tuning parameters, so that modelled figures do not depend on tuning.
 Space space_of(const DeviceInfo& device, const TuningKey& key);
 
 /// Returns a text with the old values of all parameters, and their new values where they differ:
-/// "lanes 16, group 1 -> 2, batch own". "own" is value 0: the kernels' default.
+/// "lanes 16, group 1 -> 2, batch default". Value 0 is printed as "default": the kernels choose the value.
 std::string change_text(const Space& space, const TunedValues& old_values, const TunedValues& new_values);
 
 /// Measures a candidate and the best so far alternately. Returns the candidate's time divided by that of the best, or
@@ -66,7 +66,7 @@ using ShouldStop = std::function<bool()>;
 
 struct SearchResult {
     Candidate best;
-    double cost = 1;        // time of `best` divided by the time of the start: product of the measured ratios
+    double cost = 1;        // time of `best` divided by the time of `Space::start`: product of the measured ratios
     std::size_t tried = 0;  // number of measured candidates, without the start
     bool complete = true;   // true: no promising candidate is left; false: stopped by ShouldStop
 };

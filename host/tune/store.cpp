@@ -89,7 +89,7 @@ std::optional<TunedFile> read_stored(const fs::path& path, const DeviceInfo& dev
     if (const std::string why = unsafe_path_reason(fs::canonical(path, ignored), {::geteuid()}, Sticky::kRefused, path);
         !why.empty())
         throw UserError(why);
-    return read_tuned(json_text(path, {path}, Pipes::kRefused, kMaxFileBytes), path, device);
+    return read_tuned(json_file_text(path, {path}, Pipes::kRefused, kMaxFileBytes), path, device);
 }
 
 // Replaces every sequence of characters other than letters, digits, '.' and '+' by one '-', and keeps at most 80

@@ -54,8 +54,8 @@ void save_tuned(const DeviceInfo& device, const TunedFile& tuned);
 
 /// Returns a source of the stored values, for ScopedTunedSource. The source reads a device's file when values for the
 /// device are first requested. If the file is unusable or writable by other users, the source ignores the file and
-/// calls `warn` once. Returns an empty function if the environment variable RAYA_TUNED is "off"; throws UserError for
-/// any other value of the variable.
+/// calls `warn` once. Returns an empty function if the environment variable RAYA_TUNED is "off" or tuned_folder() is
+/// empty. Throws UserError if RAYA_TUNED has another value (an empty value counts as not set).
 TunedSource stored_choices(std::function<void(const std::string&)> warn);
 
 }  // namespace raya

@@ -52,7 +52,7 @@ class TrialReader {
         trial_.build_s = line.at("build_s").number();
         trial_.check = line.at("check").text();
         if (!expected_check_.empty() && trial_.check != expected_check_)
-            end(TrialStatus::kCorrectness, fmt::format("another image: {}, not {}", trial_.check, expected_check_));
+            end(TrialStatus::kCorrectness, fmt::format("image is {}; expected {}", trial_.check, expected_check_));
     }
 
     void take_samples(const Json& samples) {
@@ -94,7 +94,7 @@ Trial supervise_trial(const TrialRequest& request, double limit_s, const std::st
     return trial;
 }
 
-constexpr std::uint32_t kSamples = 5, kFinalSamples = 9;  // of each candidate: in the search, in final comparisons
+constexpr std::uint32_t kSamples = 5, kFinalSamples = 9;  // samples per candidate: search; final comparison
 constexpr double kLimitFactor = 10;  // factor of limit_s for the first trial of the defaults and for final comparisons
 
 class Tuner {

@@ -90,11 +90,11 @@ class HitRunner : public CheckRunner {
 
 /// Compares the hits of the first `count` rays. `describe(ray)` returns the description of a ray. If all hits are
 /// equal, the verdict is a pass with the text `pass_text`; else the verdict states the number of rays with a wrong hit,
-/// and details of the first.
+/// and the details of the first such ray.
 Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
                      const std::function<std::string(std::size_t)>& describe, const std::string& pass_text);
 
-/// Checks that every kernel that the build contains finds the known hits.
+/// Checks that each kernel in the build finds the known hits.
 Verdict check_known_hits(HitRunner& runner, const KnownScene& known);
 
 /// Checks, for `rays_per_scene` random rays in each scene, that the kernel with grid traversal finds the same hits as

@@ -23,7 +23,7 @@ std::string mapping_name(const MappingRule& mapping) {
 // A reference image and the settings that must not change any bit of it.
 struct Rendering {
     std::string image;
-    Depth min_depth = Depth::kFull;           // verify() includes the rendering at this depth and deeper ones
+    Depth min_depth = Depth::kFull;           // verify() includes the rendering at this and greater depths
     std::uint32_t lanes = 0, group_size = 0;  // 0: the device's default
     MappingRule mapping = cyclic_mapping(8);  // mapping of pixels to PEs of the ring
     std::uint32_t pes = kReferenceSide;
@@ -100,7 +100,7 @@ Rendered render_on_torus(const KernelChoice& kernels, Session& session, const Re
     s.links = r.links;
     s.voxels = {r.nodes[0] + 1, r.nodes[1] + 2, r.nodes[2]};  // more voxels than nodes, so that some nodes have several
     s.inject = r.inject;
-    s.packets.one_return_per_ray = r.inject == Injection::kRoot;  // so that the checks cover true and false
+    s.packets.one_return_per_ray = r.inject == Injection::kRoot;  // so that the checks cover both values
     s.bounces = kReferenceBounces;
     s.format = parse_format(image.format);
     s.sampling = image.sampling;

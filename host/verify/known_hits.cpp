@@ -91,8 +91,8 @@ KnownScene polygons() {
              {"on a triangle's slanting edge: outside", {36, 4, 0}, kAhead, kNoObject, 0},
              {"a square's lower left triangle", {65, 6, 0}, kAhead, 2, 16},
              {"a square's upper right triangle", {71, 6, 0}, kAhead, 3, 16},
-             {"a wall across x; equal distances: the lower number", {120, 4, 4}, kRight, 4, 8},
-             {"a wall along -x", {136, 4, 4}, kLeft, 4, 8},
+             {"a wall, from the left; equal distances: the lower number", {120, 4, 4}, kRight, 4, 8},
+             {"a wall, from the right", {136, 4, 4}, kLeft, 4, 8},
              {"parallel to the wall", {128, 4, -4}, kAhead, kNoObject, 0},
              {"past the wall", {120, 9, 4}, kRight, kNoObject, 0}}};
 }

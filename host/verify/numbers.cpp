@@ -148,8 +148,9 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
             ++wrong_of_operation;
         }
         if (wrong_of_operation)
-            operations += fmt::format("{}{} of {} of {}", operations.empty() ? "" : ", ", wrong_of_operation,
-                                      answers.results.size(), kNumberOperations[answers.operation].name);
+            operations +=
+                fmt::format("{}{} {} of {}", operations.empty() ? "" : ", ", kNumberOperations[answers.operation].name,
+                            wrong_of_operation, answers.results.size());
     }
     if (wrong) return failed("wrong: " + operations, fault);
     const std::string denormals = skipped ? fmt::format(", {} with denormal numbers skipped", skipped) : "";

@@ -1,5 +1,5 @@
-// Runs the operations of the number layer on rows of operands (kernels/checks/numbers.cl) and compares the results bit
-// by bit with expected results from the caller: known answers, results of MPFR or results of the host's arithmetic.
+// Runs the operations of the number layer on rows of operands (kernels/checks/numbers.cl) and compares every bit of
+// the results with the caller's expected results: known answers, results of MPFR or of the host's arithmetic.
 #pragma once
 #include <array>
 #include <cstddef>

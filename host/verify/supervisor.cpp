@@ -16,7 +16,7 @@
 namespace raya {
 namespace {
 
-// --- In the child process
+// --- Settings as JSON, and functions of the child process
 
 Json settings_json(const VerifySettings& s, const std::string& selector, std::size_t index) {
     return {{"device", selector},

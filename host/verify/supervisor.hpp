@@ -2,7 +2,8 @@
 // process continues with the next check. The child writes one JSON object per line:
 //
 //     {"devices": N, "left_out": [TEXT, ...], "name": ..., "platform": ..., "version": ..., "driver": ...}
-//                           the first line: N selected devices, unusable devices, and the device that is checked
+//                           the first line: number of selected devices, a text for each unusable device, and
+//                           the device that is checked
 //     {"started": {"layer": LAYER, "name": NAME}}    a check starts
 //     {"check": {...}}      the check is done; the object is that of to_json() in verify.hpp
 //     {"ended": true}       all checks are done

@@ -116,7 +116,7 @@ struct SourceLayout {
     std::size_t size() const { return pes * kRows * pitch; }
 };
 
-// Each round transfers other words, so that the check detects words of an earlier round.
+// Each round transfers new words, so that the check detects words of an earlier round.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Bus bus(session, counted, static_cast<std::uint32_t>(pes));

@@ -23,8 +23,8 @@ Verdict check_transfers(Session& session, std::size_t pes, std::size_t words);
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words);
 
 /// Fills every `stride`-th outbox with packets and exchanges packets over all links once. Checks all inboxes and the
-/// flags that mark the outboxes whose packets have been transferred. `kernels`: use the exchange kernel built from
-/// these; null: use buffer copies.
+/// flags that mark the outboxes whose packets have been transferred. `kernels`: its exchange kernel transfers the
+/// packets; null: buffer copies transfer them.
 Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t stride, Kernels* kernels = nullptr);
 
 /// A copy of blocks between two buffers in which the blocks have different layouts.

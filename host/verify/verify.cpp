@@ -18,8 +18,7 @@ bool contains_any(const std::string& message, const std::vector<const char*>& te
                        [&](const char* text) { return message.find(text) != std::string::npos; });
 }
 
-// Returns remedies for a check that threw an exception with this message. `is_device_error`: the exception is a
-// DeviceError.
+// Returns remedies for a check that threw an exception with this message. `is_device_error`: it was a DeviceError.
 std::vector<std::string> remedies_for(const std::string& message, bool is_device_error) {
     const std::string newer_driver = "a newer driver, or another OpenCL implementation for this device (raya devices)";
     if (contains_any(message, {"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE",

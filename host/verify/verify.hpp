@@ -60,8 +60,8 @@ struct VerifySettings {
     Depth depth = Depth::kQuick;
     KernelSources sources{};
     std::string only{};       // run only checks whose "LAYER NAME" contains this text; empty: all
-    std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default number, with
-                              // Depth::kFull all four numbers
+    std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
+                              // Depth::kFull, all four numbers
     std::size_t done = 0;     // number of checks, from the first on, that are already done; verify() skips them
 };
 
@@ -116,7 +116,7 @@ class Verification {
     CheckSink sink_;
     bool runs_;
     std::vector<Check> checks_;
-    std::vector<std::string> names_;  // of all selected checks, including skipped checks
+    std::vector<std::string> names_;  // of all selected checks, including the `done` checks
 };
 
 // Run the checks of one layer. Each layer relies on the layers before it.

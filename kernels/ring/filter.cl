@@ -22,7 +22,7 @@ void add_neighbours(__global const uint* restrict broadcast,  // the job's words
                     const uint capacity,                      // capacity of a PE's memory, in pixels; 0: do nothing
                     const uint first_pe,                      // number of the PE that is work-group 0
                     __global const float* restrict arrived,   // [PE][3][band]
-                    __global float* restrict sums)            // [PE][3][capacity]: added to
+                    __global float* restrict sums)            // [PE][3][capacity]: sums so far
 {
     const uint group = get_group_id(0);
     const raya_mapping m = ((__global const raya_job*)broadcast)->mapping;

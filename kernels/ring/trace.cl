@@ -81,16 +81,16 @@ RAYA_KERNEL_BODY int trace_share(words scene, pixel_store* store, volatile __loc
     tree trees[RAYA_TREES];
     tree_pixels pixels[RAYA_TREES];
     index left = (index)(0);
-    if (resumes) save_index(&last_state, &left);
+    if (resumes) transfer_index(&last_state, &left);
     for (uint i = 0; i < RAYA_TREES; ++i) {
         clear_tree(&trees[i]);
         clear_pixels(&pixels[i]);
     }
-    if (mask_any(left != (index)(0))) save_trees(last_state, trees, pixels);
+    if (mask_any(left != (index)(0))) transfer_trees(last_state, trees, pixels);
     left = (index)(trace_trees(scene, store, trees, pixels, next, work));
-    save_index(&new_state, &left);
+    transfer_index(&new_state, &left);
     if (!mask_any(left != (index)(0))) return 0;
-    save_trees(new_state, trees, pixels);
+    transfer_trees(new_state, trees, pixels);
     return 1;
 }
 
@@ -108,12 +108,12 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
            __global const uchar* restrict marks,     // [PE][capacity]: not 0 if the pixel is supersampled; unused with
                                                      // RAYA_POINTS_OWN
            __local raya_trace_progress* shared,      // [1]: shared by the work-items of a PE
-           __local uint4* memory,                    // if RAYA_WORDS_LOCAL is 1, word_count words, in whole rows
+           __local uint4* memory,                    // word_count words, in whole uint4, if RAYA_WORDS_LOCAL is 1
            __global float* restrict pixels,          // [PE][3][capacity]: linear rgb; also read in supersampling
            __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels of this pass
-           __global ulong* restrict events,          // [PE][work-item][RAYA_EVENTS], added to
-           __global raya_trace_progress* restrict progress,  // [PE]: on entry after the last launch, on return
-                                                             // after this launch
+           __global ulong* restrict events,          // [PE][work-item][RAYA_EVENTS]: number of events so far
+           __global raya_trace_progress* restrict progress,  // [PE]: on entry the progress before this launch, on
+                                                             // return that after it
            __global uint* restrict saved)            // state of unfinished trees (kernels/ring/saved_trees.clh)
 {
     // A kernel argument, not a __local variable of the kernel: PoCL 3.1 lost pixels when the address of a __local

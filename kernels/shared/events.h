@@ -16,7 +16,7 @@ enum {
     RAYA_CONE_TESTS,     // tests of a ray against a cone or cylinder
     RAYA_SHADED,         // shaded hits of primary, reflected and refracted rays; each adds an ambient term
     RAYA_LIT,            // shadow rays that reach their light; each adds a diffuse term
-    RAYA_HIGHLIGHTS,     // highlights added to these diffuse terms; each takes one num_power()
+    RAYA_HIGHLIGHTS,     // highlights of lights that a shadow ray reaches; each takes one num_power()
     RAYA_WALKS,          // rays that entered the grid's box, or that traversed the BVH
     RAYA_STEPS,          // voxels or BVH nodes that rays entered, including the first
     RAYA_DISCARDED,      // primary rays that a torus node made and discarded because other nodes trace them

@@ -1,5 +1,5 @@
 // The uniform grid: the scene's box, cut into A x B x C equal voxels (Fujimoto, Tanaka & Iwata 1986; Yoshitani &
-// Yamazaki, method).
+// Yamazaki, section on the method).
 //
 // Host and kernels compute the planes between voxels with raya_voxel_plane(), so both get the same fp32 numbers. Voxel
 // (x, y, z) has the number x + A (y + B z).
@@ -33,7 +33,7 @@ typedef struct {
 RAYA_SHARED_SIZE(raya_grid_words, 4 * (10 + 5));
 
 // A voxel word describes a list by three bit fields: RAYA_ROWS_LEFT is the number of spheres, RAYA_ROW_NUMBER the row
-// of the first sphere, and RAYA_LINKED is set if a link row follows the spheres' rows. 0 is an empty list.
+// of the first sphere, and RAYA_LINKED is set if a link row follows the spheres' rows. The word of an empty list is 0.
 #define RAYA_ROW_NUMBER 0x03ffffffu
 #define RAYA_ONE_ROW 0x04000000u  // the value 1 of the field RAYA_ROWS_LEFT
 #define RAYA_ROWS_LEFT 0x7c000000u

@@ -53,7 +53,7 @@ static inline uint accept_rays(__global uint* inbox, ray_queue* queue, vote_word
 }
 
 // Moves as many returns as fit from an inbox to `to` (an outbox's packets or the host's buffer), which has space for
-// `capacity` returns and holds `used` returns. Moves the remaining returns to the front of the inbox, and sets `left`
+// `capacity` returns and holds `used`. Moves the remaining returns to the front of the inbox, and sets `left`
 // to their number. Adds to `charged` the number of moved returns that the model charges as messages. Returns the number
 // of moved returns. All work-items must call forward_returns(), because it has barriers.
 static inline uint forward_returns(__global uint* inbox, __global raya_head* to, uint used, uint capacity, uint* left,
@@ -96,7 +96,7 @@ void accept(__global const uint* restrict memories,     // the words of all node
             __global uint* restrict return_outboxes,
             __global raya_head* restrict returns,       // [run->host]: returns that have reached the root
             __global uint* restrict status,             // [node][RAYA_STATUS_WORDS]
-            __global ulong* restrict ended)             // [node][RAYA_KINDS], added to
+            __global ulong* restrict ended)             // [node][RAYA_KINDS]: number of packets ended so far
 {
     const uint slot = node_slot(first_node), item = get_local_id(0), nodes = run->nodes, box = run->box;
     __global const raya_node* const header = (__global const raya_node*)(memories + starts[slot]);

@@ -32,11 +32,12 @@ void exchange(__global const uint* restrict ends,      // [link][node]: slot of 
               __global uint* restrict sent,            // [link][node]: 1 if the kernel has copied the outbox
               __global uint* restrict status)          // [node][RAYA_STATUS_WORDS]
 {
-    const uint box = get_group_id(0), link = box / nodes, slot = box % nodes, item = get_local_id(0), end = ends[box];
+    const uint outbox = get_group_id(0), link = outbox / nodes, slot = outbox % nodes, item = get_local_id(0);
+    const uint end = ends[outbox];
     if (end == RAYA_NO_SLOT) return;
     const uint packets = status[slot * RAYA_STATUS_WORDS + outbox_status + link];
     const int transfers = packets > 0 && status[end * RAYA_STATUS_WORDS + inbox_status + link] == 0;
-    if (item == 0) sent[box] = transfers;
+    if (item == 0) sent[outbox] = transfers;
     if (!transfers) return;
     const ulong source_at = raya_box_at(link, nodes, slot, capacity, packet_words);
     const ulong target_at = raya_box_at(link, inboxes_of_link, slot, capacity, packet_words);

@@ -118,8 +118,8 @@ void inject(__global const uint* restrict memories,  // for parameters without a
             const uint first_node,
             const uint work,                         // as in `injection`, > 0
             const uint resume,
-            __local uint* local_words,               // RAYA_INJECT_WORDS words; if RAYA_WORDS_LOCAL is 1, then the
-                                                     // words of a node
+            __local uint* local_words,               // RAYA_INJECT_WORDS words, followed by the words of a node
+                                                     // if RAYA_WORDS_LOCAL is 1
             __global raya_packet* restrict queues,
             __global uint* restrict status,
             __global ulong* restrict events,

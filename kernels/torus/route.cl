@@ -1,10 +1,10 @@
-// route: moves packets from the queue to the outboxes (Yoshitani & Yamazaki, method: the communication task). A ray
+// route: moves packets from the queue to the outboxes (the communication task in Yoshitani & Yamazaki). A ray
 // whose next voxel belongs to another node moves to the outbox of the next link on its route. A return moves to the
 // outbox of the link towards the root. In the root it moves to the buffer that the host reads.
 //
 // One work-group is one node. L packets at a time, in the order of the queue:
 //
-//     find each packet's goal (torus/moves.clh); if it is a full outbox, the packet stays in the queue
+//     find each packet's goal (torus/moves.clh); if the goal is a full outbox, the packet stays in the queue
 //     move the packets to their goals; close the gaps in the queue
 //
 // A launch ends after `work` batches of L packets. The next launch (`resume` = 1) continues with the remaining packets.
@@ -42,14 +42,14 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
            const uint first_node,
            const uint work,                          // maximum work of a node in a launch, batches of L packets, > 0
            const uint resume,                        // 1: continues where the last launch ended
-           __local uint* local_words,                // RAYA_ROUTE_WORDS words; if RAYA_WORDS_LOCAL is 1, then the
-                                                     // words of a node
+           __local uint* local_words,                // RAYA_ROUTE_WORDS words, followed by the words of a node
+                                                     // if RAYA_WORDS_LOCAL is 1
            __global raya_packet* restrict queues,    // [node][queue]
            __global uint* restrict outboxes,         // of rays (kernels/shared/traffic.h)
            __global uint* restrict return_outboxes,
            __global raya_head* restrict returns,     // [run->host]: returns that have reached the root
            __global uint* restrict status,           // [node][RAYA_STATUS_WORDS]
-           __global ulong* restrict ended)           // [node][RAYA_KINDS], added to
+           __global ulong* restrict ended)           // [node][RAYA_KINDS]: number of packets ended so far
 {
     const uint slot = node_slot(first_node), item = get_local_id(0), nodes = run->nodes, box = run->box;
     volatile __local uint *const used = local_words, *const charged = used + RAYA_GOALS;
@@ -86,13 +86,13 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
         node_barrier();
         vote(votes, goal);
         node_barrier();
-        const uint place = used[goal] + votes_before(votes, goal);
-        // The packet may overwrite the slot `place`, because this or an earlier iteration has read that slot.
-        if (goal == RAYA_STAYS) queue[place] = packet;
-        if (goal == RAYA_TO_ROOT) return_target[place] = packet.head;
+        const uint to = used[goal] + votes_before(votes, goal);
+        // The packet may overwrite slot `to` of the queue, because this or an earlier iteration has read that slot.
+        if (goal == RAYA_STAYS) queue[to] = packet;
+        if (goal == RAYA_TO_ROOT) return_target[to] = packet.head;
         if (goal == RAYA_TO_ROOT && packet.head.state & RAYA_STATE_CHARGED) shared_add(charged, 1);
         if (goal < RAYA_LINKS)
-            rays_in(outboxes + raya_box_at(goal, nodes, slot, box, RAYA_PACKET_WORDS))[place] = packet;
+            rays_in(outboxes + raya_box_at(goal, nodes, slot, box, RAYA_PACKET_WORDS))[to] = packet;
         node_barrier();
         count_votes(used, votes, goal);
         node_barrier();

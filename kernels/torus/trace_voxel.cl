@@ -1,11 +1,11 @@
 // trace_voxel: every node tests each ray packet in its queue against the objects of the voxel that the ray is in
-// (Yoshitani & Yamazaki, method).
+// (Yoshitani & Yamazaki, section on the method).
 //
 // One work-group is one node. Its work-items take V packets of the queue at a time, one in each lane:
 //
 //     for each voxel of this node that packets of the lanes are in:
-//         reserve slots for the packets that these packets may turn into (raya_slots_for_ray()); packets for which
-//             there are no free slots wait for the next superstep
+//         reserve slots for the new packets that each of these packets may turn into (raya_slots_for_ray()); a packet
+//             without enough free slots waits for the next superstep
 //         test the rays of these lanes against the voxel's objects                        (geometry/)
 //         a ray is done if its nearest hit lies before its exit from the voxel, or if it leaves the box. With a hit it
 //             turns into a return packet and the packets of its secondary rays (torus/shade_packets.clh). Without a
@@ -65,11 +65,11 @@ static inline void count_tests(packet_batch* f, mask m, objects_words all) {
     count_tests_of(f, RAYA_CONE_TESTS, m, all->cones);
 }
 
-// Sets the next voxel of the packets of the lanes m to `place`.
-static inline void move_packets(packet_batch* f, mask m, index place) {
+// Sets the next voxel of the packets of the lanes m to `packed_voxel`.
+static inline void move_packets(packet_batch* f, mask m, index packed_voxel) {
     lanes_index chosen, to;
     chosen.truth = m;
-    to.all = place;
+    to.all = packed_voxel;
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!chosen.lane[lane]) continue;
         own_slot(f, lane)->head.voxel = to.lane[lane];
@@ -77,9 +77,9 @@ static inline void move_packets(packet_batch* f, mask m, index place) {
     }
 }
 
-// Processes the packets of the lanes m. Their rays are in the voxel `place` of this node, or outside the box if `place`
-// is RAYA_NO_VOXEL.
-static inline void process_packets(const node* n, packet_batch* f, mask m, uint place) {
+// Processes the packets of the lanes m. Their rays are in the voxel `packed_voxel` of this node, or outside the box if
+// `packed_voxel` is RAYA_NO_VOXEL.
+static inline void process_packets(const node* n, packet_batch* f, mask m, uint packed_voxel) {
     const uint before = f->appended;
     uint reserved;
     m = reserve_slots(n, f, m, &reserved);
@@ -87,8 +87,8 @@ static inline void process_packets(const node* n, packet_batch* f, mask m, uint 
 #if RAYA_COSTS
     f->processed.truth |= m;
 #endif
-    const int outside = place == RAYA_NO_VOXEL;
-    const voxel_words voxel = own_voxel(n, outside ? n->place : raya_unpack_place(place));
+    const int outside = packed_voxel == RAYA_NO_VOXEL;
+    const voxel_words voxel = own_voxel(n, outside ? n->place : raya_unpack_place(packed_voxel));
     const objects_words all = outside ? &((job_words)n->memory)->objects : &voxel->objects;
     const ray r = {vec_of_lanes(f->origin), vec_of_lanes(f->direction),
                    choose(m, choose(is_shadow(f), f->limit.all, num_const(RAYA_FAR)), num_all(0.0f))};
@@ -99,9 +99,9 @@ static inline void process_packets(const node* n, packet_batch* f, mask m, uint 
     count_shared(f->shared, RAYA_COUNT_PROGRESS, mask_count(m));
     if (!outside) count_event(f, RAYA_STEPS, m & mask_not(has_flag(f, RAYA_STATE_FOUND)));
     const mask wide = m & has_flag(f, RAYA_STATE_WIDE);
-    outcome o = walk_outcome(n, f, r, m & mask_not(wide), place, h);
-    if (mask_any(wide)) o = merge_outcomes(o, tour_outcome(n, f, voxel, wide, place, h), wide);
-    move_packets(f, o.moves, o.place);
+    outcome o = walk_outcome(n, f, r, m & mask_not(wide), packed_voxel, h);
+    if (mask_any(wide)) o = merge_outcomes(o, tour_outcome(n, f, voxel, wide, packed_voxel, h), wide);
+    move_packets(f, o.moves, o.packed_voxel);
     const vec background = vec_all(((job_words)n->memory)->background);
     if (mask_any(o.missed))
         put_return_packets(f, o.missed, background, f->weight.all, (index)(0), (index)(RAYA_STATE_CHARGED));
@@ -133,10 +133,11 @@ RAYA_KERNEL_BODY void process_slots(const node* n, packet_batch* f, uint first, 
     waiting.truth = (kind != (index)(RAYA_KIND_NONE)) & (kind != (index)(RAYA_KIND_RETURN));
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!waiting.lane[lane]) continue;
-        const uint place = f->voxel.lane[lane];
-        const mask in_voxel = waiting.truth & (f->voxel.all == (index)(place));
+        const uint packed_voxel = f->voxel.lane[lane];
+        const mask in_voxel = waiting.truth & (f->voxel.all == (index)(packed_voxel));
         waiting.truth &= mask_not(in_voxel);
-        if (place == RAYA_NO_VOXEL || holds_voxel(n, raya_unpack_place(place))) process_packets(n, f, in_voxel, place);
+        if (packed_voxel == RAYA_NO_VOXEL || holds_voxel(n, raya_unpack_place(packed_voxel)))
+            process_packets(n, f, in_voxel, packed_voxel);
     }
 }
 
@@ -145,17 +146,16 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
                  __global const uint* restrict starts,    // [nodes + 1]: offset of each node's words
                  __global const raya_run* restrict run,   // (kernels/shared/traffic.h)
                  const uint first_node,                   // slot of the node that is work-group 0
-                 const uint tight,                        // 1: a ray needs free slots only for the packets of one
-                                                          // hit, not for its whole tree
+                 const uint tight,                        // 1: a ray needs free slots for one hit, not for its tree
                  const uint work,                         // maximum RAYA_COUNT_WORK of a node in a launch, > 0
                  const uint resume,                       // 1: continues where the last launch ended
-                 __local uint* local_words,               // RAYA_COUNT_WORDS words; if RAYA_WORDS_LOCAL is 1, then the
-                                                          // words of a node
+                 __local uint* local_words,               // RAYA_COUNT_WORDS words, followed by the words of a
+                                                          // node if RAYA_WORDS_LOCAL is 1
                  __global raya_packet* restrict queues,   // [node][queue]
                  __global uint* restrict status,          // [node][RAYA_STATUS_WORDS]
-                 __global ulong* restrict events,         // [node][RAYA_EVENTS], added to
-                 __global ulong* restrict made,           // [node][RAYA_KINDS]: number of packets made, added to
-                 __global ulong* restrict ended,          // [node][RAYA_KINDS], added to
+                 __global ulong* restrict events,         // [node][RAYA_EVENTS]: number of events so far
+                 __global ulong* restrict made,           // [node][RAYA_KINDS]: number of packets made so far
+                 __global ulong* restrict ended,          // [node][RAYA_KINDS]: number of packets ended so far
                  __global raya_processed* restrict processed) // [node][queue]; unused if RAYA_COSTS is 0
 {
     const uint slot = node_slot(first_node), item = get_local_id(0);

@@ -143,9 +143,9 @@ inline reference::Ray random_aimed_ray(SplitMix& random, const RayBounds& bounds
         if (distance == 0) continue;
         const double length = below(random, 2) == 0 ? 1 : 1 + random.uniform(-0.5, 0.5) * stretch;
         const Vec3 d = bounds.rounded(length * (arm + blur * random_direction(random)).normalized());
-        double farthest = 0;
-        for (int axis = 0; axis < 3; ++axis) farthest = std::max(farthest, std::abs(start[axis]));
-        if (farthest <= bounds.reach && std::abs(d.length2() - 1) <= stretch) return {start, d};
+        double max_coordinate = 0;
+        for (int axis = 0; axis < 3; ++axis) max_coordinate = std::max(max_coordinate, std::abs(start[axis]));
+        if (max_coordinate <= bounds.reach && std::abs(d.length2() - 1) <= stretch) return {start, d};
     }
 }
 

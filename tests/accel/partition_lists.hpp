@@ -38,8 +38,8 @@ inline Partition partition_of(const Scene& scene, const std::string& format, con
     return partition(job_in(scene, parse_format(format)), parse_format(format), divisions);
 }
 
-/// Returns at most half of the traversal error, in scene units, that host/accel/partition.cpp allows for rays from the
-/// reach. test_traversal.cpp checks that the error is at most a quarter of the allowed error.
+/// Returns at most half of the traversal error, in scene units, that host/accel/partition.cpp allows for a ray with its
+/// origin within the reach. test_traversal.cpp checks that the error is at most a quarter of the allowed error.
 inline double half_traversal_error(const raya_grid& grid) {
     double max_coordinate = grid.reach;
     for (std::uint32_t axis = 0; axis < 3; ++axis)
@@ -53,7 +53,7 @@ inline Divisions random_divisions(SplitMix& random) {
     return {x, y, random_count()};
 }
 
-/// Returns a random scale for a scene, between the smallest and the largest that the format can represent.
+/// Returns a random factor by which a scene is scaled; the format can represent the scaled scene.
 inline double random_scale(SplitMix& random, const NumberFormat& format) {
     const double max_exponent = format.exponent_bits == 5 ? 2 : format.exponent_bits == 6 ? 8 : 16;
     return std::exp2(random.uniform(-max_exponent, max_exponent));

@@ -28,11 +28,11 @@ inline std::vector<std::uint32_t> grid_words(const raya_grid& grid) {
 
 /// Returns a grid of random size, proportions and divisions, around the origin or far from it.
 inline raya_grid random_grid(SplitMix& random) {
-    static const std::vector<Divisions> kinds = {{1, 1, 1},   {1, 7, 3}, {64, 64, 64}, {2, 2, 2},   {4, 4, 4},
-                                                 {16, 1, 16}, {5, 8, 3}, {1, 1, 200},  {30, 20, 10}};
-    const Divisions divisions = kinds[below(random, static_cast<std::uint32_t>(kinds.size()))];
+    static const std::vector<Divisions> all_divisions = {{1, 1, 1},   {1, 7, 3}, {64, 64, 64}, {2, 2, 2},   {4, 4, 4},
+                                                         {16, 1, 16}, {5, 8, 3}, {1, 1, 200},  {30, 20, 10}};
+    const Divisions divisions = all_divisions[below(random, static_cast<std::uint32_t>(all_divisions.size()))];
     const double scale = std::exp2(random.uniform(-20, 20));
-    // The grid's maximum distance from the origin, in multiples of `scale`.
+    // The maximum absolute coordinate of the grid's low corner, in multiples of `scale`.
     const double max_distance = below(random, 3) == 0 ? random.uniform(0, 1000) : 1;
     raya_grid grid{};
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -59,7 +59,7 @@ inline Vec3 grid_point(const raya_grid& grid, const Vec3& planes) {
 }
 
 /// Returns a random point of the grid's box.
-inline Vec3 random_place(SplitMix& random, const raya_grid& grid) {
+inline Vec3 random_inside(SplitMix& random, const raya_grid& grid) {
     Vec3 planes;
     for (std::uint32_t axis = 0; axis < 3; ++axis)
         planes[static_cast<int>(axis)] = random.uniform(0, grid.divisions[axis]);
@@ -92,8 +92,8 @@ inline Vec3 special_direction(SplitMix& random) {
 /// Returns a random ray of one of these kinds: with an origin in the box, outside it or far from it; parallel to an
 /// axis; along edges or faces of voxels; through corners of voxels.
 inline reference::Ray random_grid_ray(SplitMix& random, const raya_grid& grid) {
-    const Vec3 inside = random_place(random, grid), corner = random_corner(random, grid);
-    const Vec3 second_point = below(random, 2) == 0 ? random_place(random, grid) : random_corner(random, grid);
+    const Vec3 inside = random_inside(random, grid), corner = random_corner(random, grid);
+    const Vec3 second_point = below(random, 2) == 0 ? random_inside(random, grid) : random_corner(random, grid);
     const double size = std::sqrt(3.0) * (grid_point(grid, Vec3(0)) - inside).length() + grid.cell[0];
     const Vec3 outside = inside + random.uniform(0.5, 3) * size * random_direction(random);
     switch (below(random, 9)) {

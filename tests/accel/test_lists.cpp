@@ -62,7 +62,7 @@ Scene overlapping_objects(std::size_t spheres, std::size_t others) {
 
 }  // namespace
 
-TEST_CASE("a grid's words hold the lists of the partition, and appending them changes no other word except accel_at") {
+TEST_CASE("a grid's words hold the lists of the partition; appending them to the job changes only accel_at") {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         SplitMix random(seed);
         const NumberFormat format = parse_format(kFormats[seed % kFormats.size()]);

@@ -17,11 +17,11 @@ namespace {
 constexpr std::size_t kTraversedGrids = 50, kTraversedRays = 2048;  // kTraversedRays: number of rays per grid
 
 struct Traversals {
-    std::vector<std::uint32_t> wide;     // [ray]: 1 if the ray is wide, else 0
-    std::vector<std::uint32_t> voxels;   // [ray][max_count]: voxel numbers, then RAYA_NO_VOXEL
-    std::vector<float> t_exits;          // [ray][max_count]: t at which the ray leaves each voxel
-    std::vector<float> resumed_t_exits;  // [ray][max_count]: as `t_exits`, from a traversal that starts in the voxel
-    std::vector<std::uint32_t> next_voxels;  // [ray][max_count]: the voxel that this traversal visits next
+    std::vector<std::uint32_t> wide;         // [ray]: 1 if the ray is wide, else 0
+    std::vector<std::uint32_t> voxels;       // [ray][max_count]: voxel numbers, then RAYA_NO_VOXEL
+    std::vector<float> t_exits;              // [ray][max_count]: t at which the ray leaves each voxel
+    std::vector<float> resumed_t_exits;      // [ray][max_count]: as `t_exits`, if the traversal is resumed in the voxel
+    std::vector<std::uint32_t> next_voxels;  // [ray][max_count]: the voxel that the resumed traversal visits next
 };
 
 Traversals traverse(KernelRunner& runner, const raya_grid& grid, const std::vector<float>& rays) {
@@ -38,8 +38,8 @@ Traversals traverse(KernelRunner& runner, const raya_grid& grid, const std::vect
     auto resumed = runner.constant<float>("resumed", count * max_count, 0);
     auto next_voxels = runner.constant<std::uint32_t>("next voxels", count * max_count, RAYA_NO_VOXEL);
     runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, const Buffer<std::uint32_t>&,
-                    Buffer<float>&, Buffer<std::uint32_t>&>("resumes", count, grid_buffer, ray_buffer, max_count,
-                                                            voxels, resumed, next_voxels);
+                    Buffer<float>&, Buffer<std::uint32_t>&>("resume_in_voxels", count, grid_buffer, ray_buffer,
+                                                            max_count, voxels, resumed, next_voxels);
     return {runner.read(wide), runner.read(voxels), runner.read(t_exits), runner.read(resumed),
             runner.read(next_voxels)};
 }
@@ -254,7 +254,7 @@ TEST_CASE("rays with normalised directions are never wide; rays reflected once a
         const auto arm_buffer = runner.filled("arms", arms);
         auto wide = runner.constant<std::uint32_t>("wide", kCount * 2, 0);
         runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, Buffer<std::uint32_t>&>(
-            "made_directions", kCount, grid_buffer, arm_buffer, wide);
+            "find_wide_rays", kCount, grid_buffer, arm_buffer, wide);
         const std::vector<std::uint32_t> found = runner.read(wide);
         std::array<std::size_t, 2> counts{};
         for (std::size_t i = 0; i < found.size(); ++i) counts[i % 2] += found[i];

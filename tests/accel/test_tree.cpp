@@ -19,7 +19,7 @@ BvhItem item_at(SplitMix& random, std::uint32_t number, double size, int layout)
         const double centre = layout == 0   ? random.uniform(-1, 1)
                               : layout == 1 ? 0.25  // all items in one place
                               : layout == 2 ? std::pow(2.0, -double(number % 60)) * (axis == 0)  // ever closer together
-                                            : number % 7;                                        // in few places
+                                            : number % 7;                                        // in seven places
         item.box.low[axis] = static_cast<float>(centre - size);
         item.box.high[axis] = static_cast<float>(centre + size * random.uniform(0.5, 2));
     }

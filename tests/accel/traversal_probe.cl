@@ -28,7 +28,7 @@ void traverse(__global const raya_grid* restrict grid,
 
 // Resumes each ray's traversal in each of the voxels that `traverse` has recorded.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void resumes(__global const raya_grid* restrict grid,
+void resume_in_voxels(__global const raya_grid* restrict grid,
              __global const float* restrict rays,
              const uint max_count,
              __global const uint* restrict voxels,  // [ray][max_count], results of `traverse`
@@ -55,7 +55,7 @@ void resumes(__global const raya_grid* restrict grid,
 
 // Applies is_wide() to rays with normalised directions, and to the same rays after a reflection at a normalised normal.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void made_directions(__global const raya_grid* restrict grid,
+void find_wide_rays(__global const raya_grid* restrict grid,
                      __global const float* restrict arms,  // [ray][6]: a direction and a normal, not normalised
                      __global uint* restrict wide)         // [ray][2]: 1 if the ray [0] or its reflected ray [1]
                                                            // is wide, else 0

@@ -1,4 +1,4 @@
-// A new folder among the system's temporary files, removed with its contents by the destructor.
+// A new folder in the system's folder for temporary files. The destructor removes the new folder and its contents.
 #pragma once
 #include <cerrno>
 #include <cstdlib>

@@ -34,7 +34,7 @@ ChildEnd in_child_process(const Work& work) {
     const pid_t child = ::fork();
     if (child == 0) {
         ::dup2(ends[1], STDERR_FILENO);
-        // Restores the default handlers, with which a program starts, instead of Catch's.
+        // Replaces Catch's handlers with the default handlers, with which a program starts.
         for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_DFL);
         work();
         ::_exit(99);
@@ -56,7 +56,7 @@ void interrupt_at_size(rlim_t bytes, void (*interrupt)(int)) {
     ::setrlimit(RLIMIT_FSIZE, &limit);
 }
 
-TEST_CASE("an interruption in the middle of a file removes its written part", "[interruption]") {
+TEST_CASE("an interruption while a file is written removes the written part", "[interruption]") {
     const ScratchFolder folder;
     std::ofstream(folder / "old") << "as it was";
     const std::string bytes(100'000, 'x');
@@ -129,7 +129,7 @@ TEST_CASE("an interruption removes only files in progress, up to the maximum of 
     const ScratchFolder folder;
     const ChildEnd end = in_child_process([&] {
         install_interrupt_handlers();
-        for (int i = 0; i < 100; ++i) {  // finished files free their entries in the table
+        for (int i = 0; i < 100; ++i) {  // finished files free their entries in the table of files in progress
             const FileInProgress done(folder / "done");
             std::ofstream(folder / "done") << i;
         }

@@ -29,7 +29,7 @@ TEST_CASE("a document contains the given members in the given order") {
                          R"("text":"a \"b\"\n","list":[1.5,2.0],"array":[1,2],"none":null,"one":1,"empty":[],)"
                          R"("object":{"a":1,"b":{}}})");
     CHECK(parsed(json.dump()).dump(2) == read_back(json).dump(2));
-    CHECK(Json("f\xfcr").dump() == "\"f\xef\xbf\xbdr\"");  // Latin-1
+    CHECK(Json("f\xfcr").dump() == "\"f\xef\xbf\xbdr\"");  // a byte that is not UTF-8 becomes U+FFFD
 }
 
 TEST_CASE("operator[] adds a member once, and a null becomes an object or an array on first use") {
@@ -95,7 +95,7 @@ TEST_CASE("a syntax error names file, line and member") {
     CHECK(parsed("\xEF\xBB\xBF[1e-400]").elements()[0].number() == 0);
 }
 
-TEST_CASE("an error of a reader names file, line, member and remedy") {
+TEST_CASE("an error from the function that reads a document names file, line, member and remedy") {
     const auto parse_error_message = [](const std::string& text, const auto& read) -> std::string {
         try {
             read_json(text, {"x.json", "write it anew"}, read);
@@ -122,10 +122,10 @@ TEST_CASE("a file of more than 64 MB is refused before it is parsed") {
     const ScratchFolder folder;
     const std::string file = folder / "x.json";
     std::ofstream(file) << "{}";
-    CHECK(json_text(file, {file}) == "{}");
+    CHECK(json_file_text(file, {file}) == "{}");
     std::filesystem::resize_file(file, kMaxJsonBytes + 1);
-    CHECK_THROWS_WITH(json_text(file, {file}), file + ": cannot be read: larger than 64000000 bytes");
-    CHECK_THROWS_WITH(json_text("/dev/zero", {"z"}), "z: cannot be read: not a regular file");
+    CHECK_THROWS_WITH(json_file_text(file, {file}), file + ": cannot be read: larger than 64000000 bytes");
+    CHECK_THROWS_WITH(json_file_text("/dev/zero", {"z"}), "z: cannot be read: not a regular file");
 }
 
 TEST_CASE("a value of a document takes at most 24 bytes") { CHECK(sizeof(Json) <= 24); }

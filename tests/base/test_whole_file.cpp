@@ -203,16 +203,16 @@ TEST_CASE("a full disk leaves the old file and no temporary file", "[whole_file]
 TEST_CASE("an output file that cannot be written is refused with file, reason and remedy", "[whole_file]") {
     const ScratchFolder folder;
     std::ofstream(folder / "file") << "x";
-    const auto refused = [](const fs::path& path, const std::string& reason, const std::string& remedy) {
+    const auto check_refused = [](const fs::path& path, const std::string& reason, const std::string& remedy) {
         CHECK_THROWS_WITH(check_writable(path), Contains(path.string()) && Contains(reason) && Contains(remedy));
         CHECK_THROWS_WITH(write_whole_file(path, "x"), Contains(reason) && Contains(remedy));
         CHECK_THROWS_AS(write_whole_file(path, "x"), UserError);
     };
-    refused(folder / "missing/x", "missing' does not exist", "mkdir -p");
-    refused(folder / "file/x", "is not a folder", "name another file");
-    refused(folder.path(), "it is a folder", "name a file in it");
-    refused(folder / "missing/", "it is a folder", "name a file in it");
-    refused("", "the name is empty", "name a file");
+    check_refused(folder / "missing/x", "missing' does not exist", "mkdir -p");
+    check_refused(folder / "file/x", "is not a folder", "name a file in another folder");
+    check_refused(folder.path(), "it is a folder", "name a file in it");
+    check_refused(folder / "missing/", "it is a folder", "name a file in it");
+    check_refused("", "the name is empty", "name a file");
     CHECK_THROWS_WITH(write_whole_file(folder / std::string(300, 'n'), "x"), Contains("File name too long"));
     CHECK(folder.entries() == 1);
 }

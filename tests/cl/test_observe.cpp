@@ -53,7 +53,7 @@ TEST_CASE("a session without an observer records no arguments", "[cl]") {
     CHECK(session.profile().commands()[0].arguments.empty());
 }
 
-TEST_CASE("a clock offset maps a command's time between the host's two times", "[cl]") {
+TEST_CASE("a clock offset maps a command's time to between the host's times before and after the command", "[cl]") {
     for (std::uint64_t seed = 0; seed < 500; ++seed) {
         SplitMix random(seed);
         const std::uint64_t before = random.next() >> 8, after = before + random.next() % 1000,

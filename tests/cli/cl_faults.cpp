@@ -2,8 +2,8 @@
 //   RAYA_FAULT="clCreateBuffer 3 -4"          the third clCreateBuffer and all later ones return -4 and do nothing
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 lost"   every third clEnqueueCopyBuffer completes without copying.
 //                                             `lost` and `astray` also work for clEnqueueCopyBufferRect.
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third copy goes into the memory of another PE: to its target
-//                                             offset plus its size (at the end of the buffer: minus its size)
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third copy goes to target offset + size, the memory of another
+//                                             PE (at the end of the buffer: to target offset - size)
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third call raises SIGSEGV
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 overflow"   the third call overflows the stack of its thread
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 overflows"  the third call starts two threads that overflow their stacks
@@ -31,15 +31,15 @@ namespace {
 
 struct Fault {
     std::string call;
-    int threshold = 0;   // number of the first failing call, from 1; or the query; or, for `new`, the minimum bytes
+    int number = 0;      // first failing call (from 1), period (`lost`, `astray`), query, or minimum bytes (`new`)
     std::string action;  // "lost", "astray", "crash", "overflow", "overflows", "exit", "slow" or empty
-    cl_int error = CL_SUCCESS;  // returned by the failing call; or the answer to the query
+    cl_int result = CL_SUCCESS;  // returned by the failing call; or the answer to the query
 
     Fault() {
         const char* text = std::getenv("RAYA_FAULT");
-        std::istringstream(text != nullptr ? text : "") >> call >> threshold >> action;
-        error = std::atoi(action.c_str());
-        if (error != CL_SUCCESS) action.clear();
+        std::istringstream(text != nullptr ? text : "") >> call >> number >> action;
+        result = std::atoi(action.c_str());
+        if (result != CL_SUCCESS) action.clear();
     }
 };
 
@@ -60,7 +60,7 @@ int overflow(int depth) {
 cl_int inject_fault(const char* call) {
     const Fault& fault = injected_fault();
     static std::atomic<int> calls{0};
-    if (fault.call != call || fault.action == "lost" || fault.action == "astray" || ++calls < fault.threshold)
+    if (fault.call != call || fault.action == "lost" || fault.action == "astray" || ++calls < fault.number)
         return CL_SUCCESS;
     if (fault.action == "crash") std::raise(SIGSEGV);
     if (fault.action == "overflow") std::_Exit(overflow(1));
@@ -71,14 +71,14 @@ cl_int inject_fault(const char* call) {
     }
     if (fault.action == "exit") std::_Exit(1);
     if (fault.action == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(2500));
-    return fault.error;
+    return fault.result;
 }
 
-/// Returns true if this copy must be corrupted by `action`: "lost" or "astray".
+/// Counts the copy. Returns true if `action`, "lost" or "astray", is injected and must corrupt this copy.
 bool corrupts_copy(const char* call, const char* action) {
     const Fault& fault = injected_fault();
     static std::atomic<int> calls{0};
-    return fault.action == action && fault.call == call && ++calls % fault.threshold == 0;
+    return fault.action == action && fault.call == call && ++calls % fault.number == 0;
 }
 
 template <class Function>
@@ -115,13 +115,13 @@ size_t displaced_offset(cl_mem buffer, size_t offset, size_t size) {
 /// Replaces the answer to `query` if the injected fault names this query.
 void replace_answer(const char* call, cl_uint query, size_t size, void* value) {
     const Fault& fault = injected_fault();
-    if (fault.call != call || static_cast<int>(query) != fault.threshold || value == nullptr) return;
-    const size_t answer = static_cast<size_t>(fault.error);
+    if (fault.call != call || static_cast<int>(query) != fault.number || value == nullptr) return;
+    const size_t answer = static_cast<size_t>(fault.result);
     std::memcpy(value, &answer, std::min(size, sizeof answer));
 }
 
-/// Enqueues a read of one byte, which is discarded, instead of a copy. The read's event completes and has profiling
-/// times.
+/// Instead of a copy, enqueues a read of one byte, so that `event` completes and has profiling times. Discards the
+/// byte.
 cl_int command_without_copy(cl_command_queue queue, cl_mem from, cl_uint waits, const cl_event* wait_list,
                             cl_event* event) {
     static char discarded_byte;
@@ -136,7 +136,7 @@ cl_int command_without_copy(cl_command_queue queue, cl_mem from, cl_uint waits, 
 void* operator new(std::size_t bytes) {
     constexpr std::size_t kMinFailingBytes = 1000;  // excludes the allocations of `Fault` itself
     if (bytes > kMinFailingBytes && injected_fault().call == "new" &&
-        bytes >= static_cast<std::size_t>(injected_fault().threshold))
+        bytes >= static_cast<std::size_t>(injected_fault().number))
         throw std::bad_alloc();
     if (void* memory = std::malloc(bytes != 0 ? bytes : 1)) return memory;
     throw std::bad_alloc();

@@ -1,12 +1,12 @@
 // Fault injection into file writes: a library that is preloaded into raya (LD_PRELOAD).
 //   RAYA_FULL_DISK="1000000 /folder"    the files in this folder have space for 1,000,000 bytes in total. The write()
-//                                       that exceeds this space writes the bytes that fit; later ones fail with ENOSPC.
+//                                       that exceeds the space writes the bytes that fit; later calls fail with ENOSPC.
 //   RAYA_FULL_DISK="write /folder"      a write() to a file in this folder writes half of its bytes, then blocks
 //   RAYA_FULL_DISK="rename /folder"     a rename() to a file in this folder blocks
 //   RAYA_WRITE_FAULT="17 28"            the 17th of raya's writing calls (below) fails with errno 28 (ENOSPC)
 //   RAYA_WRITE_FAULT="17 short"         the 17th of raya's writing calls writes half its bytes
 //   RAYA_WRITE_CALLS=FILE               appends a line to FILE for each writing call: its name, and "fails" if it fails
-// Writing calls: calls of the functions at the end of this file by raya or the C++ library, not by drivers.
+// Writing calls: calls that raya or the C++ library, but not a driver, makes to the functions at the end of this file.
 // The library simulates a full disk, because only root can mount a small file system.
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -38,10 +38,10 @@ struct Disk {
         const char* text = std::getenv("RAYA_FULL_DISK");
         if (text == nullptr) return;
         const std::string setting = text;
-        const std::size_t space = setting.find(' ');
+        const std::size_t blank_at = setting.find(' ');
         free_bytes = std::atoll(text);
-        if (free_bytes == 0) blocking_call = setting.substr(0, space);
-        folder = setting.substr(space + 1) + "/";
+        if (free_bytes == 0) blocking_call = setting.substr(0, blank_at);
+        folder = setting.substr(blank_at + 1) + "/";
     }
 };
 
@@ -124,10 +124,10 @@ bool fails(const char* call, const void* caller, bool can_be_short, bool can_be_
 /// Returns true if the descriptor refers to a regular file other than the one to which stderr is redirected.
 bool is_file(int descriptor) {
     struct stat status {
-    }, messages{};
+    }, stderr_status{};
     const int saved_errno = errno;
     const bool is_regular = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
-    const bool is_stderr = ::fstat(STDERR_FILENO, &messages) == 0 && messages.st_ino == status.st_ino;
+    const bool is_stderr = ::fstat(STDERR_FILENO, &stderr_status) == 0 && stderr_status.st_ino == status.st_ino;
     errno = saved_errno;
     return is_regular && !is_stderr;
 }

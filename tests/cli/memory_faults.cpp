@@ -31,13 +31,13 @@ void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 
 namespace {
 
-constexpr std::size_t kDepth = 3;        // return addresses per site; one would not distinguish callers of a template
+constexpr std::size_t kDepth = 3;        // addresses per site; a single one would not distinguish callers of a template
 constexpr std::size_t kSlots = 1 << 16;  // maximum number of sites
 
 using Site = std::array<std::uintptr_t, kDepth>;
 
 struct Slot {
-    std::atomic<std::uint64_t> number{0};  // of the site; 0: the slot is free
+    std::atomic<std::uint64_t> number{0};  // number of the site; 0: the slot is free
     std::atomic<std::uint64_t> count{0};   // number of allocations
     Site site{};
 };
@@ -60,7 +60,7 @@ Module module_of(std::uintptr_t address, std::uintptr_t& base) {
 
 struct StackWalk {
     Site site{};
-    std::size_t frames = 0;
+    std::size_t frames = 0;  // number of addresses in `site`
 };
 
 _Unwind_Reason_Code add_frame(_Unwind_Context* context, void* data) {

@@ -34,8 +34,8 @@ inline std::set<std::string> load_keys(const std::string& path) {
     return keys;
 }
 
-/// Returns the keys that every report has, in the form of list_keys().
-inline std::set<std::string> fixed_keys() {
+/// Returns the keys of the report of a render on the SPA with default options, in the form of list_keys().
+inline std::set<std::string> default_report_keys() {
     std::set<std::string> keys = {"kind string",
                                   "raya string",
                                   "scene string",

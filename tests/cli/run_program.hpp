@@ -88,7 +88,7 @@ inline std::vector<std::string> environment(const RunOptions& options) {
     for (char** variable = environ; *variable != nullptr; ++variable) {
         const std::string_view text = *variable;
         bool replaced = false;
-        // RAYA_KERNEL_LOG is removed if a library is preloaded, because it adds writes, which the library counts.
+        // Removes RAYA_KERNEL_LOG if a library is preloaded: the library counts writes, and the log adds some.
         for (const auto& [name, value] : options.variables)
             replaced = replaced || text.starts_with(name + "=") ||
                        (name == "LD_PRELOAD" && text.starts_with("RAYA_KERNEL_LOG="));
@@ -99,7 +99,7 @@ inline std::vector<std::string> environment(const RunOptions& options) {
 }
 
 /// Redirects descriptor `stream` to `file`, which may be a terminal.
-inline void open_stream(const std::string& file, int stream) {
+inline void redirect_stream(const std::string& file, int stream) {
     if (file.empty()) return;
     const int opened = ::open(file.c_str(), O_WRONLY | O_NOCTTY);
     if (opened < 0 || ::dup2(opened, stream) < 0) ::_exit(126);
@@ -180,8 +180,8 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const RunOptions&
         ::dup2(::fileno(input.get()), STDIN_FILENO);
         ::dup2(::fileno(out.get()), STDOUT_FILENO);
         ::dup2(::fileno(err.get()), STDERR_FILENO);
-        detail::open_stream(options.out_file, STDOUT_FILENO);
-        detail::open_stream(options.error_file, STDERR_FILENO);
+        detail::redirect_stream(options.out_file, STDOUT_FILENO);
+        detail::redirect_stream(options.error_file, STDERR_FILENO);
         detail::limit_files(options.max_file_bytes);
         if (options.as_nobody) detail::become_nobody();
         detail::limit_memory(options.max_memory_bytes);

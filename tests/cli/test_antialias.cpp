@@ -37,16 +37,16 @@ std::uint64_t launches_of(const Document& report, const std::string& label) {
 /// Checks that each rotation consists of two copies: one copy moves all blocks except the last by one PE, and one moves
 /// the last block to the opposite end of the array.
 void check_rotations(const Document& report) {
-    const Document& ring = report["communication"];
-    const std::uint64_t rotations = ring["rotations"], pes = report["machine"]["pes"],
+    const Document& communication = report["communication"];
+    const std::uint64_t rotations = communication["rotations"], pes = report["machine"]["pes"],
                         band = report["antialias"]["band_pixels"];
     CHECK(rotations > 0);
-    CHECK(ring["rotation_words"] == rotations * pes * 3 * band);
+    CHECK(communication["rotation_words"] == rotations * pes * 3 * band);
     CHECK(launches_of(report, "ring.rotate_up") + launches_of(report, "ring.rotate_down") == 2 * rotations);
 }
 
 TEST_CASE("render --antialias: the report has the keys of the method", "[cli]") {
-    std::set<std::string> keys = fixed_keys();
+    std::set<std::string> keys = default_report_keys();
     keys.insert({"antialias.band_pixels count", "antialias.exchange string"});
     CHECK(keys_of(RenderFiles("planes", {"--antialias", "filter"}).report()) == keys);
     keys.insert({"antialias.threshold number", "antialias.points string", "antialias.recomputed_pixels count",
@@ -55,7 +55,7 @@ TEST_CASE("render --antialias: the report has the keys of the method", "[cli]") 
     CHECK(keys_of(RenderFiles("planes", supersample_options()).report()) == keys);
 }
 
-TEST_CASE("render --antialias none: the report has no rotations, and the image is that of the default", "[cli]") {
+TEST_CASE("render --antialias none: the report has no rotations; the image equals that without the option", "[cli]") {
     const RenderFiles files("planes", {"--antialias", "none"});
     const Document report = files.report();
     CHECK(report["antialias"] == Document{{"method", "none"}});
@@ -69,7 +69,7 @@ TEST_CASE("render --antialias filter: the counts of the report are consistent", 
     const RenderFiles files("planes", {"--antialias", "filter", "--offset", "3"});
     const Document report = files.report(), plain_report = RenderFiles("planes", {"--offset", "3"}).report();
     CHECK(report["antialias"] == Document{{"method", "filter"}, {"exchange", "ring"}, {"band_pixels", kTestHeight}});
-    CHECK(report["communication"]["rotations"] == 2 + 2 * 3);  // neighbours: 1 PE (left, right), 3 PEs (up, down)
+    CHECK(report["communication"]["rotations"] == 2 + 2 * 3);  // left and right neighbours: 1 PE away, others: 3
     check_rotations(report);
     for (const char* part : {"rays", "tests", "shading", "load"}) CHECK(report[part] == plain_report[part]);
     CHECK(report["image"]["hash"] != plain_report["image"]["hash"]);
@@ -80,14 +80,14 @@ TEST_CASE("render --antialias filter: the counts of the report are consistent", 
     CHECK_THAT(files.run().out, Catch::Contains("ring    8 rotations, " + std::to_string(8 * 20 * 3 * 12) + " words"));
 }
 
-TEST_CASE("render --exchange bus: the report has number and time of the transfers; the image is that of the ring",
+TEST_CASE("render --exchange bus: the report has number and time of the transfers; the image equals the ring's",
           "[cli]") {
     const auto options = [](const std::string& exchange) {
         return Arguments{"--antialias", "supersample", "--offset", "3", "--exchange", exchange};
     };
     const Document ring = RenderFiles("planes", options("ring")).report();
     const RenderFiles bus("planes", options("bus")), broadcast("planes", options("bus-broadcast"));
-    constexpr std::uint64_t kBlock = 3 * kTestHeight;  // number of words of a PE's pixels, one column
+    constexpr std::uint64_t kBlock = 3 * kTestHeight;  // words of a PE's pixels: 3 for each pixel of a column
     for (const RenderFiles* files : {&bus, &broadcast}) {
         const Document report = files->report();
         const Document& communication = report["communication"];
@@ -133,7 +133,7 @@ TEST_CASE("render --antialias supersample: the counts of the report are consiste
                Catch::Contains("super   " + std::to_string(recomputed) + " pixels (") && Catch::Contains("super u = "));
 }
 
-TEST_CASE("render: --threshold selects the supersampled pixels, --points the sample points", "[cli]") {
+TEST_CASE("render: --threshold selects the supersampled pixels; --points selects their sample points", "[cli]") {
     const Document all = RenderFiles("planes", supersample_options({"--threshold", "0"})).report();
     CHECK(all["antialias"]["threshold"] == 0.0);
     CHECK(all["antialias"]["recomputed_pixels"] == kPixels);
@@ -169,7 +169,7 @@ TEST_CASE("render --mask: white where pixels were supersampled, black elsewhere"
     CHECK(double(white_pixels) / double(kPixels) == antialias["recomputed_share"]);
 }
 
-TEST_CASE("render: refuses options of supersampling out of range, or without --antialias supersample", "[cli]") {
+TEST_CASE("render: refuses options of supersampling out of range, and those without --antialias supersample", "[cli]") {
     const ScratchFolder outputs;
     const auto refused = [&](const Arguments& options, const Arguments& message) {
         check_refused(outputs, render_into(outputs, scene_file("planes"), options), 2, message);
@@ -204,7 +204,7 @@ TEST_CASE("render --mask: refuses a file that it cannot write, before rendering"
     refused(outputs / "missing/mask.png", {"/missing' does not exist", "mkdir -p"});
 }
 
-TEST_CASE("render --antialias: refuses a PE memory that is too small, with the needed and the available size",
+TEST_CASE("render --antialias: the error for a PE memory that is too small names the needed and the available size",
           "[cli]") {
     const ScratchFolder outputs;
     const auto refused = [&](const Arguments& options, const Arguments& message) {

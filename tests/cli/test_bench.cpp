@@ -83,7 +83,7 @@ TEST_CASE("bench --report, --compare: a later run is compared with the rows of t
     CHECK_THAT(slower_run.out, Catch::Contains("SLOWER") && (Catch::Contains("-99.") || Catch::Contains("-100.0 %")));
     CHECK_THAT(slower_run.err,
                Catch::Contains("fast.json: 1 of 1 row slower by more than 50 %, 0 with a different image"));
-    CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == row["hash"]);  // written although the run is slower
+    CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == row["hash"]);  // a slower run also writes the report
     const RunOutcome other_image_run =
         run_raya(small_bench({"--compare", write_changed_baseline(folder, "other.json", 1e-3, "0123456789")}));
     INFO(other_image_run.describe());
@@ -114,13 +114,13 @@ TEST_CASE("bench: refuses invalid baselines, reports and tolerances", "[cli]") {
 
 TEST_CASE("bench --variants: times each variant, and all variants render the same image", "[cli][slow]") {
     const ScratchFolder folder;
-    const std::string base = folder / "variants.json";
-    const RunOutcome run =
-        run_raya({"bench", RAYA_SOURCE_DIR "/scenes/mirrors.nff", "--variants", "grid,torus,none", "--machine",
-                  "grande", "--size", "40x30", "--format", "fp32", "--lanes", "4", "--samples", "1", "--report", base});
+    const std::string report = folder / "variants.json";
+    const RunOutcome run = run_raya({"bench", RAYA_SOURCE_DIR "/scenes/mirrors.nff", "--variants", "grid,torus,none",
+                                     "--machine", "grande", "--size", "40x30", "--format", "fp32", "--lanes", "4",
+                                     "--samples", "1", "--report", report});
     INFO(run.describe());
     REQUIRE(run.code == 0);
-    const Document rows = json_of(base)["rows"];
+    const Document rows = json_of(report)["rows"];
     REQUIRE(rows.size() == 3);
     const char* const kernels[] = {"render, grid", "torus", "render, none"};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -136,7 +136,7 @@ TEST_CASE("bench --variants: times each variant, and all variants render the sam
     check_refused(empty, {"bench", "--variants", "grid,octree"}, 2, {"--variants octree", "none, grid, bvh or torus"});
 }
 
-TEST_CASE("bench --denormals: times every row twice, with the same image if no value is denormal", "[cli]") {
+TEST_CASE("bench --denormals: times every row twice; both images are equal if no value is denormal", "[cli]") {
     const ScratchFolder outputs;
     const RunOutcome run =
         run_raya({"bench", scene_file("planes"), "--variants", "none", "--size", "16", "--pes", "16", "--lanes", "4",
@@ -151,7 +151,7 @@ TEST_CASE("bench --denormals: times every row twice, with the same image if no v
     CHECK(rows[0]["hash"] == rows[1]["hash"]);
 }
 
-TEST_CASE("bench --build: lists compile times, and exits with 4 if a kernel takes longer than --limit", "[cli]") {
+TEST_CASE("bench --build: lists compile times, and exits with 4 if one takes longer than --limit", "[cli]") {
     const ScratchFolder folder, outputs;
     const auto build = [&](const Arguments& extra_options) {
         Arguments arguments = {"bench",   RAYA_SOURCE_DIR "/scenes/planes.nff",

@@ -52,7 +52,7 @@ TEST_CASE("render --checkpoint: a resumed render writes the same image file as a
     CHECK(report["measured"]["earlier_s"] < report["measured"]["render_s"]);
 }
 
-TEST_CASE("render --checkpoint: refuses options that exclude it", "[cli][checkpoint]") {
+TEST_CASE("render --checkpoint, --resume: refuse missing, invalid and conflicting options", "[cli][checkpoint]") {
     const ScratchFolder folder;
     const auto refused = [&](const Arguments& extra_options, const Arguments& message) {
         check_refused(folder, render_arguments(folder, extra_options), 2, message);

@@ -20,7 +20,7 @@ namespace {
 using Catch::Matchers::Contains;
 
 struct Damage {
-    std::string text, reason;
+    std::string text, reason;  // reason: expected part of the message
 };
 
 // Returns texts that the JSON parser, and therefore every reader, refuses.
@@ -67,20 +67,20 @@ std::string refusal(const auto& read) {
     return "accepted";
 }
 
-TEST_CASE("readers of JSON: refuse damaged files with file and line", "[cli][json]") {
+TEST_CASE("readers of JSON: the messages about damaged files name file and line", "[cli][json]") {
     const ScratchFolder folder;
     const std::string file = folder / "x.json";
     setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
     unsetenv("RAYA_TUNED");
     const DeviceInfo device;
-    const std::filesystem::path tuned = tuned_path(device);
+    const std::filesystem::path tuned_file = tuned_path(device);
     const auto check = [&](const Damage& damage) {
         CAPTURE(damage.text.substr(0, 60), damage.reason);
         std::ofstream(file, std::ios::binary) << damage.text;
-        std::ofstream(tuned, std::ios::binary) << damage.text;
+        std::ofstream(tuned_file, std::ios::binary) << damage.text;
         std::string warning;
         CHECK_FALSE(stored_choices([&](const std::string& text) { warning = text; })(device, {}));
-        const std::string reason_in_cache = tuned.string() + damage.reason.substr(std::string("x.json").size());
+        const std::string reason_in_cache = tuned_file.string() + damage.reason.substr(std::string("x.json").size());
         CHECK_THAT(warning, Contains("ignored"));
         const std::vector<std::string> messages = {refusal([&] { page_of_report(damage.text, "x.json"); }),
                                                    refusal([&] { read_bench_report(file); }),

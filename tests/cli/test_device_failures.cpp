@@ -15,7 +15,7 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
-TEST_CASE("render: for a kernel that does not compile, the error has device, options and build log", "[cli]") {
+TEST_CASE("render: the error for a kernel that does not compile has device, options and build log", "[cli]") {
     const ScratchFolder kernels, outputs;
     const SourcePatch mistake{"geometry/sphere.clh", "#include \"kernels/geometry/ray.clh\"", "no_such_type broken;"};
     const std::string broken = write_kernels(kernels / "kernels", {mistake}), planes = scene_file("planes");
@@ -93,7 +93,7 @@ TEST_CASE("RAYA_TUNED: refuses values other than off", "[cli]") {
     check_refused(outputs, {"bench", "--size", "8"}, 2, {"RAYA_TUNED=maybe"}, {.variables = {{"RAYA_TUNED", "maybe"}}});
 }
 
-TEST_CASE("devices: lists a driver with two ICD entries once, and numbers equal devices one by one", "[cli]") {
+TEST_CASE("devices: lists a driver with two ICD entries once, and gives equal devices different numbers", "[cli]") {
     const ScratchFolder vendors;
     const fs::path entry = "/etc/OpenCL/vendors/pocl.icd";
     if (!fs::exists(entry)) return;
@@ -123,7 +123,7 @@ TEST_CASE("devices: lists a driver with two ICD entries once, and numbers equal 
 TEST_CASE("--device: the error for an unknown device lists the devices", "[cli]") {
     const ScratchFolder outputs;
     const std::string scene = scene_file("planes");
-    const Arguments message = {"no OpenCL device matches 'nosuch'", "remedy: a number, a type or a part of a name",
+    const Arguments message = {"no OpenCL device matches 'nosuch'", "remedy: give a number, a type or a part of a name",
                                "\n  0: "};
     check_refused(outputs, render_into(outputs, scene, {"--device", "nosuch"}), 3, message);
     check_refused(outputs, render_into(outputs, scene), 3, message, {.variables = {{"RAYA_DEVICE", "nosuch"}}});
@@ -156,7 +156,7 @@ TEST_CASE("render: if the driver crashes, raya exits with 3 and names the failed
     }
 }
 
-TEST_CASE("render --group: refuses a group that the kernel does not allow, with both sizes", "[cli]") {
+TEST_CASE("render --group: the error for a group larger than the kernel allows names both sizes", "[cli]") {
     const ScratchFolder outputs;
     const Arguments arguments =
         render_into(outputs, scene_file("planes"), {"--size", "8", "--pes", "8", "--lanes", "4", "--group", "16"});
@@ -177,12 +177,12 @@ std::string image_of(const std::string& group, const std::string& device, const 
 }
 
 // PoCL keeps the private memory of a whole work-group on the stack of one thread, so large groups may overflow it.
-TEST_CASE("render --group: the largest group with 16 lanes renders the same image", "[cli]") {
+TEST_CASE("render --group: with 16 lanes, groups of 1 and 1024 work-items render the same image", "[cli]") {
     const Arguments grande = {"--machine", "grande"};
     CHECK(image_of("1024", "pthread", grande) == image_of("1", "pthread", grande));
 }
 
-TEST_CASE("render --group: the largest group with the most private memory renders the same image", "[cli][slow]") {
+TEST_CASE("render --group: groups of 1 and 1024 work-items render the same image with large kernels", "[cli][slow]") {
     for (const char* device : {"pthread", "basic"})
         for (const Arguments& extra_options :
              {Arguments{"--machine", "grande"}, Arguments{"--machine", "torus", "--nodes", "2x1x1"},
@@ -213,7 +213,7 @@ TEST_CASE("render: the error for a damaged kernel cache of the driver contains t
                   run_options);
 }
 
-TEST_CASE("render: ends if memory runs out during a build, although the driver still holds its lock", "[cli]") {
+TEST_CASE("render: ends if memory runs out during a build, although the driver still holds a lock", "[cli]") {
     if (kSanitized) return;
     const ScratchFolder cache, outputs;
     RunOptions run_options = device_with_fault("new 1000000 0");
@@ -222,7 +222,7 @@ TEST_CASE("render: ends if memory runs out during a build, although the driver s
                   {"out of memory on the host"}, run_options);
 }
 
-TEST_CASE("render: the error names an unwritable POCL_CACHE_DIR first; without it raya uses another folder", "[cli]") {
+TEST_CASE("render: the error names an unwritable POCL_CACHE_DIR first; raya replaces an unwritable default", "[cli]") {
     const ScratchFolder home, outputs;
     ::chmod(outputs.path().c_str(), 0777);
     ::chmod(home.path().c_str(), 0555);
@@ -259,7 +259,7 @@ class SmallFileSystem {
     bool is_mounted_;
 };
 
-TEST_CASE("render: the error names a full kernel cache, whether PoCL or LLVM detects it", "[cli]") {
+TEST_CASE("render: on a full disk, the error names the kernel cache, whether PoCL or LLVM fails first", "[cli]") {
     if (kSanitized) return;
     for (const int bytes : {4 << 10, 300 << 10}) {
         CAPTURE(bytes);

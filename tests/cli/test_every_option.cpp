@@ -40,11 +40,11 @@ struct ExposedApp : CLI::App {
     using CLI::App::final_callback_;
 };
 
-/// Returns the message with which the program refuses the arguments; "" if it accepts them. `runs`: also runs the
-/// command's callback. Exceptions other than UserError end the test.
-std::string refusal(const Arguments& arguments, bool runs) {
+/// Returns the message with which the program refuses the arguments; "" if it accepts them. `runs_command`: also
+/// runs the command's callback. Exceptions other than UserError end the test.
+std::string refusal(const Arguments& arguments, bool runs_command) {
     const std::shared_ptr<CLI::App> program = make_full_parser();
-    if (!runs)
+    if (!runs_command)
         for (CLI::App* command = program.get(); command != nullptr;) {
             command->callback(
                 [owner = command->*(&ExposedApp::final_callback_)] {});  // keeps the options' variables alive
@@ -66,8 +66,8 @@ bool names_option(const std::string& text, const OptionText& option) {
                        [&](const std::string& name) { return contains(text, name); });
 }
 
-void check_refused_in_process(const Arguments& arguments, const OptionText& option, bool runs = false) {
-    const std::string text = refusal(arguments, runs);
+void check_refused_in_process(const Arguments& arguments, const OptionText& option, bool runs_command = false) {
+    const std::string text = refusal(arguments, runs_command);
     std::string line;
     for (const std::string& argument : arguments) line += argument.substr(0, 60) + ' ';
     INFO(line << "\n" << text);
@@ -131,7 +131,7 @@ TEST_CASE("render: refuses odd values before it opens a device", "[cli][every]")
     }
 }
 
-TEST_CASE("--: arguments after it are positional, and the error for a wrong one names --", "[cli][every]") {
+TEST_CASE("--: arguments after -- are positional, and the error for a wrong argument names --", "[cli][every]") {
     CHECK_THAT(refusal({"render", "--", "-x.nff", "--size", "16"}, false),
                Catch::Contains("unexpected argument '--size' after --"));
     CHECK(refusal({"render", "-o", "x.ppm", "--size", "16", "--", "-x.nff"}, false).empty());

@@ -40,7 +40,7 @@ TEST_CASE("explore: writes a page and prints the mapping that it opens with", "[
     CHECK(file_contents(page) == html);  // a second run writes the same page
 }
 
-TEST_CASE("explore: refuses wrong options with the reason, and writes no file", "[cli]") {
+TEST_CASE("explore: the error for wrong options names the reason, and raya writes no file", "[cli]") {
     struct Row {
         std::vector<std::string> options;
         std::string reason;

@@ -1,4 +1,4 @@
-// Faults during a render: raya ends with a message and an exit code, and leaves no output file or part of one.
+// Faults during a render: raya ends with a message and an exit code, and leaves neither output files nor parts of them.
 #include <fmt/core.h>
 
 #include <algorithm>

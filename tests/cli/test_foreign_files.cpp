@@ -17,7 +17,7 @@ constexpr uid_t kNobody = 65534;
 
 const fs::path kBuild = fs::path(RAYA_PROGRAM).parent_path();
 
-/// A copy of raya in `program_in` and of its modules in `modules_in`, two subfolders of a scratch folder.
+/// A copy of raya in `program_in` and of its modules in `modules_in`, two subfolders of `folder`.
 struct Installation {
     Installation(const fs::path& folder, const char* program_in, const char* modules_in)
         : top(folder),
@@ -81,7 +81,7 @@ TEST_CASE("raya loads modules only from its own folder, or from ../lib/raya if i
     }
 }
 
-TEST_CASE("modules: refused if others may write or replace them", "[cli][module]") {
+TEST_CASE("modules: refused if other users may write or replace them", "[cli][module]") {
     const ScratchFolder folder;
     const Installation flat(folder / "flat", ".", "."), prefix(folder / "prefix", "bin", "lib/raya");
     const auto check_mode = [](const Installation& installation, const fs::path& path, mode_t mode,
@@ -97,7 +97,7 @@ TEST_CASE("modules: refused if others may write or replace them", "[cli][module]
     check_mode(flat, flat.top, 01777, flat.top.string() + "' (mode 1777)");
     check_mode(prefix, prefix.modules, 0757, prefix.modules.string() + "' (mode 0757)");
     check_mode(prefix, prefix.top / "lib", 0777, (prefix.top / "lib").string() + "' (mode 0777)");
-    ::chmod((prefix.top / "lib").c_str(), 01777);  // sticky bit: others cannot replace lib/raya
+    ::chmod((prefix.top / "lib").c_str(), 01777);  // sticky bit: other users cannot replace lib/raya
     CHECK(prefix.run().code == 0);
     for (const char* name : {"raya_pictures.so", "raya_mpi.so"}) {
         ::chmod((flat.modules / name).c_str(), 0777);
@@ -114,7 +114,7 @@ TEST_CASE("modules: group write permission is accepted if the owner is the group
     const ScratchFolder folder;
     const Installation flat(folder / "flat", ".", ".");
     ::chmod(flat.top.c_str(), 0775);
-    CHECK(flat.run().code == 0);  // root's group may write
+    CHECK(flat.run().code == 0);  // root's group has no other member
     constexpr gid_t kUnnamedGroup = 54'321;
     REQUIRE(::chown(flat.top.c_str(), 0, kUnnamedGroup) == 0);
     CHECK(flat.run().code == 0);
@@ -124,7 +124,7 @@ TEST_CASE("modules: group write permission is accepted if the owner is the group
     flat.check_refused("(mode 0775)");
 }
 
-TEST_CASE("modules: raya loads those of the program's owner and of root, and refuses those of other users",
+TEST_CASE("modules: raya loads modules of the program's owner and of root, and refuses modules of other users",
           "[cli][module]") {
     if (::geteuid() != 0) return;
     const ScratchFolder folder;
@@ -254,7 +254,7 @@ TEST_CASE("kernel cache: without a safe folder, the error names the folders that
                                     Contains("name another folder in POCL_CACHE_DIR") &&
                                     !Contains("no OpenCL device found"));
     };
-    check_none(CacheRun(0777));  // without sticky bit: others can replace its files
+    check_none(CacheRun(0777));  // without sticky bit: other users can replace the files
     const CacheRun occupied;
     for (const char* suffix : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
         std::ofstream(occupied.private_folder(suffix)) << "x";

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST_CASE("--frames: ranges and file names", "[cli][frames]") {
+TEST_CASE("parse_frames, numbered: read ranges and add the frame's number to file names", "[cli][frames]") {
     CHECK(parse_frames("1:24") == FrameRange{1, 24, 1, 24});
     CHECK(parse_frames("0:0") == FrameRange{0, 0, 0, 0});
     CHECK(parse_frames("5:8/24") == FrameRange{5, 8, 1, 24});
@@ -37,7 +37,7 @@ TEST_CASE("--frames: ranges and file names", "[cli][frames]") {
     CHECK(numbered("", 1).empty());
 }
 
-TEST_CASE("--turn: a frame's camera depends on its number, not on the range", "[cli][frames]") {
+TEST_CASE("--turn: the camera depends on a frame's position in the sequence, not on the range", "[cli][frames]") {
     const View view = read_nff(scene_file("centre")).view;
     const auto frames = [&](const char* range) { return frames_of({range, "", 360.0}, view); };
     const std::vector<Frame> all_frames = frames("1:24"), three_frames = frames("7:9/24"), from_zero = frames("0:23");
@@ -54,7 +54,7 @@ TEST_CASE("--turn: a frame's camera depends on its number, not on the range", "[
     CHECK((opposite - (view.up * (2 * arm.dot(view.up) / view.up.dot(view.up)) - arm)).length() < 1e-12);
 }
 
-TEST_CASE("--camera-path: each line is a camera; a wrong line is refused with its number", "[cli][frames]") {
+TEST_CASE("--camera-path: each line is a camera; the error for a wrong line has the line's number", "[cli][frames]") {
     const ScratchFolder folder;
     const std::string path = folder / "path.txt";
     View view;
@@ -139,7 +139,7 @@ class Sequence {
     ScratchFolder folder_;
 };
 
-TEST_CASE("render --frames: frames equal single renders, and existing ones are skipped", "[cli][frames]") {
+TEST_CASE("render --frames: frames equal single renders, and existing frames are skipped", "[cli][frames]") {
     const Sequence sequence;
     REQUIRE(sequence.rendered_frames({"--frames", "1:4"}) == 4);
     CHECK(sequence.folder().entries() == 5);
@@ -284,7 +284,7 @@ TEST_CASE("FrameRecord: keeps frames that other processes wrote meanwhile, and t
     }
 }
 
-TEST_CASE("render --frames: several processes share a folder, and its record has all frames", "[cli][frames]") {
+TEST_CASE("render --frames: several processes share a folder, and the record in it has all frames", "[cli][frames]") {
     const Sequence sequence;
     std::vector<std::thread> processes;
     std::array<int, 3> codes{};
@@ -326,13 +326,13 @@ TEST_CASE("render --frames: refuses invalid sequences before rendering", "[cli][
     for (const char* option : {"--report", "--cost", "--mask"})
         refused({"--frames", "1:4", "--turn", "90", option, "-"},
                 {std::string(option) + " -: --frames writes several files"});
-    const ScratchFolder other;
-    write_whole_file(other / "t-frames.json", "{\"kind\": \"mine\"}");
+    const ScratchFolder other_folder;
+    write_whole_file(other_folder / "t-frames.json", "{\"kind\": \"mine\"}");
     const RunOutcome run =
-        run_raya({"render", scene_file("centre"), "-o", other / "t.ppm", "--frames", "1:4", "--turn", "90"});
+        run_raya({"render", scene_file("centre"), "-o", other_folder / "t.ppm", "--frames", "1:4", "--turn", "90"});
     CHECK(run.code == 2);
     CHECK_THAT(run.err, Catch::Contains("not a record of frames"));
-    CHECK(other.entries() == 1);
+    CHECK(other_folder.entries() == 1);
 }
 
 }  // namespace

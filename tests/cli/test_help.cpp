@@ -58,7 +58,7 @@ TEST_CASE("help COMMAND: prints the same as COMMAND --help", "[cli][help]") {
     CHECK_THAT(help_of({"help", "page"}), !Catch::Contains("script"));  // scripts are an implementation detail
 }
 
-TEST_CASE("help: refuses unknown commands, with the closest name", "[cli][help]") {
+TEST_CASE("help: the error for an unknown command names the closest command, or the help to read", "[cli][help]") {
     const ScratchFolder outputs;
     check_refused(outputs, {"help", "rendr"}, 2,
                   {"raya: help: no command rendr (did you mean render?); commands: render"});
@@ -84,7 +84,7 @@ TEST_CASE("help: is as wide as the terminal", "[cli][help]") {
     CHECK(output_on_terminal({"help", "verify"}, 0) == help_of({"help", "verify"}));
 }
 
-TEST_CASE("help: no command has a line longer than the width", "[cli][help]") {
+TEST_CASE("help: no line of several words is longer than the width", "[cli][help]") {
     for_each_command(text_of_all_commands(), [](const CommandText& command, const std::string& path) {
         for (const std::size_t width : {40u, 60u, 80u, 120u})
             for (const std::string& line : lines_of(help_text(command, path, width))) {
@@ -108,9 +108,9 @@ TEST_CASE("help: every option is below a heading; \"General options\" is the las
             if (option.group == groups.back()) general.push_back(option.names.back());
         for (const char* name : {"--help", "--quiet", "--verbose"})
             CHECK(std::count(general.begin(), general.end(), name) == 1);
-        const bool short_help = std::count(general.begin(), general.end(), "--help-all") == 1;
-        CHECK(short_help == !command.short_help.empty());
-        CHECK(general.size() == (path == "raya" || short_help ? 4 : 3));  // the fourth: --version or --help-all
+        const bool has_short_help = std::count(general.begin(), general.end(), "--help-all") == 1;
+        CHECK(has_short_help == !command.short_help.empty());
+        CHECK(general.size() == (path == "raya" || has_short_help ? 4 : 3));  // the fourth: --version or --help-all
     });
 }
 
@@ -133,7 +133,7 @@ TEST_CASE("help: commands with more than 25 options have a short help of at most
     });
 }
 
-TEST_CASE("help render: lists the common options first, in the order of use", "[cli][help]") {
+TEST_CASE("help render: the short help begins with these options in this order", "[cli][help]") {
     const CommandText program = text_of_all_commands();
     const auto& render = *std::find_if(program.commands.begin(), program.commands.end(),
                                        [](const CommandText& command) { return command.name == "render"; });

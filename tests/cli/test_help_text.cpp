@@ -21,7 +21,7 @@ OptionText make_option(std::vector<std::string> names, std::string value, std::s
 CommandText small_command() {
     CommandText command;
     command.name = "draw";
-    command.summary = "Draw one thing after another, each of them as it was said to be";
+    command.summary = "Draw one object after another, in the order in which they occur";
     command.examples = {
         {"raya draw scene.nff --output picture.png --colour red", "A red picture of a scene, in a file"},
         {"raya draw x", "Nothing"}};
@@ -30,7 +30,7 @@ CommandText small_command() {
     command.options = {
         make_option({"-o", "--output"}, "FILE", "Where it goes to; a long text that is about files", "Files"),
         make_option({"--colour"}, "red|green", "What colour it has", "Looks"),
-        make_option({"--a-name-as-long-as-this"}, "VALUE", "What stands below its name", "Looks"),
+        make_option({"--a-name-as-long-as-this"}, "VALUE", "Its text is below its name", "Looks"),
         make_option({"-q", "--quiet"}, "", "Say nothing", "Common options")};
     command.options[0].required = true;
     command.options[1].default_value = "red";
@@ -41,7 +41,7 @@ CommandText small_command() {
 TEST_CASE("help_text: usage first, then sections below headings", "[manual]") {
     CHECK(help_text(small_command(), "raya draw", 80) == R"(Usage: raya draw SCENE -o FILE [OPTIONS]
 
-Draw one thing after another, each of them as it was said to be
+Draw one object after another, in the order in which they occur
 
 Examples:
   raya draw scene.nff --output picture.png --colour red
@@ -58,7 +58,7 @@ Files:
 Looks:
   --colour red|green  What colour it has; default: red
   --a-name-as-long-as-this VALUE
-                      What stands below its name
+                      Its text is below its name
 
 Common options:
   -q, --quiet         Say nothing
@@ -74,8 +74,8 @@ TEST_CASE("help_text: in a narrow terminal texts are below names, and example li
           "[manual]") {
     CHECK(help_text(small_command(), "raya draw", 40) == R"(Usage: raya draw SCENE -o FILE [OPTIONS]
 
-Draw one thing after another, each of
-them as it was said to be
+Draw one object after another, in the
+order in which they occur
 
 Examples:
   raya draw scene.nff --output \
@@ -98,7 +98,7 @@ Looks:
   --colour red|green
       What colour it has; default: red
   --a-name-as-long-as-this VALUE
-      What stands below its name
+      Its text is below its name
 
 Common options:
   -q, --quiet
@@ -126,12 +126,11 @@ TEST_CASE("help_text: a command with subcommands lists them", "[manual]") {
     program.name = "raya";
     program.commands = {small_command()};
     CHECK(help_text(program, "raya", 80) ==
-          "Usage: raya COMMAND [OPTIONS]\n\n\n\nCommands:\n  draw  Draw one thing after another, each of them as it "
-          "was said to "
-          "be\n");
+          "Usage: raya COMMAND [OPTIONS]\n\n\n\nCommands:\n  draw  Draw one object after another, in the order in "
+          "which they occur\n");
 }
 
-TEST_CASE("short_form: the options of the short help in its order, and the name of --help-all", "[manual]") {
+TEST_CASE("short_form: has the options of the short help in their order, and names --help-all", "[manual]") {
     CommandText command = small_command();
     CHECK(help_text(short_form(command, "raya draw"), "raya draw", 80) == help_text(command, "raya draw", 80));
     command.short_help = {{"--colour", "First", "Its colour"}, {"--output", "Second", ""}};

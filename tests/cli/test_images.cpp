@@ -14,7 +14,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("render: the same render writes the same bytes", "[cli]") {
+TEST_CASE("render: two renders with equal options write equal bytes", "[cli]") {
     const std::string extension = GENERATE(".png", ".exr", ".pfm", ".ppm", ".tif", ".jpg");
     const std::string cost_extension = extension == ".exr" ? ".exr" : ".pfm";
     CAPTURE(extension, cost_extension);
@@ -53,7 +53,7 @@ TEST_CASE("render: PNG and EXR have the settings as attributes", "[cli]") {
     }
 }
 
-TEST_CASE("render: no file contains a date, host or program name", "[cli]") {
+TEST_CASE("render: no file contains a date, or the name of a host or program", "[cli]") {
     const std::string extension = GENERATE(".png", ".exr", ".pfm", ".tif", ".jpg");
     CAPTURE(extension);
     std::array<char, 256> host{};
@@ -68,7 +68,7 @@ TEST_CASE("render: no file contains a date, host or program name", "[cli]") {
     }
 }
 
-TEST_CASE("render: scales a scene that exceeds the range of the format, and reports the exponent", "[cli]") {
+TEST_CASE("render: scales a scene that exceeds the range of the format, and reports the scale's exponent", "[cli]") {
     const ScratchFolder folder;
     Scene scene = read_nff(scene_file("mirrors"));
     scene.planes.clear();

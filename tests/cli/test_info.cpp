@@ -180,7 +180,7 @@ TEST_CASE("info: counts the objects of the scene, and lists skipped lines", "[cl
     CHECK(info["extent"]["cube_half_side"] == 1e6);
 }
 
-TEST_CASE("info: shows that a scene does not fit a format, with the message of a render", "[cli]") {
+TEST_CASE("info: shows that a scene does not fit a format, and the message of a render", "[cli]") {
     const ScratchFolder folder;
     const std::string file = folder / "far.nff";
     write_whole_file(file, "v\nfrom 0 -1e6 0\nat 0 0 0\nup 0 0 1\nangle 1\nhither 1\nresolution 64 64\ns 9 9 9 1e-5\n");

@@ -1,4 +1,4 @@
-// Kernel binaries next to the program: raya uses them only if they match and no other user can write them.
+// Kernel binaries next to the program: raya uses those for the same source and options that no other user can write.
 #include <sys/stat.h>
 
 #include <filesystem>

@@ -26,7 +26,7 @@ TEST_CASE("stdout: a lost line causes exit code 2", "[cli]") {
     CHECK(file_contents(errors).starts_with("raya: cannot write to stdout: No space left on device"));
 }
 
-TEST_CASE("stderr: if it is closed or full, the exit code is the same", "[cli]") {
+TEST_CASE("stderr: if it is closed or full, the exit code does not change", "[cli]") {
     for (const char* redirection : {"2>/dev/full", "2>&-"}) {
         CAPTURE(redirection);
         CHECK(code_of("rendr", redirection) == 2);

@@ -7,7 +7,7 @@
 namespace raya {
 namespace {
 
-/// Returns the modelled cycles: 6 per division, 8 per square root, 3 per branch, otherwise 1 (host/model/budget.hpp).
+/// Returns the modelled cycles (host/model/budget.hpp): division 6, square root 8, branch 3, other operations 1.
 std::uint64_t cycles_of(const Document& budget) {
     return budget["multiply_accumulates"].get<std::uint64_t>() + 6 * budget["divisions"].get<std::uint64_t>() +
            8 * budget["roots"].get<std::uint64_t>() + budget["moves"].get<std::uint64_t>() +
@@ -37,7 +37,7 @@ TEST_CASE("report: modelled times follow from counted cycles and words", "[cli]"
     INFO(modelled_ms.dump());
     const bool filter = antialias == "filter", supersample = antialias == "supersample";
     const double max_pixels = 3 * 12;  // number of pixels of the busiest PE: 3 of 20 columns, 12 rows
-    const double setup = 1.375, ms_per_word = (140 - setup) / 196'608;  // of a transfer between host and PEs
+    const double setup_ms = 1.375, ms_per_word = (140 - setup_ms) / 196'608;  // of a transfer between host and PEs
     const double ms_per_cycle = 1e-4 * 7 / 1.0752;
     CHECK(modelled_ms["filter"] == approximately(filter ? 42 * ms_per_cycle * max_pixels : 0));
     CHECK(modelled_ms["compare"] == approximately(supersample ? 121 * ms_per_cycle * max_pixels : 0));
@@ -46,11 +46,11 @@ TEST_CASE("report: modelled times follow from counted cycles and words", "[cli]"
     CHECK(modelled_ms["compute"] == approximately(ms_per_cycle * max_load + modelled_ms["filter"].get<double>() +
                                                   modelled_ms["compare"].get<double>()));
     CHECK(modelled_ms["objects"] ==
-          approximately(setup + ms_per_word * communication["broadcast_words"].get<double>()));
-    CHECK(modelled_ms["image"] == approximately(setup + ms_per_word * communication["gather_words"].get<double>()));
+          approximately(setup_ms + ms_per_word * communication["broadcast_words"].get<double>()));
+    CHECK(modelled_ms["image"] == approximately(setup_ms + ms_per_word * communication["gather_words"].get<double>()));
     CHECK(modelled_ms["display"] == approximately(1130 * 20 * 12 / 65'536.0));
     CHECK(modelled_ms["communication"] ==
-          approximately((antialias != "none" ? setup : 0) + 0.1845 * communication["rotations"].get<double>() +
+          approximately((antialias != "none" ? setup_ms : 0) + 0.1845 * communication["rotations"].get<double>() +
                         communication["rotation_words"].get<double>() / 8 / 6e3));
     CHECK((modelled_ms["communication"] > 0) == (antialias != "none"));
     CHECK(modelled_ms["total"] ==

@@ -6,7 +6,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("nearest_name: returns the name with the minimum edit distance, or the name that begins with the text",
+TEST_CASE("nearest_name: returns the name with the minimum edit distance, or one that begins with the misspelling",
           "[parse]") {
     const std::vector<std::string> names = {"render", "devices", "generate", "bench", "study", "verify"};
     CHECK(nearest_name("rendr", names) == "render");

@@ -99,7 +99,7 @@ TEST_CASE("bench --page: has rates, comparison and roofline", "[cli][page]") {
     CHECK(Document::parse(file_contents(folder / "r.json"))["compared"]["rows"].size() == 1);
 }
 
-TEST_CASE("page: refuses files that are not reports with the reason, and writes no page", "[cli][page]") {
+TEST_CASE("page: the error for a file that is not a report names the reason, and raya writes no page", "[cli][page]") {
     const ScratchFolder folder, inputs;
     REQUIRE(run_raya(render_24x16(inputs, {"--report", inputs / "r.json"})).code == 0);
     const Document valid_report = Document::parse(file_contents(inputs / "r.json"));

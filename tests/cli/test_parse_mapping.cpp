@@ -48,7 +48,7 @@ TEST_CASE("parse_mapping: inverts mapping_text", "[parse]") {
     }
 }
 
-TEST_CASE("parse_mapping: refuses other texts with the valid form", "[parse]") {
+TEST_CASE("parse_mapping: refuses other texts and names the valid form", "[parse]") {
     const auto refuses = [](const std::string& text, const std::string& form) {
         CAPTURE(text);
         CHECK_THROWS_AS(parse_mapping(text), UserError);
@@ -64,7 +64,7 @@ TEST_CASE("parse_mapping: refuses other texts with the valid form", "[parse]") {
     refuses("blocks:3", "must be blocks, without a parameter");
     for (const std::string rest :
          {"", ":", ":4", ":4x", ":x4", ":0x4", ":4x0", ":4x4x4", ":16385x1", ":4X4", ":-4x4"}) {
-        refuses("grid" + rest, "grid:AxB with A rows of B PEs, each 1..16384");
+        refuses("grid" + rest, "grid:AxB with A rows of B PEs, A and B 1..16384");
         refuses("tiles" + rest, "tiles:WxH with the sides of a tile in pixels, each 1..16384");
     }
     for (const char* text : {"random:", "random:x", "random:-1", "random:4294967296"})
@@ -73,7 +73,7 @@ TEST_CASE("parse_mapping: refuses other texts with the valid form", "[parse]") {
     CHECK_THROWS_AS(parse_fold(""), UserError);
 }
 
-TEST_CASE("parse_dynamic: reads dynamic and hybrid, and refuses other texts with the valid form", "[parse]") {
+TEST_CASE("parse_dynamic: reads dynamic and hybrid, refuses other texts and names the valid form", "[parse]") {
     CHECK(parse_dynamic("dynamic:4") == DynamicPlan{4, 0, 0});
     CHECK(parse_dynamic("dynamic:1,2000") == DynamicPlan{1, 2'000, 0});
     CHECK(parse_dynamic("dynamic:268435456,1000000000") == DynamicPlan{268'435'456, 1'000'000'000, 0});
@@ -83,7 +83,7 @@ TEST_CASE("parse_dynamic: reads dynamic and hybrid, and refuses other texts with
     CHECK(parse_dynamic("hybrid:8,50,0") == DynamicPlan{8, 50, 0});
     CHECK(parse_dynamic("dynamic:8,50,7") == DynamicPlan{8, 50, 0, 7});
     CHECK(parse_dynamic("hybrid:8,50,0.25,7") == DynamicPlan{8, 50, 0.25, 7});
-    CHECK(parse_dynamic("dynamic:8", {1, 2, 0, 3}) == DynamicPlan{8, 2, 0, 3});  // missing numbers are the defaults
+    CHECK(parse_dynamic("dynamic:8", {1, 2, 0, 3}) == DynamicPlan{8, 2, 0, 3});  // missing numbers: from the argument
     CHECK(parse_dynamic("hybrid:8,0", {1, 2, 0, 3}) == DynamicPlan{8, 0, 0.5, 3});
     constexpr std::uint64_t kSeed = 7;
     SplitMix random(kSeed);

@@ -21,7 +21,7 @@ void check_render_options(const std::vector<OptionsRow>& rows) {
         check_refused(outputs, render_into(outputs, scene_file("planes"), row.options), 2, row.message);
 }
 
-TEST_CASE("render: refuses an unknown name with the known ones", "[cli]") {
+TEST_CASE("render: the error for an unknown name lists the known names", "[cli]") {
     check_render_options({{{"--machine", "sparc"}, {"--machine sparc", "spa, grande"}},
                           {{"--mapping", "spiral"}, {"--mapping spiral", "cyclic, cyclic:p, column", "random:seed"}},
                           {{"--fold", "diagonal"}, {"--fold diagonal", "cyclic or block"}},
@@ -31,7 +31,7 @@ TEST_CASE("render: refuses an unknown name with the known ones", "[cli]") {
                           {{"--sampling", "random"}, {"--sampling random", "centres or corners"}}});
 }
 
-TEST_CASE("render: refuses a number outside its range with the range", "[cli]") {
+TEST_CASE("render: the error for a number outside its range names the range", "[cli]") {
     check_render_options({{{"--lanes", "3"}, {"--lanes 3", "1, 4, 8 or 16"}},
                           {{"--lanes", "0"}, {"--lanes", "1 or more"}},
                           {{"--group", "1025"}, {"--group 1025", "1..1024"}},
@@ -61,7 +61,7 @@ TEST_CASE("render --mapping: refuses wrong syntax, and conflicts with image, PEs
            "use cyclic, column, rows, blocks, grid or tiles"}}});
 }
 
-TEST_CASE("render: refuses a very large number with the range", "[cli]") {
+TEST_CASE("render: the error for a very large number names the range", "[cli]") {
     check_render_options({{{"--lanes", "4000000000"}, {"--lanes 4000000000", "1, 4, 8 or 16"}},
                           {{"--group", "4000000000"}, {"--group 4000000000", "1..1024"}},
                           {{"--bounces", "4000000000"}, {"--bounces 4000000000", "0..31"}}});

@@ -10,7 +10,7 @@ namespace {
 const std::string kView = "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 1\nresolution 8 8\n";
 const std::string kSphere = "s 0 0 0 1\n";
 
-TEST_CASE("render: refuses an invalid scene with file, line and reason", "[cli]") {
+TEST_CASE("render: the error for an invalid scene names file, line and reason", "[cli]") {
     struct Row {
         std::string text;
         std::string message;  // "LINE: reason"
@@ -46,7 +46,7 @@ TEST_CASE("render, bench: refuse a scene file that they cannot read", "[cli]") {
     check_refused(outputs, {"bench", missing}, 2, {missing, "cannot read the scene"});
 }
 
-TEST_CASE("render: refuses a scene that does not fit a PE, with both sizes and the remedy", "[cli]") {
+TEST_CASE("render: the error for a scene that does not fit a PE has both sizes and the remedy", "[cli]") {
     const ScratchFolder scenes, outputs;
     const std::string scene = scenes / "balls4.nff";
     REQUIRE(run_raya({"generate", "balls", "--level", "4", "-o", scene}).code == 0);

@@ -61,7 +61,7 @@ TEST_CASE("study: writes figures, tables, JSON and a document", "[cli]") {
 }
 
 // raya looks for the SimGrid program in its own folder, so a copy of raya in another folder does not find it.
-TEST_CASE("study simgrid: without SimGrid the error names the package to install, and study all skips it", "[cli]") {
+TEST_CASE("study simgrid: without SimGrid the error names the package, and study all skips this study", "[cli]") {
     const ScratchFolder outputs, copy_folder;
     const RunOptions copy_options{.program = copy_folder / "raya"};
     std::filesystem::copy_file(RAYA_PROGRAM, copy_options.program);

@@ -1,4 +1,4 @@
-// render --exposure, --gamma, --tone: the options change the codes of 8-bit images. The report and the image file
+// render --exposure, --gamma, --tone: the options change the values in 8-bit images. The report and the image file
 // contain the options.
 #include <OpenImageIO/imageio.h>
 
@@ -8,7 +8,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("render --tone: changes the codes, not the hash; report and image contain the options", "[cli]") {
+TEST_CASE("render --tone: changes the 8-bit values, not the hash; report and image contain the options", "[cli]") {
     const Arguments tone = {"--exposure", "-1.5", "--gamma", "2.2", "--tone", "reinhard"};
     const RenderFiles default_render("planes", {}, ".ppm");
     CHECK(default_render.report()["image"]["codes"] ==

@@ -22,7 +22,7 @@ void check_refused_on(const std::string& machine, const std::vector<TorusRow>& r
     }
 }
 
-TEST_CASE("render --machine torus: refuses options of rings, with reason and remedy", "[cli]") {
+TEST_CASE("render --machine torus: the error for options of rings names reason and remedy", "[cli]") {
     const std::string suffix = " with --machine torus";
     check_refused_on(
         "torus", {{{"--mapping", "rows"}, {"--mapping rows" + suffix, "voxels of the scene, not pixels", "--voxels"}},
@@ -37,7 +37,7 @@ TEST_CASE("render --machine torus: refuses options of rings, with reason and rem
                   {{"--cost", "c.exr"}, {"--cost c.exr" + suffix, "nodes work for a pixel", "choose a ring"}}});
 }
 
-TEST_CASE("render --machine spa: refuses options of the torus, with reason and remedy", "[cli]") {
+TEST_CASE("render --machine spa: the error for options of the torus names the remedy", "[cli]") {
     const std::string suffix = " with --machine spa", remedy = "choose --machine torus";
     check_refused_on("spa", {{{"--nodes", "4x4x4"}, {"--nodes 4x4x4" + suffix, "ring", "--pes"}},
                              {{"--voxels", "4x4x4"}, {"--voxels 4x4x4" + suffix, remedy}},

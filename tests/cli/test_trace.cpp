@@ -120,7 +120,7 @@ TEST_CASE("render --trace: works with anti-aliasing, gzip and --profile", "[cli]
     }
 }
 
-TEST_CASE("render --trace --machine torus: has nodes, packets and links", "[cli]") {
+TEST_CASE("render --trace --machine torus: the trace has nodes, packets and links", "[cli]") {
     const TracedRun traced =
         run_with_trace("centre", {"--machine", "torus", "--nodes", "2x2x2", "--trace-pes", "5", "--profile"});
     check_trace(traced);

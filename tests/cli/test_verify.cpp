@@ -69,7 +69,7 @@ TEST_CASE("verify --kernel-dir: a wrong count causes exit code 4, and the remedy
                Catch::StartsWith("run raya verify without --kernel-dir") && !Catch::Contains("driver"));
 }
 
-TEST_CASE("verify --brief: traces few rays, and reduced formats without the grid", "[cli][verify]") {
+TEST_CASE("verify --brief: traces few rays, in reduced formats only without the grid", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string file = scratch / "report.json";
     const RunOutcome run = run_raya({"verify", "--brief", "--only", "geometry", "--report", file});

@@ -68,7 +68,7 @@ TEST_CASE("change_view: replaces the given values of the scene exactly, and no o
     }
 }
 
-TEST_CASE("change_view: refuses the values that the scene reader refuses, with the option's name", "[cli]") {
+TEST_CASE("change_view: refuses the values that the scene reader refuses, and names the option", "[cli]") {
     const auto refusal = [](const ViewOptions& v) -> std::string {
         Scene scene = read_nff(scene_file("centre"));
         const Scene before = scene;
@@ -111,7 +111,7 @@ Arguments arguments_of(const ViewOptions& v) {
     return arguments;
 }
 
-TEST_CASE("render: view options, and the view of the report, make the image of a scene with these values", "[cli]") {
+TEST_CASE("render: view options, or the view of a report, give the image of a scene with the same values", "[cli]") {
     const ScratchFolder folder;
     const Scene scene = read_nff(scene_file("centre"));
     SplitMix random(6);

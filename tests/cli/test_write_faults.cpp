@@ -75,7 +75,7 @@ Contents files_of(const fs::path& folder) {
     return files;
 }
 
-/// Returns true if the file is complete. A file that contains times must be well-formed, others as in `expected`.
+/// Returns true if the file is complete. A file that contains times must be well-formed; others must equal `expected`.
 bool is_complete(const std::string& name, const std::string& content, const Contents& expected) {
     if (name.ends_with(".rst")) return content.starts_with("raya");
     if (!expected.contains(name)) return false;
@@ -134,7 +134,7 @@ void check_fault(const std::string& fault, const FaultRun& faulty, const FaultRu
     }
 }
 
-TEST_CASE("every command that writes: repeats a call that failed once, or keeps the old file", "[cli]") {
+TEST_CASE("every command that writes: repeats interrupted and short calls; other errors leave whole files", "[cli]") {
     const ScratchFolder folder;
     const std::string report = folder / "x.json";
     REQUIRE(run_raya({"render", scene_file("centre"), "--size", "16", "--lanes", "4", "-o", folder / "x.ppm",

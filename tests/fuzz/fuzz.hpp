@@ -42,7 +42,7 @@ inline void check_refusal_with_line(std::string_view message, std::string_view f
 /// A temporary folder in /dev/shm, for readers that take a file name.
 class ScratchFolder {
   public:
-    ScratchFolder() : folder_(prefix_in_memory()) {}
+    ScratchFolder() : folder_(set_tmpdir_and_get_prefix()) {}
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
     /// Writes the file and returns its path.
     std::string write(const std::string& name, std::string_view bytes) const {
@@ -53,8 +53,8 @@ class ScratchFolder {
     }
 
   private:
-    // Returns the prefix of the folder's name, after TMPDIR is set to a file system in memory.
-    static const char* prefix_in_memory() {
+    // Sets TMPDIR, unless it is set, to a file system in memory. Returns the prefix of the folder's name.
+    static const char* set_tmpdir_and_get_prefix() {
         ::setenv("TMPDIR", "/dev/shm", 0);
         return "raya-fuzz";
     }

@@ -1,5 +1,5 @@
-// Fuzz target for checkpoints as `raya render --resume` reads them: the reader must either return a checkpoint of this
-// render, which must not change if written and read again, or throw an error.
+// Fuzz target for checkpoints as `raya render --resume` reads them. The reader must throw an error or return a
+// checkpoint of this render. If the checkpoint is written and read again, it must not change.
 #include "host/base/log.hpp"
 #include "host/cli/checkpoint_options.hpp"
 #include "host/error.hpp"

@@ -1,5 +1,5 @@
-// Fuzz target for frame records as `raya render --frames` reads them: the reader must either return a record, which
-// must not change if written and read again, or throw an error.
+// Fuzz target for frame records as `raya render --frames` reads them. The reader must throw an error or return a
+// record. If the record is written and read again, it must not change.
 #include "host/base/whole_file.hpp"
 #include "host/cli/frame_record.hpp"
 #include "host/error.hpp"

@@ -1,5 +1,5 @@
-// Fuzz target for NFF: the reader must either return a scene, which must not change if written and read again, or throw
-// an error.
+// Fuzz target for NFF. The reader must throw an error or return a scene. If the scene is written and read again, it
+// must not change.
 #include <algorithm>
 #include <vector>
 

@@ -43,7 +43,7 @@ inline std::size_t store(const std::string& text, std::uint8_t* data, std::size_
     return size;
 }
 
-/// Mutates tokens and lines of a text: removes, repeats, swaps and replaces them. `keywords`: keywords of the
+/// Mutates tokens or lines of a text: removes, inserts, copies, cuts or replaces them. `keywords`: keywords of the
 /// text's format, used as replacements.
 void damage_tokens(std::string& text, const std::vector<std::string>& keywords, Random& random);
 

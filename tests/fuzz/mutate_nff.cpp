@@ -1,4 +1,4 @@
-// Mutates NFF scenes. A grammar generates valid scenes, which are then mutated.
+// Mutates NFF scenes: the given text, or a valid scene that a grammar generates.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

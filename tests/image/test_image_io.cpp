@@ -126,7 +126,7 @@ TEST_CASE("JPEG: differs from PNG by at most 4 codes, without chroma subsampling
     CHECK(sampling_factors(contents(folder / "a.jpg")) == "\x11\x11\x11");
     const Image png = read_image(folder / "a.png"), jpeg = read_image(folder / "a.jpg");
     REQUIRE(jpeg.rgb.size() == png.rgb.size());
-    double max_difference = 0;  // codes
+    double max_difference = 0;  // in codes
     for (std::size_t i = 0; i < png.rgb.size(); ++i)
         max_difference = std::max(max_difference, std::abs(double(srgb_code(jpeg.rgb[i])) - srgb_code(png.rgb[i])));
     CHECK(max_difference > 0);  // JPEG is lossy
@@ -175,8 +175,9 @@ TEST_CASE("8-bit files: store the codes of the tone; PNG also stores the gamma",
         write_image(folder / name, image, {}, tone);
         CHECK(pixel_hash(read_image(folder / name)) == pixel_hash(image));
     }
-    for (const char* name : {"a.png", "a.ppm", "a.tif", "a.tiff", "a.JPG", "a.jpeg", "-"}) CHECK(stores_codes(name));
-    for (const char* name : {"a.exr", "a.pfm"}) CHECK_FALSE(stores_codes(name));
+    for (const char* name : {"a.png", "a.ppm", "a.tif", "a.tiff", "a.JPG", "a.jpeg", "-"})
+        CHECK(stores_8bit_codes(name));
+    for (const char* name : {"a.exr", "a.pfm"}) CHECK_FALSE(stores_8bit_codes(name));
 }
 
 TEST_CASE("PNG, EXR: row 0 is the top row", "[image_io]") {
@@ -212,7 +213,7 @@ TEST_CASE("srgb_code: values outside 0..1 and NaN are clamped to 0 or 255", "[im
     CHECK(srgb_code(std::numeric_limits<float>::quiet_NaN()) == 0);
 }
 
-TEST_CASE("srgb_code: no float is so close to a border between codes that the error of pow could matter",
+TEST_CASE("srgb_code: no float is so close to a border between codes that the error of pow() could matter",
           "[image_io]") {
     for (int code = 0; code < 255; ++code) {
         const double encoded = (code + 0.5) / 255;

@@ -47,7 +47,7 @@ TEST_CASE("preview_of: a pixel is the mean of its clamped source pixels", "[imag
         }
 }
 
-TEST_CASE("as_displayed: the default tone gives the result the codes that the given tone gives the image", "[image]") {
+TEST_CASE("as_displayed: the result in the default tone has the codes of the image in the given tone", "[image]") {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> light(-0.5f, 4);
     Image image = uniform_image(40, 30, 0);

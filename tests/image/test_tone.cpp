@@ -79,7 +79,7 @@ TEST_CASE("ToneCodes: one more stop has the same effect as twice the light", "[t
     }
 }
 
-TEST_CASE("ToneCodes: codes of greys are monotonic and grey", "[tone]") {
+TEST_CASE("ToneCodes: a grey has three equal codes, which do not decrease with its brightness", "[tone]") {
     for (const Tone& tone : tone_combinations()) {
         const ToneCodes codes(tone);
         int previous_code = 0;
@@ -97,7 +97,7 @@ TEST_CASE("ToneCodes: codes of greys are monotonic and grey", "[tone]") {
     }
 }
 
-TEST_CASE("ToneCodes: Reinhard's curve preserves differences of bright greys, and hues", "[tone]") {
+TEST_CASE("ToneCodes: Reinhard's curve keeps different bright greys different, and preserves hues", "[tone]") {
     const ToneCodes clip{Tone{}}, reinhard{Tone{0, ToneCurve::kReinhard, {}}};
     const std::array<float, 3> bright = {2, 2, 2}, brighter = {4, 4, 4};
     CHECK(clip(bright.data()) == clip(brighter.data()));
@@ -121,7 +121,7 @@ TEST_CASE("ToneCodes: an infinity is converted like the largest float, NaN like 
     }
 }
 
-TEST_CASE("tone_attributes: only values that are not the default", "[tone]") {
+TEST_CASE("tone_attributes: returns only values other than the defaults", "[tone]") {
     CHECK(tone_attributes({}).empty());
     const ImageAttributes expected = {{"exposure", "-1.5"}, {"tone", "reinhard"}, {"gamma", "2.2"}};
     CHECK(tone_attributes({-1.5, ToneCurve::kReinhard, 2.2}) == expected);

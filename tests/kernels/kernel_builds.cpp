@@ -46,25 +46,25 @@ KernelOptions with_accel(KernelOptions options, std::uint32_t accel) {
     return options;
 }
 
-// Returns builds of the kernels that compute in `all.format`: for each accelerator, for all kinds of objects and for
-// spheres only, and for devices without exact arithmetic. `all` has all kinds of objects.
-std::vector<Build> builds_in(const std::string& format, const KernelOptions& all) {
-    KernelOptions spheres = all, single = all;
+// Returns builds of the kernels that compute in a number format: for all kinds of objects, for spheres only, with each
+// accelerator, and for devices without exact arithmetic. `general`: the options for all kinds of objects.
+std::vector<Build> builds_in(const std::string& format, const KernelOptions& general) {
+    KernelOptions spheres = general, single_item = general;
     spheres.polygons = spheres.patches = spheres.cones = false;
-    single.group_size = 1;
-    single.words_local = false;
-    KernelOptions refined = single;
+    single_item.group_size = 1;
+    single_item.words_local = false;
+    KernelOptions refined = single_item;
     refined.exact_divide = refined.exact_fma = false;
     std::vector<Build> builds = {
-        {"ring/trace.cl", format, all},        {"ring/trace.cl", format + " spheres", spheres},
-        {"ring/filter.cl", format, all},       {"ring/contrast.cl", format, all},
-        {"torus/inject.cl", format, all},      {"torus/trace_voxel.cl", format, all},
-        {"torus/compose.cl", format, single},  {"number/operations.cl", format, all},
-        {"checks/numbers.cl", format, single}, {"checks/numbers.cl", format + " refined", refined},
+        {"ring/trace.cl", format, general},         {"ring/trace.cl", format + " spheres", spheres},
+        {"ring/filter.cl", format, general},        {"ring/contrast.cl", format, general},
+        {"torus/inject.cl", format, general},       {"torus/trace_voxel.cl", format, general},
+        {"torus/compose.cl", format, single_item},  {"number/operations.cl", format, general},
+        {"checks/numbers.cl", format, single_item}, {"checks/numbers.cl", format + " refined", refined},
     };
     for (const auto& [suffix, accel] : kAccelerators) {
-        builds.push_back({"ring/trace.cl", format + suffix, with_accel(all, accel)});
-        builds.push_back({"checks/hits.cl", format + suffix, with_accel(single, accel)});
+        builds.push_back({"ring/trace.cl", format + suffix, with_accel(general, accel)});
+        builds.push_back({"checks/hits.cl", format + suffix, with_accel(single_item, accel)});
     }
     return builds;
 }

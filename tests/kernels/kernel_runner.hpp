@@ -34,7 +34,7 @@ struct TestBuild {
     }
 };
 
-/// All builds in fp32. Tests compare the results of each build with those of the first.
+/// Builds in fp32 for each number of lanes, with and without optimisation. Tests compare all results with the first.
 inline const std::vector<TestBuild>& test_builds() {
     static const std::vector<TestBuild> all = {{1, true},  {4, true},  {8, true},  {16, true},
                                                {1, false}, {4, false}, {8, false}, {16, false}};

@@ -95,7 +95,7 @@ TEST_CASE("lanes, group sizes and bounces out of range are refused", "[ring]") {
 TEST_CASE("default lanes and group size depend on the device", "[ring]") {
     CHECK(default_lanes(device_with("cpu", 16, 4096)) == 16);
     CHECK(default_lanes(device_with("cpu", 8, 4096)) == 8);
-    CHECK(default_lanes(device_with("cpu", 2, 4096)) == 4);  // more lanes than the vector width: more work per branch
+    CHECK(default_lanes(device_with("cpu", 2, 4096)) == 4);  // more lanes than the vector width do more work per branch
     CHECK(default_lanes(device_with("gpu", 1, 1024)) == 1);
     CHECK(default_group_size(device_with("cpu", 16, 4096)) == 1);
     CHECK(default_group_size(device_with("gpu", 1, 1024)) == 128);
@@ -104,7 +104,7 @@ TEST_CASE("default lanes and group size depend on the device", "[ring]") {
 }
 
 TEST_CASE(
-    "on llvmpipe, which vectorises over work-items, the defaults are one lane and 8 work-items, 1 for torus nodes",
+    "on llvmpipe, which vectorises over work-items, the defaults are one lane and groups of 8 (torus: 1) work-items",
     "[ring]") {
     DeviceInfo llvmpipe = device_with("cpu", 1, 1024);
     llvmpipe.max_loop_iterations = 65'535;

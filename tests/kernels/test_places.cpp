@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t kPlaceRays = 4'000;
 
-constexpr double kColourLimit = 1e-7;        // rounding of the scene's words
-constexpr double kMaxPlacesGrazing = 0.002;  // fraction of rays that may graze an edge or a checker square's side
+constexpr double kColourLimit = 1e-7;        // error of rounding the scene's colours to fp32
+constexpr double kMaxPlacesGrazing = 0.002;  // maximum fraction of rays that graze an edge or a checker square's side
 
 RayResult reference_place(const Scene& scene, const reference::Ray& ray) {
     const auto hit = reference::closest_hit(scene, ray);
@@ -79,9 +79,9 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
     return agreement.grazing;
 }
 
-// Checks P+ = P + margin G and P- = P - margin G, each rounded once. The margin is 2^-20 times the largest coordinate
-// of P or of the scene.
-void check_starts(const Scene& scene, const ProbedHits& hits, const ProbedPlaces& places) {
+// Checks the origins of secondary rays: P+ = P + margin G and P- = P - margin G, each rounded once. The margin is 2^-20
+// times the largest coordinate of P or of the scene.
+void check_secondary_origins(const Scene& scene, const ProbedHits& hits, const ProbedPlaces& places) {
     const auto extent = static_cast<float>(scene_extent(scene));
     for (std::size_t i = 0; i < hits.objects.size(); ++i) {
         if (hits.objects[i] == kNoObject) continue;
@@ -119,7 +119,7 @@ TEST_CASE("hit points, normals, sides and colours agree with the reference, with
             if (is_first) {
                 const ProbedHits hits = closest_hits(runner, job, words);
                 grazing += fmt::format(" {},", check_against_reference(scene, rays, hits, places));
-                check_starts(scene, hits, places);
+                check_secondary_origins(scene, hits, places);
             }
             CHECK(places.leaving == entry->second.leaving);
             CHECK(bits(places.places) == bits(entry->second.places));

@@ -30,7 +30,7 @@ constexpr double kDirectionLimit = 2 * kPlaceLimit * 4 / 0.2;
 // product is at most 0.1.
 constexpr double kSumLimit = 100 * 0.1 * kDirectionLimit;
 constexpr double kWeightLimit = 1e-7;
-constexpr double kMaxShadesGrazing = 0.01;  // fraction of rays that graze an edge, shadow, cone tip or critical angle
+constexpr double kMaxShadesGrazing = 0.01;  // as a fraction of all rays: edges, shadows, cone tips, critical angles
 
 void append_ray(RayResult& found, const ProbedRay& ray) {
     append(found, ray.origin);
@@ -123,27 +123,27 @@ std::size_t face_count(const Scene& scene) {
     return object_numbers(scene).size() - (scene.object_count() - scene.polygons.size());
 }
 
-std::size_t at(int kind) { return static_cast<std::size_t>(kind); }
+std::size_t event(int kind) { return static_cast<std::size_t>(kind); }
 
 // Checks the event counts and the state of the ray tree after one step at `level`.
 void check_state(const Scene& scene, std::size_t faces, const ProbedSteps& steps, std::size_t ray, bool hit,
                  std::uint32_t level) {
-    const bool reflected = steps.events(ray, at(RAYA_REFLECTED)) != 0,
-               refracted = steps.events(ray, at(RAYA_REFRACTED)) != 0;
-    const std::uint32_t shadow = steps.events(ray, at(RAYA_SHADOW));
-    const std::uint32_t lit = shadow - steps.events(ray, at(RAYA_SHADOW_HITS));
+    const bool reflected = steps.events(ray, event(RAYA_REFLECTED)) != 0,
+               refracted = steps.events(ray, event(RAYA_REFRACTED)) != 0;
+    const std::uint32_t shadow = steps.events(ray, event(RAYA_SHADOW));
+    const std::uint32_t lit = shadow - steps.events(ray, event(RAYA_SHADOW_HITS));
     CHECK(steps.active(ray) == (reflected || refracted));
     CHECK(steps.level(ray) == (reflected || refracted ? level + 1 : level));
     CHECK(steps.pending_levels(ray) == (reflected && refracted ? 1u << level : 0u));
-    CHECK(steps.events(ray, at(RAYA_PRIMARY)) == 0);
-    CHECK(steps.events(ray, at(RAYA_PRIMARY_HITS)) == (hit && level == 0 ? 1u : 0u));
-    CHECK(steps.events(ray, at(RAYA_SHADED)) == (hit ? 1u : 0u));
-    CHECK(steps.events(ray, at(RAYA_LIT)) == lit);
-    CHECK(steps.events(ray, at(RAYA_HIGHLIGHTS)) <= lit);
-    CHECK(steps.events(ray, at(RAYA_SPHERE_TESTS)) == (1 + shadow) * scene.spheres.size());
-    CHECK(steps.events(ray, at(RAYA_PLANE_TESTS)) == (1 + shadow) * scene.planes.size());
-    CHECK(steps.events(ray, at(RAYA_POLYGON_TESTS)) == (1 + shadow) * faces);
-    CHECK(steps.events(ray, at(RAYA_CONE_TESTS)) == (1 + shadow) * scene.cones.size());
+    CHECK(steps.events(ray, event(RAYA_PRIMARY)) == 0);
+    CHECK(steps.events(ray, event(RAYA_PRIMARY_HITS)) == (hit && level == 0 ? 1u : 0u));
+    CHECK(steps.events(ray, event(RAYA_SHADED)) == (hit ? 1u : 0u));
+    CHECK(steps.events(ray, event(RAYA_LIT)) == lit);
+    CHECK(steps.events(ray, event(RAYA_HIGHLIGHTS)) <= lit);
+    CHECK(steps.events(ray, event(RAYA_SPHERE_TESTS)) == (1 + shadow) * scene.spheres.size());
+    CHECK(steps.events(ray, event(RAYA_PLANE_TESTS)) == (1 + shadow) * scene.planes.size());
+    CHECK(steps.events(ray, event(RAYA_POLYGON_TESTS)) == (1 + shadow) * faces);
+    CHECK(steps.events(ray, event(RAYA_CONE_TESTS)) == (1 + shadow) * scene.cones.size());
 }
 
 }  // namespace
@@ -158,7 +158,7 @@ TEST_CASE("a step of a ray tree agrees with the reference's formulas", "[kernels
     const ProbedSteps steps = shade_tree_step(runner, job_words(scene), ray_words(rays), 0);
     const auto find = [&](const reference::Ray& ray) { return reference_step(scene, ray); };
     Agreement agreement{.shift = kPlaceLimit * scene_extent(scene)};
-    std::size_t reflecting_and_refracting = 0, only_refracting = 0, totally_reflecting = 0;
+    std::size_t reflecting_and_refracting = 0, only_refracting = 0, total_reflections = 0;
     for (std::size_t i = 0; i < kShadeRays; ++i) {
         CAPTURE(kSceneSeed, kRaySeed, i, hits.objects[i]);
         const bool hit = hits.objects[i] != kNoObject;
@@ -167,15 +167,15 @@ TEST_CASE("a step of a ray tree agrees with the reference's formulas", "[kernels
         CHECK(agreement.accepts(find, rays[i], found, limits_for(found, scene_extent(scene))));
         check_state(scene, faces, steps, i, hit, 0);
         reflecting_and_refracting += steps.pending_levels(i) != 0;
-        only_refracting += steps.events(i, at(RAYA_REFRACTED)) && !steps.events(i, at(RAYA_REFLECTED));
-        totally_reflecting += hit && steps.events(i, at(RAYA_REFLECTED)) && steps.followed(i).weight > 0.9 * kWeight;
+        only_refracting += steps.events(i, event(RAYA_REFRACTED)) && !steps.events(i, event(RAYA_REFLECTED));
+        total_reflections += hit && steps.events(i, event(RAYA_REFLECTED)) && steps.followed(i).weight > 0.9 * kWeight;
     }
     fmt::print("Grazing rays that differ from the reference by more than the limits, of {} shaded rays: {}.\n",
                kShadeRays, agreement.grazing);
     CHECK(static_cast<double>(agreement.grazing) <= kMaxShadesGrazing * kShadeRays);
     CHECK(reflecting_and_refracting > kShadeRays / 50);
     CHECK(only_refracting > kShadeRays / 50);
-    CHECK(totally_reflecting > kShadeRays / 50);  // weight factor Ks + T: 0.92 or 0.95
+    CHECK(total_reflections > kShadeRays / 50);  // weight factor Ks + T: 0.92 or 0.95
 }
 
 TEST_CASE("a step at a deeper level gives the same numbers, and a step at the last level makes no rays", "[kernels]") {
@@ -189,10 +189,10 @@ TEST_CASE("a step at a deeper level gives the same numbers, and a step at the la
     CHECK(bits(deeper.numbers) == bits(first.numbers));
     for (std::size_t i = 0; i < kShadeRays; ++i) {
         CAPTURE(kSceneSeed, kRaySeed, i);
-        check_state(scene, faces, deeper, i, first.events(i, at(RAYA_SHADED)) != 0, 5);
+        check_state(scene, faces, deeper, i, first.events(i, event(RAYA_SHADED)) != 0, 5);
         CHECK_FALSE(last.active(i));
         CHECK(last.pending_levels(i) == 0);
-        CHECK(last.events(i, at(RAYA_REFLECTED)) + last.events(i, at(RAYA_REFRACTED)) == 0);
+        CHECK(last.events(i, event(RAYA_REFLECTED)) + last.events(i, event(RAYA_REFRACTED)) == 0);
         CHECK(last.sum(i) == first.sum(i));
     }
 }

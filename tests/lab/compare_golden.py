@@ -5,7 +5,7 @@
                                                 STUDY: names of studies (default: all recorded tables)
 
 Figures except measured times must agree to 1 part in 10^9, half widths of intervals to 1 in 10^6. golden_names.csv maps
-columns and cells that were renamed after the recording. Verdicts are not compared, because their rules are newer.
+columns and cells that were renamed after the recording. Verdicts are not compared, because their rules are newer than the recording.
 Prints the differences and the number of compared figures. Exit codes: 0 equal; 1 a difference.
 """
 import csv
@@ -39,12 +39,12 @@ def renamed(text):
     return RENAMED.get(text, text)
 
 
-def same(ours, theirs, limit):
+def same(current, recorded, tolerance):
     try:
-        a, b = float(ours), float(theirs)
+        a, b = float(current), float(recorded)
     except ValueError:
-        return ours == theirs
-    return a == b or math.isclose(a, b, rel_tol=limit, abs_tol=1e-12) or (math.isnan(a) and math.isnan(b))
+        return current == recorded
+    return a == b or math.isclose(a, b, rel_tol=tolerance, abs_tol=1e-12) or (math.isnan(a) and math.isnan(b))
 
 
 def is_measured(stem, column):
@@ -53,20 +53,20 @@ def is_measured(stem, column):
     return any(re.fullmatch(file, stem) and re.fullmatch(columns, column) for file, columns in MEASURED.items())
 
 
-def compare_table(ours, theirs, stem):
-    """Returns (number of figures compared, number of figures skipped, list of differences)."""
-    if ours[0] != theirs[0]:
-        return 0, 0, [f"{stem}: columns {ours[0]} instead of {theirs[0]}"]
-    if len(ours) != len(theirs):
-        return 0, 0, [f"{stem}: {len(ours) - 1} rows instead of {len(theirs) - 1}"]
+def compare_table(current, recorded, stem):
+    """Returns (number of figures compared, number of figures skipped, list of differences). stem: file name without extension."""
+    if current[0] != recorded[0]:
+        return 0, 0, [f"{stem}: columns {current[0]} instead of {recorded[0]}"]
+    if len(current) != len(recorded):
+        return 0, 0, [f"{stem}: {len(current) - 1} rows instead of {len(recorded) - 1}"]
     compared = skipped = 0
     differences = []
-    for number, (a, b) in enumerate(zip(ours[1:], theirs[1:]), 1):
-        # Rows of Embree: its reciprocals, and therefore the origins of secondary rays, depend on the processor.
+    for number, (a, b) in enumerate(zip(current[1:], recorded[1:]), 1):
+        # Skips rows of Embree: its reciprocals, and therefore the origins of secondary rays, depend on the processor.
         if any(cell.startswith("measured") or cell == "Embree" for cell in b):
             skipped += len(b)
             continue
-        for column, x, y in zip(theirs[0], a, b):
+        for column, x, y in zip(recorded[0], a, b):
             if is_measured(stem, column):
                 skipped += 1
                 continue

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-raya = pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHON=ON")
+raya = pytest.importorskip("raya", reason="the module is not built; configure with -DRAYA_PYTHON=ON")
 from raya.lab import Comparison, Page, Plot, Series, Table, document, plots, worker  # noqa: E402
 from raya.lab.document import write_page  # noqa: E402
 

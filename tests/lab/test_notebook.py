@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHON=ON")
+pytest.importorskip("raya", reason="the module is not built; configure with -DRAYA_PYTHON=ON")
 NOTEBOOK = Path(__file__).parents[2] / "docs" / "laboratory.ipynb"
 
 

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHON=ON")
+pytest.importorskip("raya", reason="the module is not built; configure with -DRAYA_PYTHON=ON")
 from raya.lab import statistics as s  # noqa: E402
 
 SEED, DRAWS = 20261124, 2000
@@ -39,7 +39,7 @@ def contradicted(test):
 
 
 def fractions(tests):
-    """Returns the fraction of the tests that are reproduced, and the fraction of those that are contradicted."""
+    """Returns the fraction of the tests that are reproduced, and the fraction that are contradicted."""
     tests = list(tests)
     return np.mean([reproduced(test) for test in tests]), np.mean([contradicted(test) for test in tests])
 
@@ -65,8 +65,8 @@ def test_interval_of_64_skewed_values_contains_the_mean():
 
 
 def stratified_coverage(deviations, count, draw):
-    """Returns the fraction of intervals of families, with `count` values of each, that contain the mean of the families' means. draw:
-    function(generator, shape) with mean 0 and deviation 1. The families' means are 0, 1, ..., so an interval that ignores them is much too long."""
+    """Returns the fraction of intervals of families, with `count` values per family, that contain the mean of the families' means. draw:
+    function(generator, shape) with mean 0 and deviation 1. The means are 0, 1, ..., so an interval that ignores families is much too long."""
     generator, families = random(), [name for name in range(len(deviations)) for _ in range(count)]
     scale, shift = np.repeat(deviations, count), np.array(families)
     estimates = [s.estimate(shift + scale * draw(generator, len(families)), families) for _ in range(DRAWS)]
@@ -111,7 +111,7 @@ def test_estimate_of_one_family_is_that_without_families():
 
 @pytest.mark.parametrize("values", [[], [[1, 2], [3, 4]], np.zeros((3, 0))])
 def test_only_a_list_of_values_has_an_estimate(values):
-    """A column of a damaged table may be empty or consist of two columns."""
+    """A name in a damaged table may select an empty column or two columns."""
     with pytest.raises(ValueError):
         s.estimate(values)
 
@@ -150,7 +150,7 @@ def test_joint_intervals_contain_all_means(tests):
 def test_prediction_interval_contains_one_more_value(name, count):
     values = getattr(random(), name)(size=(DRAWS * 4, count + 1))
     bounds = np.quantile(values[:, 1:], [0.025, 0.975], axis=1, method="weibull")
-    assert np.allclose(bounds[:, 0], s.prediction_interval(values[0, 1:]))  # the same computation for all rows at once
+    assert np.allclose(bounds[:, 0], s.prediction_interval(values[0, 1:]))  # `bounds`: the same computation for all rows at once
     fraction = np.mean((bounds[0] <= values[:, 0]) & (values[:, 0] <= bounds[1]))
     assert 0.93 <= fraction <= 0.97, f"{fraction} of {DRAWS * 4}, seed {SEED}"
 
@@ -177,9 +177,9 @@ def test_prediction_of_39_values_is_their_range():
 # Tests whose true value is the bound of the rule: the probability of a wrong verdict is at most 2.5 % on each side.
 
 
-@pytest.mark.parametrize("families, count", [(None, 5), (9, 108)])
-def test_above_and_below_at_their_bound(families, count):
-    names = families and [i % families for i in range(count)]
+@pytest.mark.parametrize("family_count, count", [(None, 5), (9, 108)])
+def test_above_and_below_at_their_bound(family_count, count):
+    names = family_count and [i % family_count for i in range(count)]
     values = 7 + random().normal(0, 3, (DRAWS, count))
     tests = [s.above(row, 7, names) for row in values]
     for fraction in fractions(tests):
@@ -201,7 +201,7 @@ def test_above_of_a_worked_example():
 
 @pytest.mark.parametrize("mean, first_wrong", [(1, 0), (2, 0), (1.5, 1)])
 def test_within_at_its_bounds(mean, first_wrong):
-    """At a bound, "reproduced" and "not reproduced" are wrong with at most 2.5 % each. Between the bounds only "not reproduced" is wrong."""
+    """first_wrong: index in fractions() of the first wrong verdict. At a bound both verdicts are wrong, between the bounds only "not reproduced"."""
     draws = DRAWS // 2
     found = fractions(s.within(row, 1, 2) for row in random().normal(mean, 1, (draws, 40)))
     for fraction in found[first_wrong:]:
@@ -210,7 +210,7 @@ def test_within_at_its_bounds(mean, first_wrong):
         assert min(found) > SIDE / 2, f"{found}, seed {SEED}"
 
 
-def test_within_narrow_bounds_is_never_reproduced_without_the_precision():
+def test_within_bounds_narrower_than_the_interval_is_never_reproduced():
     draws = DRAWS // 2
     right, wrong = fractions(s.within(row, -0.01, 0.01) for row in random().normal(0, 1, (draws, 40)))
     assert right == 0
@@ -230,7 +230,7 @@ def test_equal_values_at_the_bounds_lie_within_them(value):
 
 
 @pytest.mark.parametrize("value, above, below", [(1, False, True), (1.5, True, False), (0.5, False, True)])
-def test_equal_values_decide_without_an_error(value, above, below):
+def test_equal_values_decide_although_their_error_is_0(value, above, below):
     assert reproduced(s.above([value] * 3, 1)) == above and contradicted(s.above([value] * 3, 1)) != above
     assert reproduced(s.below([value] * 3, 1)) == below and contradicted(s.below([value] * 3, 1)) != below
 
@@ -240,9 +240,9 @@ def test_every_claim_must_hold(count):
     """If one claim is at its bound and the others hold clearly, "reproduced" is wrong. If all claims are at their bounds, "not reproduced" is wrong
     too."""
     generator = random()
-    last = [s.above(row) for row in generator.normal(0, 1, (DRAWS, 20))]
+    at_bound = [s.above(row) for row in generator.normal(0, 1, (DRAWS, 20))]
     clear = [s.Test(1e-9, 1 - 1e-9)] * (count - 1)
-    assert_about(fractions(s.every([*clear, one]) for one in last)[0], SIDE)
+    assert_about(fractions(s.every([*clear, one]) for one in at_bound)[0], SIDE)
     uniform = generator.uniform(size=(DRAWS, count))
     at_bounds = [s.every(s.Test(p, 1 - p) for p in row) for row in uniform]
     assert_at_most(fractions(at_bounds)[0], SIDE)
@@ -269,12 +269,12 @@ def test_proportion_at_its_bound(total, bound):
         counts = [count for count, test in found.items() if decides(test)]
         assert 0 < stats.binom.pmf(counts, total, bound).sum() <= SIDE
     fewest = min(count for count, test in found.items() if reproduced(test))
-    proportion = bound + found[fewest].detectable  # from this proportion on, the count is at least `fewest` with 80 %
+    proportion = bound + found[fewest].detectable  # from this proportion on, the count is at least `fewest` with a probability of 80 %
     assert stats.binom.sf(fewest - 1, total, proportion) >= POWER > stats.binom.sf(fewest - 1, total, proportion - (1 - bound) / 100)
 
 
 def test_proportion_of_a_worked_example():
-    # 9 of 10 against a half: (10 + 1) / 1024; the exact interval of Clopper & Pearson is 0.555 .. 0.997 (from tables).
+    # Probability of 9 or 10 of 10 at 0.5: (10 + 1) / 1024; the exact interval of Clopper & Pearson is 0.555 .. 0.997 (from tables).
     test = s.proportion([True] * 9 + [False], 0.5)
     assert test.p_for == pytest.approx(11 / 1024) and test.p_against == pytest.approx(1023 / 1024) and test.interval == "0.555 .. 0.997"
 
@@ -286,7 +286,7 @@ def test_proportion_of_too_few_pictures_has_no_detectable_deviation():
 
 @pytest.mark.parametrize("count", [5])
 def test_another_picture_contradicts_a_true_figure_with_5_percent(count):
-    """The figure is one more value, so the test wrongly finds it too small with 2.5 % and too large with 2.5 %."""
+    """The figure is one more value, so the test wrongly finds it too small with a probability of 2.5 %, and too large with 2.5 %."""
     values = random().normal(100, 5, (DRAWS, count + 1))
     tests = [s.next_value_within(row[0], row[1:], 1e-6) for row in values]
     for side in (-1, 1):
@@ -295,7 +295,7 @@ def test_another_picture_contradicts_a_true_figure_with_5_percent(count):
 
 @pytest.mark.parametrize("count, centre", [(5, 110), (40, 90), (40, 94), (40, 114)])
 def test_another_picture_at_the_bounds(count, centre):
-    """The verdict "reproduced" is wrong if the next picture lies outside 100 +- 10 %, "not reproduced" if it lies within."""
+    """The verdict "reproduced" is wrong if the next picture lies outside 100 +- 10 %; "not reproduced" is wrong if it lies within."""
     draws = DRAWS // 2
     values = random().normal(centre, 3, (draws, count + 1))
     tests = [s.next_value_within(100, row[1:], 0.1) for row in values]
@@ -335,14 +335,14 @@ def assert_power(fraction, draws=DRAWS):
     assert abs(fraction - POWER) <= 0.01 + error_of(POWER, draws), f"power {fraction} in {draws} draws instead of {POWER}, seed {SEED}"
 
 
-@pytest.mark.parametrize("families, count", [(None, 12), (9, 108)])
-def test_power_of_above_and_within(families, count):
-    names, draws = families and [i % families for i in range(count)], DRAWS // 2
+@pytest.mark.parametrize("family_count, count", [(None, 12), (9, 108)])
+def test_power_of_above_and_within(family_count, count):
+    names, draws = family_count and [i % family_count for i in range(count)], DRAWS // 2
     d = s.above(standardised(count, names), 0, names).detectable
     assert s.within(standardised(count, names), -1, 1, names).detectable == d
     values = random().normal(size=(draws, count))
     assert_power(fractions(s.above(row, -d, names) for row in values)[0], draws)
-    if not families:
+    if not family_count:
         assert_power(fractions(s.within(row, d, 9) for row in values)[1], draws)
         assert_power(fractions(s.within(row, -9, d) for row in values)[0], draws)
 
@@ -358,7 +358,7 @@ def test_power_of_another_picture():
 
 
 def verdicts_of(p_values):
-    """Verdicts on tests whose p values of "the claim is false" are given."""
+    """Returns the verdicts on tests with these values of p_for."""
     return list(s.verdicts({i: s.Test(p, 1 - p) for i, p in enumerate(p_values)}).values())
 
 
@@ -386,7 +386,7 @@ def test_verdicts_on_no_test_and_on_one_test():
 
 @pytest.mark.parametrize("clear, alike", [(0, False), (20, False), (0, True)])
 def test_one_or_more_wrong_verdicts_of_20_null_tests(clear, alike):
-    """Any verdict on 20 tests at their bounds is wrong. clear: number of other tests, clearly reproduced; alike: the 20 tests have one p value."""
+    """Any decision on 20 tests at their bounds is wrong. clear: number of other tests, all clearly reproduced; alike: the 20 p values are equal."""
     draws, generator, wrong = 5000, random(), 0
     for _ in range(draws):
         null = np.repeat(generator.uniform(), 20) if alike else generator.uniform(size=20)

@@ -22,8 +22,8 @@ std::uint64_t cycles_of(const Operations& sum) {
            kBranchCycles * sum.branches;
 }
 
-/// Returns log2 of the maximum of |relative_error(x)| for x in [1, 4), the two binades that the table of seeds of
-/// square roots covers.
+/// Returns log2 of the maximum of |relative_error(x)| for x in [1, 4). The seed table of square roots covers these two
+/// binades.
 template <class RelativeError>
 double error_bits(RelativeError&& relative_error) {
     double max_error = 0;
@@ -31,7 +31,7 @@ double error_bits(RelativeError&& relative_error) {
     return std::log2(max_error);
 }
 
-/// Returns `value` rounded as a word of the table of seeds: to 8 fraction bits after its leading bit.
+/// Returns `value` rounded to 9 fraction bits after its leading bit, the precision of a word in the tables of seeds.
 double table_word(double value) {
     const int exponent = std::ilogb(value);
     return std::ldexp(std::nearbyint(std::ldexp(value, 9 - exponent)), exponent - 9);
@@ -100,8 +100,8 @@ TEST_CASE("the operations of an event are those of its budget", "[machine]") {
     }
 }
 
-// Cycles per pixel. Filter: 3 x (4 additions, 1 multiplication), as many moves, 4 branches of 3 cycles: 42. Contrast: 4
-// sides x 3 colours x 6, one move, 16 branches: 121.
+// Cycles per pixel. Filter: 3 x (4 additions, 1 multiplication), as many moves, 4 branches of 3 cycles: 42. Comparison:
+// 4 sides x 3 colours x 6 operations, one move, 16 branches: 121.
 TEST_CASE("smoothing takes the same number of cycles for each pixel of a PE", "[machine]") {
     for (const std::uint64_t pixels : {0ull, 1ull, 256ull, 1ull << 40}) {
         CAPTURE(pixels);
@@ -110,8 +110,8 @@ TEST_CASE("smoothing takes the same number of cycles for each pixel of a PE", "[
     }
 }
 
-TEST_CASE("a seed of 256 words and one Newton step have the accuracy that the budget assumes", "[machine]") {
-    // The top 8 bits of the significand select the table word, which is the value at the interval's middle.
+TEST_CASE("a seed from the table and one Newton step have the accuracy that the budget assumes", "[machine]") {
+    // The top 8 bits of the significand select a table word: the reciprocal of the middle of their interval.
     const auto reciprocal_seed = [](double b) {
         const int exponent = std::ilogb(b);
         const double significand = std::ldexp(b, -exponent);
@@ -121,7 +121,7 @@ TEST_CASE("a seed of 256 words and one Newton step have the accuracy that the bu
         const double y = reciprocal_seed(b);
         return y + (1 - b * y) * y;
     };
-    // The exponent's lowest bit and 7 bits of the significand select the word: 128 words each for [1, 2) and [2, 4).
+    // The exponent's lowest bit and 7 bits of the significand select a table word: 128 words for each of two binades.
     const auto root_seed = [](double x) {
         const double step = x < 2 ? 128 : 64;
         return table_word(1 / std::sqrt((std::floor(x * step) + 0.5) / step));

@@ -7,7 +7,7 @@
 
 using namespace raya;
 
-TEST_CASE("a load has mean, imbalance, speed-up and efficiency", "[report]") {
+TEST_CASE("load_of() computes mean, imbalance, speed-up and efficiency", "[report]") {
     const Load load = load_of({1, 4, 2, 3});
     CHECK(load.per_pe == std::vector<std::uint64_t>{1, 4, 2, 3});
     CHECK(load.min == 1);
@@ -38,9 +38,9 @@ TEST_CASE("one PE with all the work leaves the others idle", "[report]") {
 }
 
 // Kohata & Ito 1993, Tables 2 and 3: 64,800 ms on one PE; 653 ms (p = 0) and 283 ms (p = 16) on 256 PEs.
-TEST_CASE("the loads of the paper's tables give its imbalance and speed-up", "[report]") {
-    const auto with_busiest = [](std::uint64_t busiest_us) {  // load of the busiest PE
-        constexpr std::uint64_t kSum = 64'800'000;            // microseconds
+TEST_CASE("the loads of the paper's tables give the paper's imbalance and speed-up", "[report]") {
+    const auto with_busiest = [](std::uint64_t busiest_us) {  // time of the busiest PE, microseconds
+        constexpr std::uint64_t kSum = 64'800'000;            // time on one PE, microseconds
         std::vector<std::uint64_t> per_pe(256, (kSum - busiest_us) / 255);
         per_pe[100] = busiest_us;
         return load_of(per_pe);

@@ -46,7 +46,7 @@ TEST_CASE("the SPA's clock has the rates of the paper's tables, and so have spa1
     CHECK(machine_named("spa1").pe_memory_bytes == machine_named("spa").pe_memory_bytes);
 }
 
-TEST_CASE("other papers' arrays have their mapping and the SPA's number format", "[machine]") {
+TEST_CASE("arrays of other papers have the papers' mappings, and the SPA's number format", "[machine]") {
     struct Row {
         const char* name;
         MappingRule mapping;

@@ -24,7 +24,7 @@ double random_double(SplitMix& random, const NumberFormat& format) {
     const double units = std::floor(random.uniform(0, std::ldexp(1, format.fraction_bits)));
     double remainder = random.uniform(0, 1);
     if (random.next() % 2 == 0) remainder = 0.5 * static_cast<double>(random.next() % 3);       // on a number or a tie
-    if (random.next() % 4 == 0) remainder += std::ldexp(random.next() % 2 == 0 ? 1 : -1, -30);  // next to one
+    if (random.next() % 4 == 0) remainder += std::ldexp(random.next() % 2 == 0 ? 1 : -1, -30);  // next to it
     const int exponent = static_cast<int>(std::floor(random.uniform(range.lowest - 3, range.highest + 3)));
     const double magnitude = std::ldexp(1 + std::ldexp(units + remainder, -format.fraction_bits), exponent);
     return random.next() % 2 == 0 ? magnitude : -magnitude;

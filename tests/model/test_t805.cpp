@@ -27,7 +27,7 @@ std::uint32_t control(std::uint32_t moves, std::uint32_t branches, std::uint32_t
 
 // The budgets count a sum of n products as n multiply-accumulates. The T805 needs n multiplications and n - 1
 // additions, or n additions if another term is added.
-TEST_CASE("the T805's additions and multiplications are the multiply-accumulates of the budgets", "[machine]") {
+TEST_CASE("additions and multiplications on a T805 agree with the budgets' multiply-accumulates", "[machine]") {
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
         CAPTURE(event);
         const Budget& budget = budgets()[event];
@@ -58,16 +58,16 @@ TEST_CASE("cycles of each event on a T805 agree with those counted by hand", "[m
     CHECK(cycles[RAYA_DISCARDED] == arithmetic(8 + 25, 12 + 18, 1 + 3, 1) + control(2 + 6 + 6, 1 + 4 + 1));
 }
 
-// A packet charged with 30 instead of 16 words takes 14 more stores. If each ray has one return of 6 words, this return
-// takes two stores less than one of 8 words, and RAYA_LIT creates no return.
-TEST_CASE("an event that creates a packet includes the stores of the packet's charged words", "[machine]") {
-    const auto default_cycles = t805_cycles(), charged_cycles = t805_cycles({30, true});
+// Creating a ray packet of 30 words instead of 16 takes 14 more stores. If each ray has one return of 6 words, this
+// return takes two stores less than a return of 8 words, and RAYA_LIT creates no return.
+TEST_CASE("an event that creates a packet includes the stores of the words that are assumed for it", "[machine]") {
+    const auto default_cycles = t805_cycles(), long_packet_cycles = t805_cycles({30, true});
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
         CAPTURE(event);
         const bool makes_ray =
             event == RAYA_PRIMARY || event == RAYA_REFLECTED || event == RAYA_REFRACTED || event == RAYA_SHADOW;
         const int extra_cycles = makes_ray ? 14 * 4 : event == RAYA_SHADED ? -2 * 4 : event == RAYA_LIT ? -8 * 4 : 0;
-        CHECK(static_cast<int>(charged_cycles[event]) - static_cast<int>(default_cycles[event]) == extra_cycles);
+        CHECK(static_cast<int>(long_packet_cycles[event]) - static_cast<int>(default_cycles[event]) == extra_cycles);
     }
     CHECK(PacketCharge{}.return_words() == RAYA_RETURN_WORDS);
 }
@@ -80,7 +80,7 @@ TEST_CASE("a message takes 19 cycles of the processor and 2 for each word", "[ma
 }
 
 // A link carries 425,000 words per second in one direction, 600,000 in both directions together.
-TEST_CASE("a link carries both directions at once until one of them ends", "[machine]") {
+TEST_CASE("a link carries both directions at the shared rate until the traffic in one of them ends", "[machine]") {
     CHECK(t805_link_ms(425, 0) == Approx(1).epsilon(1e-12));
     CHECK(t805_link_ms(0, 425) == Approx(1).epsilon(1e-12));
     CHECK(t805_link_ms(300, 300) == Approx(1).epsilon(1e-12));

@@ -22,8 +22,8 @@ ModelledTime time_of(const std::vector<Load>& phases, const Communication& commu
     return modelled_time(machine_named("spa").clock, phases, communication, smoothing);
 }
 
-constexpr double kFactor = 7 / 1.0752;  // the filter's 7 ms in Tables 3 and 4, by its budget of 256 x 42 cycles
-constexpr double kSetupMs = 1.375;      // 2 ms less two rotations
+constexpr double kFactor = 7 / 1.0752;  // filter: 7 ms (Tables 3 and 4); by its budget of 256 x 42 cycles: 1.0752 ms
+constexpr double kSetupMs = 1.375;      // 2 ms minus the time of two rotations
 
 Communication rotations(std::uint64_t count, std::uint64_t words_per_pe, std::uint64_t pes = 256) {
     return {.rotations = count, .rotation_words = count * words_per_pe * pes};
@@ -64,14 +64,14 @@ TEST_CASE("an image of 256 x 256 takes 140 ms to the host and 1,130 ms to the sc
     CHECK(time.compute_ms == 0);
 }
 
-TEST_CASE("the machine waits for the busiest PE of each phase", "[machine]") {
+TEST_CASE("in each phase the machine waits for the busiest PE of the phase", "[machine]") {
     CHECK(time_of({load_with(2'830'000)}).compute_ms == Approx(kFactor * 283).epsilon(1e-12));
     const std::vector<Load> phases = {load_of({5'000, 30'000, 10'000}), load_of({40'000, 0, 20'000})};
-    CHECK(time_of(phases).compute_ms == Approx(kFactor * 7).epsilon(1e-12));  // 3 + 4; the busiest PE: 4.5 ms
+    CHECK(time_of(phases).compute_ms == Approx(kFactor * 7).epsilon(1e-12));  // 3 + 4 ms; sum of PE 0: 4.5 ms
     CHECK(time_of(phases).factor == Approx(kFactor).epsilon(1e-12));
 }
 
-TEST_CASE("the filter of a column takes the 7 ms of Tables 3 and 4, and is part of the computing time", "[machine]") {
+TEST_CASE("filtering a column takes the 7 ms of Tables 3 and 4, and is part of the computing time", "[machine]") {
     const SmoothingCycles smoothing = {.filter = filter_cycles(256), .compare = compare_cycles(256)};
     const ModelledTime time = time_of({load_with(10'000)}, {}, smoothing);
     CHECK(time.filter_ms == Approx(7).epsilon(1e-12));
@@ -91,15 +91,17 @@ TEST_CASE("the parts add up to the total, and the factor scales only computing",
         MachineClock scaled = machine_named("spa").clock;
         const double ratio = random.uniform(0.5, 3);
         scaled.cycle_factor *= ratio;
-        const ModelledTime time = time_of(phases, c, smoothing), other = modelled_time(scaled, phases, c, smoothing);
-        for (const ModelledTime& t : {time, other})
+        const ModelledTime time = time_of(phases, c, smoothing),
+                           scaled_time = modelled_time(scaled, phases, c, smoothing);
+        for (const ModelledTime& t : {time, scaled_time})
             CHECK(t.total_ms == t.objects_ms + t.compute_ms + t.communication_ms + t.image_ms + t.display_ms);
-        CHECK(other.compute_ms == Approx(ratio * time.compute_ms).epsilon(1e-12));
-        CHECK(other.total_ms - other.compute_ms == Approx(time.total_ms - time.compute_ms).epsilon(1e-9).margin(1e-9));
+        CHECK(scaled_time.compute_ms == Approx(ratio * time.compute_ms).epsilon(1e-12));
+        CHECK(scaled_time.total_ms - scaled_time.compute_ms ==
+              Approx(time.total_ms - time.compute_ms).epsilon(1e-9).margin(1e-9));
     }
 }
 
-TEST_CASE("machines whose PEs hold the frame buffer take no time for the image", "[machine]") {
+TEST_CASE("machines whose PEs hold the frame buffer take no time to transfer and display the image", "[machine]") {
     const Communication c = {.broadcasts = 1, .broadcast_words = 500, .gathers = 1, .gather_words = 196'608};
     for (const char* name : {"cap", "pixel-machine", "links"}) {
         CAPTURE(name);

@@ -9,7 +9,7 @@
 
 namespace raya {
 
-/// The range of the unbiased exponents of a format's numbers; it equals that of normal numbers in IEEE 754.
+/// The range of the unbiased exponents of a format's numbers, as for normal numbers in IEEE 754.
 struct Range {
     int lowest, highest;  // the smallest number is 2^lowest; the largest is below 2^(highest + 1)
 };

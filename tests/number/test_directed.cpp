@@ -120,7 +120,7 @@ std::vector<Case> quotients(const SpecialNumbers& f) {
         {"the square root of 0 is 0", kSqrt, 0.0, 0, 0, 0.0, 0.0},
         {"the square root of a square is exact", kSqrt, 2.25, 0, 0, 1.5, 1.5},
         {"the square root of 1 + u is just below a tie", kSqrt, above, 0, 0, 1, 1},
-        {"the square root of 1 - u/2 is just below a tie of finer steps", kSqrt, below, 0, 0, 1 - f.unit / 2,
+        {"the square root of 1 - u/2 is just below the middle of 1 - u/2 and 1", kSqrt, below, 0, 0, 1 - f.unit / 2,
          1 - f.unit / 2},
         {"the square root of 4 (1 + 2 u) is just below 2 (1 + u)", kSqrt, 4 + 8 * f.unit, 0, 0, 2 + 2 * f.unit, 2.0},
         {"the square root of the smallest is exact", kSqrt, low, 0, 0, std::sqrt(low),

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-raya = pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHON=ON")
+raya = pytest.importorskip("raya", reason="the module is not built; configure with -DRAYA_PYTHON=ON")
 SCENES = Path(__file__).parents[2] / "scenes"
 SEED = 32
 SMALL = {"size": 32, "pes": 32, "offset": 4}

@@ -20,7 +20,7 @@ std::optional<Launch> launch_in(const std::map<std::string, std::string>& enviro
 
 TEST_CASE("launchers are detected by their environment variables", "[ranks]") {
     CHECK(!launch_in({}));
-    CHECK(!launch_in({{"OMPI_COMM_WORLD_SIZE", "4"}, {"SLURM_NTASKS", "4"}}));  // variables of a shell under Slurm
+    CHECK(!launch_in({{"OMPI_COMM_WORLD_SIZE", "4"}, {"SLURM_NTASKS", "4"}}));  // a shell under Slurm, not a rank
     CHECK(!launch_in({{"PMI_RANK", ""}}));
     CHECK(!launch_in({{"PMI_RANK", "two"}}));
     const auto open_mpi = launch_in({{"OMPI_COMM_WORLD_RANK", "2"}, {"OMPI_COMM_WORLD_SIZE", "4"}, {"PMIX_RANK", "9"}});

@@ -8,7 +8,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("the network fit returns exact alpha and beta for exact times, and never negative ones", "[ranks]") {
+TEST_CASE("the network fit returns exact alpha and beta for exact times, and never negative values", "[ranks]") {
     const MessageTime exact[] = {{1, 2e-6 + 1e-9}, {1000, 3e-6}, {1'000'000, 1.002e-3}};
     const Network network = fitted_network(exact);
     CHECK(network.alpha_s == Approx(2e-6));

@@ -103,7 +103,7 @@ class ThreadTransport final : public Transport {
 /// Runs `work` on `count` concurrent ranks, `ranks_per_host` per host. If ranks throw, rethrows the first exception.
 /// Throws std::logic_error if a sent message was not received.
 inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& work, std::uint32_t ranks_per_host = 8) {
-    // This thread makes the first query: PoCL 3.1 returns no device to some threads if several make it concurrently.
+    // This thread queries first: if several threads make the first query, PoCL 3.1 returns no device to some of them.
     all_devices();
     MessageStore store;
     std::exception_ptr first_exception;
@@ -114,7 +114,7 @@ inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& wor
             try {
                 Ranks ranks(std::make_unique<ThreadTransport>(store, rank, count, ranks_per_host));
                 work(ranks);
-            } catch (const RankFailure&) {  // another rank throws the exception that caused it
+            } catch (const RankFailure&) {  // another rank throws the exception that caused this failure
                 store.fail();
             } catch (...) {
                 const std::lock_guard lock(exception_mutex);

@@ -109,7 +109,8 @@ int check_all(Ranks& ranks) {
 int main(int argc, char** argv) {
     constexpr double kTimeLimit_s = 60;
     if (argc > 1) raya::set_program_file(argv[1]);
-    auto* const open_mpi = reinterpret_cast<raya::OpenMpi*>(raya::module_function(raya::kMpiModule, raya::kOpenMpi));
-    raya::Ranks ranks{std::unique_ptr<raya::Transport>(open_mpi(kTimeLimit_s))};
+    auto* const make_transport =
+        reinterpret_cast<raya::MakeMpiTransport*>(raya::module_function(raya::kMpiModule, raya::kMakeMpiTransport));
+    raya::Ranks ranks{std::unique_ptr<raya::Transport>(make_transport(kTimeLimit_s))};
     return raya::check_all(ranks);
 }

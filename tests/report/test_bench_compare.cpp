@@ -73,7 +73,7 @@ TEST_CASE("read_bench_report: inverts to_json", "[bench]") {
     }
 }
 
-TEST_CASE("read_bench_report: refuses files that are not valid reports, with a remedy", "[bench]") {
+TEST_CASE("read_bench_report: refuses files that are not valid reports, and names the reason", "[bench]") {
     const ScratchFolder folder;
     const std::string good = to_json(report({row(1, 2, 3)})).dump();
     const auto changed = [&](const auto& change) {
@@ -127,7 +127,7 @@ TEST_CASE("compare_bench: a row is slower if best and median rate both fall by m
     }
 }
 
-TEST_CASE("compare_bench: a different image fails the comparison, however fast the kernel is", "[bench]") {
+TEST_CASE("compare_bench: the comparison fails if the images differ, however fast the kernel is", "[bench]") {
     BenchMeasurement other = row(4, 1, 1);
     other.hash = "fedcba9876543210";
     const BenchComparison result = compare_bench(report({row(4, 10, 10)}), report({other}), 100);
@@ -137,18 +137,18 @@ TEST_CASE("compare_bench: a different image fails the comparison, however fast t
     CHECK_THAT(result.text, Contains("OTHER IMAGE: fedcba98, was 01234567"));
 }
 
-TEST_CASE("compare_bench: a different device causes a warning, and rows of only one run are listed", "[bench]") {
+TEST_CASE("compare_bench: a different device causes a warning, and rows that only one run has are listed", "[bench]") {
     BenchReport now = report({row(4, 10, 10), row(8, 10, 10)});
     now.device = "gpu";
     const BenchComparison result = compare_bench(report({row(1, 10, 10), row(4, 10, 10)}), now, 10);
     CHECK_FALSE(result.failed());
     CHECK(result.compared == 1);
-    CHECK_THAT(result.text, Contains("warning: another device: PoCL gpu, the baseline's is PoCL cpu\n") &&
+    CHECK_THAT(result.text, Contains("warning: the device differs from the baseline's: PoCL gpu, was PoCL cpu\n") &&
                                 Contains("not in the baseline") && Contains("in the baseline alone"));
     CHECK(result.text.find("another driver") == std::string::npos);
     now.driver = "4.0";
     CHECK_THAT(compare_bench(report({row(4, 10, 10)}), now, 10).text,
-               Contains("warning: another driver: OpenCL 3.0, 4.0, the baseline's is OpenCL 3.0, 3.1"));
+               Contains("warning: the driver differs from the baseline's: OpenCL 3.0, 4.0, was OpenCL 3.0, 3.1"));
 }
 
 TEST_CASE("rows_in_common: rows match if all members except times, rays, image, samples and build options are equal",

@@ -37,7 +37,7 @@ TEST_CASE("roofline: a kernel with many operations is compute bound", "[report]"
     const RooflineRow row = row_of(work, 100);
     CHECK(row.bound == Bound::kCompute);
     CHECK(row.intensity == Approx(10));
-    CHECK(row.roof_fraction == Approx(0.1));  // 1000 operations in 100 ns: 10 Gop/s, the peak is 100
+    CHECK(row.roof_fraction == Approx(0.1));  // 1000 operations in 100 ns: 10 Gop/s of 100 Gop/s
     REQUIRE(row.format_fraction);
     // 970 operations at 10 Gop/s take 97 ns, 20 divisions at 1 Gop/s 20 ns, 10 square roots at 2 Gop/s 5 ns.
     CHECK(*row.format_fraction == Approx((97 + 20 + 5) / 100.0));
@@ -46,7 +46,7 @@ TEST_CASE("roofline: a kernel with many operations is compute bound", "[report]"
 TEST_CASE("roofline: a kernel with many bytes is bandwidth bound", "[report]") {
     const RooflineRow row = row_of({.label = "move", .operations = 0, .bytes = 1000}, 100);
     CHECK(row.bound == Bound::kBandwidth);
-    CHECK(row.roof_fraction == Approx(0.5));  // 10 GB/s, the peak is 20
+    CHECK(row.roof_fraction == Approx(0.5));  // 10 GB/s of 20 GB/s
     CHECK_FALSE(row.format_fraction);
     // The ridge point is 100 Gop/s / 20 GB/s = 5 operations per byte.
     CHECK(row_of({.label = "a", .operations = 501, .bytes = 100}, 1).bound == Bound::kCompute);

@@ -87,7 +87,8 @@ TEST_CASE("to_json: the report of a torus has the members of a torus and none of
     for (const char* key : {"antialias", "communication", "modelled_ms"}) CHECK(to_json(ring).find(key) != nullptr);
 }
 
-// A reflected ray costs one multiplication, ten moves and two branches, and creates a packet of 16 words.
+// A reflected ray costs 1 multiplication, 10 moves, 2 branches and 16 packet words; a sphere test costs 11 additions,
+// 9 multiplications and 1 branch.
 TEST_CASE("t805_budget_json: contains the operations of a T805", "[report]") {
     EventCounts events{};
     events[RAYA_REFLECTED] = 3;

@@ -52,7 +52,6 @@ class TraceSchema {
     }
 
   private:
-    // One end of a flow.
     struct FlowEnd {
         Track track;
         std::int64_t at_ns;

@@ -9,10 +9,10 @@
 
 namespace raya {
 
-/// Returns the number of wrong pixels of a mapping. A pixel in a share's list is wrong if it lies outside the image,
-/// was listed before, or differs from raya_owner, `defined_owner(row, column)`, raya_index_of or raya_pixel_run_at,
-/// which skips one of seven pixels. A pixel of the image is wrong if no share lists it. Appends the size of each share
-/// to `sizes`.
+/// Returns the number of wrong pixels of a mapping. A pixel in a share's list is wrong if it lies outside the image or
+/// was listed before, or if raya_owner, `defined_owner(row, column)`, raya_index_of or raya_pixel_run_at contradicts
+/// the list. raya_pixel_run_at is not called for one of seven pixels, so it must skip pixels. A pixel of the image is
+/// wrong if no share lists it. Appends the size of each share to `sizes`.
 template <class Defined>
 std::uint32_t count_wrong_owners(const raya_mapping& m, const Defined& defined_owner,
                                  std::vector<std::uint32_t>& sizes) {

@@ -170,8 +170,8 @@ TEST_CASE("the numbers of ray trees and beams per lane change no bit and no coun
     }
 }
 
-// Returns a scene to which 2 n copies of random objects are added for each kind of n objects. The copies have distant
-// object numbers and random surfaces, so that most rays hit several objects at equal distances.
+// Returns a scene that has, for each kind of object, twice as many copies of random objects as original objects. The
+// copies have distant object numbers and random surfaces. So most rays hit several objects at equal distances.
 Scene scene_with_copies(std::uint64_t seed) {
     Scene scene = random_view_scene(seed);
     SplitMix random(seed);

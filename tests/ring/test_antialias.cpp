@@ -257,20 +257,20 @@ TEST_CASE("pixels whose difference equals the threshold are marked; differences 
                          .antialias = {.method = AntialiasMethod::kSupersample, .threshold = threshold}};
         return RingRenderer(session, scene, settings_of(c)).render().recomputed;
     };
-    const std::uint64_t outline = recomputed_pixels(0, 1, 0.5, 0);
+    const std::uint64_t outline_pixels = recomputed_pixels(0, 1, 0.5, 0);
     CAPTURE(format);
-    CHECK(outline > 10);
-    CHECK(outline < 100);
-    CHECK(recomputed_pixels(0.25, 0.375, 0.125, 0) == outline);
-    CHECK(recomputed_pixels(0.25, 0.375, 0.125, 1) == outline);
-    CHECK(recomputed_pixels(0.375, 0.25, 0.125, 2) == outline);
+    CHECK(outline_pixels > 10);
+    CHECK(outline_pixels < 100);
+    CHECK(recomputed_pixels(0.25, 0.375, 0.125, 0) == outline_pixels);
+    CHECK(recomputed_pixels(0.25, 0.375, 0.125, 1) == outline_pixels);
+    CHECK(recomputed_pixels(0.375, 0.25, 0.125, 2) == outline_pixels);
     CHECK(recomputed_pixels(0.25, 0.375, 0.125 * (1 + last_place), 0) == 0);
     CHECK(recomputed_pixels(0.25, 0.375, 0.125 * (1 + last_place / 4), 0) ==
-          outline);  // a threshold is rounded to the format
+          outline_pixels);  // a threshold is rounded to the format
     CHECK(recomputed_pixels(0.25, 0.375 - 0.25 * last_place, 0.125, 2) == 0);
     CHECK(recomputed_pixels(-7, 0, 0.125, 1) == 0);
     CHECK(recomputed_pixels(1, 9, 0.125, 0) == 0);
-    CHECK(recomputed_pixels(-7, 9, 1, 1) == outline);
+    CHECK(recomputed_pixels(-7, 9, 1, 1) == outline_pixels);
 }
 
 }  // namespace raya

@@ -158,8 +158,8 @@ TEST_CASE("a second anti-aliased render with the same renderer gives the same re
 
 TEST_CASE("with one column of pixels per PE, the upper and lower neighbours are p PEs away", "[ring][antialias]") {
     Session session(choose_device(""));
-    // The left and right neighbours take one rotation each, the upper and lower neighbours p rotations each: 2 + 2 p
-    // rotations. With p = 0 the upper and lower neighbours are in the PE's own block.
+    // The left and right neighbours take one rotation each, the upper and lower neighbours min(p, 256 - p) each. With
+    // p = 0 the upper and lower neighbours are in the PE's own block.
     for (const auto& [offset, rotations] : {std::pair{0u, 2u}, {8u, 18u}, {16u, 34u}, {240u, 34u}}) {
         const RingCase c{.width = 256, .height = 256, .pes = 256, .offset = offset, .antialias = kFilter};
         const RingResult result = render_case(session, c);

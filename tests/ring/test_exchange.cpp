@@ -90,7 +90,7 @@ TEST_CASE("ring, bus and broadcasts give the same bits, and their numbers of mov
     SplitMix random(kSeed);
     Session session(choose_device(""));
     Kernels kernels(session, {.lanes = 1, .format = parse_format("e6m15")});
-    std::size_t one_pe = 0, narrow_images = 0, with_moves = 0;
+    std::size_t one_pe_cases = 0, narrow_images = 0, cases_with_moves = 0;
     for (unsigned i = 0; i < quick_cases(300, 1500); ++i) {
         const Shares s = random_shares(random, i % 4 == 0 ? 2 : 12);
         const raya_mapping& m = s.mapping;
@@ -105,11 +105,11 @@ TEST_CASE("ring, bus and broadcasts give the same bits, and their numbers of mov
             CHECK(moves_of(by_method.filter_communication) == bands * sum_of(exchange_moves(m, method, false)));
             CHECK(moves_of(by_method.contrast_communication) == bands * sum_of(exchange_moves(m, method, true)));
         }
-        one_pe += m.pes == 1;
+        one_pe_cases += m.pes == 1;
         narrow_images += std::min(m.width, m.height) <= 2;
-        with_moves += moves_of(by_ring.filter_communication) > 0;
+        cases_with_moves += moves_of(by_ring.filter_communication) > 0;
     }
-    CHECK((one_pe > 20 && narrow_images > 50 && with_moves > 150));
+    CHECK((one_pe_cases > 20 && narrow_images > 50 && cases_with_moves > 150));
 }
 
 TEST_CASE("a render gives the same image with ring, bus and broadcasts", "[ring][bus]") {

@@ -195,7 +195,7 @@ Findings find_faults(Runner& runner, std::uint64_t seed, int launches) {
 }
 
 struct Fault {
-    const char* effect;  // memory that the faulty kernel uses by mistake
+    const char* memory;  // memory that the faulty kernel uses by mistake
     Step step;
     SourcePatch patch;
     bool reads;   // the fault must be detected by Findings::poison_read
@@ -236,7 +236,7 @@ const Fault kFaults[] = {
      {"ring/filter.cl", "num_div(own_sums[i * capacity + k], pixels)", "num_div(sums[i * capacity + k], pixels)"},
      true,
      false},
-    {"one pixel too many",
+    {"memory of one pixel beyond the end of the share",
      Step::kTakeMeans,
      {"ring/filter.cl", "min(capacity, raya_share_size(share))", "raya_share_size(share) + 1"},
      false,
@@ -262,7 +262,7 @@ TEST_CASE("no PE reads or writes another PE's memory", "[ring][exchange]") {
     for (const Step step : kSteps)
         for (const std::uint32_t group : {1u, 3u}) {
             const std::string format =
-                group == 1 ? "fp32" : "e6m15";  // few builds, because builds take most of the time
+                group == 1 ? "fp32" : "e6m15";  // one format per group size: builds take most of the time
             CAPTURE(kSeed, step_name(step), group, format);
             Runner runner(session, step, group, format);
             const Findings found = find_faults(runner, kSeed + group, 100);
@@ -276,7 +276,7 @@ TEST_CASE("injected accesses to another PE's memory are detected", "[ring][excha
     constexpr std::uint64_t kSeed = 14;
     Session session(choose_device(""));
     for (const Fault& fault : kFaults) {
-        CAPTURE(kSeed, fault.effect, step_name(fault.step));
+        CAPTURE(kSeed, fault.memory, step_name(fault.step));
         Runner runner(session, fault.step, 1, "fp32", {.patches = {fault.patch}});
         const Findings found = find_faults(runner, kSeed, 40);
         if (fault.reads) CHECK(found.poison_read > 0);

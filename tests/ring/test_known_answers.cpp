@@ -31,7 +31,7 @@ TEST_CASE("a sphere of Kd = 1 without lights is as bright as the ambient light",
     for (const float value : result.image.rgb) CHECK(value == 1.0f);
 }
 
-TEST_CASE("a perfect mirror in uniform surroundings is invisible", "[ring]") {
+TEST_CASE("a perfect mirror and clear glass are invisible in uniform surroundings", "[ring]") {
     Scene scene = dark_scene();
     scene.background = {0.25, 0.5, 0.75};
     scene.surfaces = {{.diffuse = 0, .specular = 1}, {.diffuse = 0, .transmittance = 1, .refraction = 1.5}};

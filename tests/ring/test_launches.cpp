@@ -1,5 +1,5 @@
-// Launches of the trace kernel end after a bounded amount of work and save their ray trees; the next launches continue
-// them.
+// Launches of the trace kernel end after a bounded amount of work and save their ray trees. The next launch continues
+// these ray trees.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -82,7 +82,7 @@ TEST_CASE("a render completes if each launch runs one iteration of its loop", "[
     settings.work_per_launch = 1;
     const RingResult cut = RingRenderer(session, scene, settings).render();
     CHECK(launch_result_of(cut) == launch_result_of(whole));
-    CHECK(launches_of(cut) > 12 * 9 / 3 / whole.lanes);  // more than one launch per pixel of a lane
+    CHECK(launches_of(cut) > 12 * 9 / 3 / whole.lanes);  // more launches than pixels per lane
 }
 
 TEST_CASE("launches report increasing progress; the first report comes when each lane has traced a few pixels",
@@ -100,7 +100,7 @@ TEST_CASE("launches report increasing progress; the first report comes when each
     CHECK(reported.front() < 6 * first.lanes * first.group_size / (96 * 96 / 4.0));
     CHECK(reported.back() == 1);
     CHECK(launches_of(renderer.render()) ==
-          1);  // one launch, because without a progress callback there is less than a second of work
+          1);  // without a progress callback, a launch may take a second, which is enough for this render
     settings.work_per_launch = 5000;
     RingRenderer limited(session, scene, settings);
     reported.clear();
@@ -122,12 +122,12 @@ bool is_detected(Session& session, const Scene& scene, const RingSettings& setti
 
 TEST_CASE("every injected fault in the state saved between launches is detected", "[ring][faults]") {
     const SourcePatch faults[] = {
-        {"ring/saved_trees.clh", "    save_index(k, &t->level);\n", ""},
-        {"ring/saved_trees.clh", "    save_vec(k, &sum);\n", ""},
+        {"ring/saved_trees.clh", "    transfer_index(k, &t->level);\n", ""},
+        {"ring/saved_trees.clh", "    transfer_vec(k, &sum);\n", ""},
         {"ring/saved_trees.clh", "if (mask_any((t->pending_levels.all & (index)(1u << level)) != (index)(0)))",
          "if (level == 0)"},
-        {"ring/saved_trees.clh", "save_index(k, &t->events[e].all)", ""},
-        {"ring/saved_trees.clh", "    save_vec(k, &p->colour);\n", ""},
+        {"ring/saved_trees.clh", "transfer_index(k, &t->events[e].all)", ""},
+        {"ring/saved_trees.clh", "    transfer_vec(k, &p->colour);\n", ""},
         {"ring/trace.cl", "const int resumes = progress[group].left > 0;", "const int resumes = 0;"},
         {"ring/trace.cl", "progress[group].left = mine->left;", "progress[group].left = 0;"},
     };

@@ -21,7 +21,7 @@ std::int64_t defined_owner(const raya_mapping& m, std::int64_t row, std::int64_t
     if (slot < 0) slot += width;
     if (m.kind == RAYA_FOLD_CYCLIC) {
         if (pes <= width) return slot % pes;
-        std::int64_t slot_pes = 0;  // number of the PEs slot, slot + W, slot + 2 W, ...
+        std::int64_t slot_pes = 0;  // number of PEs of the slot: slot, slot + W, slot + 2 W, ...
         while (slot + slot_pes * width < pes && slot_pes < height) ++slot_pes;
         return slot + row % slot_pes * width;
     }

@@ -46,7 +46,7 @@ std::uint32_t longest_band(std::uint32_t share, std::uint64_t free_bytes) {
 
 }  // namespace
 
-TEST_CASE("a PE's memory is the job's words, the traversal stack and three words per pixel, of 4 bytes each",
+TEST_CASE("a PE's memory is the job's words, the stack for the ray tree and three words per pixel, of 4 bytes each",
           "[ring]") {
     const PeMemory memory = plan_pe_memory(machine_named("spa"), demand(1000, 256));
     CHECK(memory.job_words == 1000);
@@ -133,7 +133,7 @@ TEST_CASE("a scene that leaves no memory for a pixel is refused with both figure
     CHECK(plan(words).block_pixels == 1);
     try {
         plan(words + 1);
-        FAIL("a scene of one word too many fits");
+        FAIL("plan_pe_memory() has accepted a scene that is one word too large");
     } catch (const DoesNotFit& error) {
         CHECK(error.needed_bytes == 4 * (words + 1) + ray_tree_bytes(8) + 12);
         CHECK(error.memory_bytes == 32 * 1024);

@@ -131,7 +131,7 @@ TEST_CASE("rotations are counted by the words that were copied", "[ring]") {
     }
 }
 
-TEST_CASE("a band beyond the end of the share loads the remaining words and leaves the other words unchanged",
+TEST_CASE("a band that reaches beyond the share's end loads the remaining words and leaves the other words unchanged",
           "[ring]") {
     constexpr std::uint64_t kSeed = 11;
     SplitMix random(kSeed);

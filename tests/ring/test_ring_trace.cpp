@@ -133,7 +133,7 @@ TEST_CASE("the counter of live rays decreases from the number of PEs to 0", "[ri
     CHECK(points == 41);
 }
 
-TEST_CASE("the trace omits a machine without tracks, and contains the reason", "[ring]") {
+TEST_CASE("if no PE is requested, the trace omits the machine and contains the reason", "[ring]") {
     const Rendered r = render({.width = 8, .height = 4, .pes = 8, .offset = 2, .machine = "spa", .lanes = 4});
     CHECK(trace_of(r, 0)["otherData"]["machine"].get<std::string>().starts_with("left out"));
     CHECK(trace_of(r, 3)["otherData"]["machine"]["pes"] == 8);
@@ -142,19 +142,19 @@ TEST_CASE("the trace omits a machine without tracks, and contains the reason", "
 TEST_CASE("the work of the ring's kernels agrees with the counts", "[ring]") {
     RingCase c{.width = 24, .height = 16, .pes = 24, .machine = "spa", .lanes = 4};
     c.antialias.method = AntialiasMethod::kSupersample;
-    const Rendered super = render(c);
-    const auto works = ring_kernel_work(super.settings, super.result);
+    const Rendered supersampled = render(c);
+    const auto works = ring_kernel_work(supersampled.settings, supersampled.result);
     REQUIRE(works.size() == 3);
     CHECK(works[0].label == "trace");
     CHECK(works[1].label == "supersample");
-    const Operations all_operations = operations_of(super.result.all.events);
+    const Operations all_operations = operations_of(supersampled.result.all.events);
     CHECK(works[0].operations + works[1].operations == all_operations.multiply_accumulates);
     CHECK(works[0].divisions + works[1].divisions == all_operations.divisions);
     CHECK(works[0].roots + works[1].roots == all_operations.roots);
     // In one launch, each of 24 PEs reads the job's words, reads and writes RAYA_EVENTS counters per work-item, and
     // writes 20 bytes per pixel.
-    const std::uint64_t words = super.result.communication.broadcast_words;
-    CHECK(works[0].bytes == 24 * 4 * words + 24 * 16 * RAYA_EVENTS * super.result.group_size + 20 * 24 * 16);
+    const std::uint64_t words = supersampled.result.communication.broadcast_words;
+    CHECK(works[0].bytes == 24 * 4 * words + 24 * 16 * RAYA_EVENTS * supersampled.result.group_size + 20 * 24 * 16);
     const std::uint64_t neighbours = 2 * 23 * 16 + 2 * 24 * 15;
     CHECK(works[2].label == "supersample.compare");
     CHECK(works[2].operations == 18 * neighbours);

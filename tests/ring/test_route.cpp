@@ -80,8 +80,8 @@ bool well_formed(const std::vector<Leg>& route, std::uint32_t pes) {
 }
 
 /// Returns the minimum number of rotations that visit all distances in `wanted` (bit d: distance d). A rotation in
-/// either direction costs 1, a restart from the PEs' own blocks 0. The function searches the states (distance, visited
-/// distances) breadth first.
+/// either direction costs 1; a restart from the PEs' own blocks costs 0. The function searches the states (distance,
+/// visited distances) breadth first.
 int min_rotations(std::uint32_t pes, std::uint32_t wanted) {
     constexpr int kUnreached = std::numeric_limits<int>::max();
     const std::uint32_t seen_sets = 1u << pes;  // number of sets of distances
@@ -105,8 +105,8 @@ int min_rotations(std::uint32_t pes, std::uint32_t wanted) {
     return kUnreached;
 }
 
-/// Returns the number of rotations that go round the ring except across the widest gap between adjacent distances,
-/// including 0.
+/// Returns the number of rotations that go round the ring except across the widest gap between adjacent distances. 0 is
+/// one of the distances.
 std::uint32_t rotations_round_widest_gap(std::uint32_t pes, Distances stops) {
     stops.push_back(0);
     std::sort(stops.begin(), stops.end());
@@ -135,7 +135,7 @@ TEST_CASE("neighbour distances agree with the owners of all neighbouring pixels"
     }
 }
 
-TEST_CASE("if a PE owns whole columns, each side has one distance, that in the paper", "[ring][route]") {
+TEST_CASE("if a PE owns whole columns, each side has one distance, as in the paper", "[ring][route]") {
     constexpr std::uint64_t kSeed = 6;
     SplitMix random(kSeed);
     for (int i = 0; i < 300; ++i) {
@@ -164,9 +164,8 @@ TEST_CASE("routes have the minimum number of rotations: every set of distances o
             CAPTURE(pes, distances, route_rotations(route), min_rotations(pes, wanted), stops_of(route, pes));
             CHECK(good);
         }
-    CHECK(min_rotations(9, 0b000101001) ==
-          5);  // checks min_rotations(): 5 rotations down reach 3 and 5; up, it takes 6
-    CHECK(min_rotations(9, 0b100000010) == 2);  // 1 and 8 are one rotation away, in opposite directions
+    CHECK(min_rotations(9, 0b000101001) == 5);  // 5 rotations down reach distances 3 and 5; upwards, 6 rotations do
+    CHECK(min_rotations(9, 0b100000010) == 2);  // distances 1 and 8 take one rotation each, in opposite directions
 }
 
 TEST_CASE("large rings: a route omits the widest gap", "[ring][route]") {

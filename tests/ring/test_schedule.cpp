@@ -144,7 +144,7 @@ TEST_CASE("dynamic and hybrid schedules agree with the simulation", "[schedule]"
           Cycles{16, 12 + 13});  // PE 0: chunk 5 1; PE 1: chunks 1 1 and 1 2
     CHECK(dynamic_schedule(six_pixels, two_pes, {1, 10, 0.5}).load.per_pe ==
           Cycles{5 + 11 + 12, 1 + 11 + 11});  // static: 5 and 1; then chunks of one pixel: 1 1 1 2
-    // The root answers at 3, 6, 9: PE 0 takes 5 at 3, PE 1 takes 1 at 6, 1 at 10, and so on.
+    // The root answers PE 0 at cycle 3 (pixel of 5 cycles), and PE 1 at cycles 6 and 10 (pixels of 1 cycle).
     const raya_mapping one_row{3, 1, 2, 0, RAYA_FOLD_BLOCK};
     CHECK(dynamic_schedule({3, 1, {5, 1, 1}}, one_row, {1, 0, 0, 3}).load.per_pe == Cycles{3 + 5, 6 + 1 + 3 + 1});
     constexpr std::uint64_t kSeed = 3;
@@ -191,7 +191,7 @@ TEST_CASE("schedules contain all work and satisfy Graham's bounds", "[schedule]"
         CHECK(list_schedule.requests == (width * height + plan.chunk - 1) / plan.chunk);
         CHECK(pes * list_schedule.load.max <= total + (pes - 1) * largest_chunk);
         plan.chunk = 1;
-        CHECK(pes * dynamic_schedule(image, m, plan).load.max <= (2 * pes - 1) * bound);  // 2 - 1/P times the optimum
+        CHECK(pes * dynamic_schedule(image, m, plan).load.max <= (2 * pes - 1) * bound);  // (2 - 1/P) x the optimum
     }
 }
 

@@ -107,9 +107,9 @@ TEST_CASE("entities with too few or too many values are refused", "[nff]") {
 TEST_CASE("invalid views are refused", "[nff]") {
     const char* range = "must be a whole number from 1 to 16384";
     check({{kShortView + kShortView + kOneSphere, "8: a second 'v'"},
-           {view_with("angle 40\n", ""), "7: 'v' is incomplete: 's' follows, but still missing: angle"},
+           {view_with("angle 40\n", ""), "7: 'v' is incomplete: 's' follows; missing parts: angle"},
            {"v\nfrom 0 0 1\nat 0 0 0",
-            "3: 'v' is incomplete: the file ends, but still missing: up angle hither resolution"},
+            "3: 'v' is incomplete: the file ends; missing parts: up angle hither resolution"},
            {view_with("angle 40", "at 0 0 2"), "5: 'at' occurs twice in 'v'"},
            {view_with("at 0 0 1", "at 0 -5 1"), "1: 'from' and 'at' are the same point"},
            {view_with("angle 40", "angle 0"), "1: the angle is 0: must lie between 0 and 180 degrees"},
@@ -178,8 +178,8 @@ TEST_CASE("invalid polygons are refused", "[nff]") {
 
 TEST_CASE("invalid #raya extensions are refused", "[nff]") {
     check_entities(
-        {{"#raya", "9: the file ends before the word of '#raya'"},
-         {"#raya\nplane 0 0 1 0", "9: the line ends before the word of '#raya'"},
+        {{"#raya", "9: the file ends before 'plane' or 'checker' of '#raya'"},
+         {"#raya\nplane 0 0 1 0", "9: the line ends before 'plane' or 'checker' of '#raya'"},
          {"#raya plan 0 0 1 0", "9: unknown extension 'plan'; raya knows '#raya plane' and '#raya checker'"},
          {"#raya plane 0 0 1\n0", "9: the line ends before the distance of '#raya plane'"},
          {"#raya plane 0 0 1\ns 0 0 0 1", "9: the line ends before the distance of '#raya plane'"},

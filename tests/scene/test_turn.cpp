@@ -30,7 +30,7 @@ TEST_CASE("a turn changes only the azimuth of the camera's position, by the angl
         const Vec3 axis = view.up.normalized(), before = view.from - view.at, after = rotated.from - rotated.at;
         CHECK(after.length() == Approx(before.length()).epsilon(1e-12));
         CHECK(after.dot(axis) == Approx(before.dot(axis)).margin(1e-12));
-        // The components of both vectors perpendicular to the axis enclose the angle, counter-clockwise.
+        // Projected onto the plane perpendicular to the axis, the two vectors enclose the angle, counter-clockwise.
         const Vec3 level_before = before - axis * before.dot(axis), level_after = after - axis * after.dot(axis);
         const double angle = std::atan2(axis.dot(level_before.cross(level_after)), level_before.dot(level_after));
         CHECK(std::remainder(angle - degrees * std::numbers::pi / 180, 2 * std::numbers::pi) == Approx(0).margin(1e-9));

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks that git tracks no binary files, such as caches and build products, except those in WANTED.
-  test_binary.py     exit codes: 0 none; 1 an unwanted binary file; 77 not a git checkout"""
+  test_binary.py     exit codes: 0 no unwanted file; 1 an unwanted file; 77 not a git checkout"""
 import fnmatch
 import pathlib
 import subprocess
@@ -8,11 +8,11 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WANTED = ["docs/*.png", "tests/fuzz/corpus/*"]
-HEAD = 8000  # number of bytes at the start of a file that are searched for a zero byte, as git does
+HEAD_BYTES = 8000  # number of bytes at the start of a file that are searched for a zero byte, as git does
 
 
 def unwanted(files):
-    """Names of the files, given as (name, first bytes), that have a zero byte in these bytes and are not in WANTED."""
+    """Returns the names of the files that are not in WANTED and have a zero byte in `head`. files: (name, head) of each file."""
     return [name for name, head in files if b"\0" in head and not any(fnmatch.fnmatch(name, kind) for kind in WANTED)]
 
 
@@ -21,7 +21,7 @@ def main():
     if listed.returncode != 0:
         return 77
     names = [name for name in listed.stdout.decode().split("\0") if name and (ROOT / name).is_file()]
-    found = unwanted((name, (ROOT / name).open("rb").read(HEAD)) for name in names)
+    found = unwanted((name, (ROOT / name).open("rb").read(HEAD_BYTES)) for name in names)
     if unwanted([("pocl-cache/a.so", b"\x7fELF\0"), ("docs/a.png", b"\0"), ("a.txt", b"a")]) != ["pocl-cache/a.so"]:
         found.append("this test does not find a binary file")
     print(f"{len(names)} files; unwanted binary files: {', '.join(found) or 'none'}")

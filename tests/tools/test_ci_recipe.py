@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks the workflow of docs/ci and the commands of docs/ci.md: programs and options exist; packages are those of tools/setup or tools/portability;
-uploaded files are written; tests write the same report as tools/test. The checks themselves are tested with injected faults.
+uploaded files are written; ctest writes the same report file as in tools/test. The checks themselves are tested with injected faults.
 
     tests/tools/test_ci_recipe.py RAYA     RAYA: the built program. Exit code 77 if Python has no yaml (Debian: python3-yaml)
 """
@@ -13,7 +13,7 @@ PAGE = ROOT / "docs/ci.md"
 SHELL = {"mkdir", "apt-get", "[", "echo", "cat"}
 NO_SUCH = "--no-such-option"
 
-# (text of the workflow or page, faulty replacement)
+# (text of the workflow, faulty replacement)
 FAULTS = [("verify --quick", "verify --quik"), ("verify --quick", "verify --lanes 3"), ("--tolerance 30", "--tolerance much"),
           ("build/raya verify", "build/raya verifies"), ("cmake --preset release", "cmake --preset relase"),
           ("cmake --build build -j2", "cmake --build bild -j2"), ("--output-on-failure", "--output-on-failures"),
@@ -89,7 +89,7 @@ def wrong_with_ctest(arguments):
     wanted = junit_of(shlex.split(re.search(r"^ *ctest .*", (ROOT / "tools/test").read_text(), re.M)[0]))
     if missing:
         return f"ctest has no options {missing}"
-    return "" if junit_of(arguments) == wanted else f"writes another file than tools/test, which writes {wanted}"
+    return "" if junit_of(arguments) == wanted else f"writes a report file other than that of tools/test, {wanted}"
 
 
 def wrong_with_packages(arguments):

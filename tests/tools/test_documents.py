@@ -78,7 +78,7 @@ def stale_counts(verify_output):
     printed = len(re.findall(r"^PASS  image ", verify_output, re.M))
     named = re.search(r"(\d+) images", (ROOT / "docs/verify.md").read_text())
     if not named or int(named[1]) != printed:
-        yield f"docs/verify.md: {named and named[0]}, and raya verify --quick renders {printed}"
+        yield f"docs/verify.md: states {named[0] if named else 'no number of images'}, but raya verify --quick renders {printed} images"
 
 
 def wrong_examples(raya, text):

@@ -257,7 +257,7 @@ def check_controls(page, html):
                        ".data.buffer).reduce((n, w, at) => n + (w === 0xffffffff) * (explorer.figures.owners[at] === 12 ? 1 : 1e6), 0); })()")
     owned = page.value("explorer.figures.sizes[12]")
     if white != owned:
-        yield f"the pixels of the selected PE 12 are not white: {white} white pixels (10^6 for each of another PE), {owned} pixels of PE 12"
+        yield f"the pixels of the selected PE 12 are not white: {white} white pixels (each pixel of another PE counts 10^6), {owned} pixels of PE 12"
     page.value("document.getElementById('no-pe').click()")
     yield from expect("the button that shows all PEs", f"cyclic:{best_offset}", 63, "cyclic", None)
 

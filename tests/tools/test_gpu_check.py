@@ -143,7 +143,7 @@ reads = """    float many[600];
     for (uint i = 0; i < 600; ++i) sum.x += many[i] * many[599 - i];
     """
 last = "vstore3((float3)(sum.x, sum.y, sum.z), pixel, image);"
-fast_target = next((target for target in ("sm_90", "gfx90a") if target in versions), None)  # the one that compiles fastest
+fast_target = next((target for target in ("sm_90", "gfx90a") if target in versions), None)  # the installed target that compiles fastest
 if fast_target:
     check(*only_compose, "--targets", fast_target, *budget_of(), "--kernel-dir", patched("torus/compose.cl", (last, reads + last)), code=4,
           texts=[f"torus/compose fp32, {fast_target}: spills: "])

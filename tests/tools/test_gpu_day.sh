@@ -38,7 +38,7 @@ if (($# > 0)); then
 else
     cat >"$day/raya" <<'RAYA'
 #!/usr/bin/env bash
-# The mock raya: its renders have the hashes of FILE.csv. A file in this folder injects the fault that its name describes.
+# The mock raya: its renders have the hashes of right.csv. A file in this folder injects the fault that its name describes.
 here=$(dirname "$0")
 fault() { [[ -e $here/$1 ]]; }
 case $1 in

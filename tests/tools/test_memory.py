@@ -62,7 +62,7 @@ class Trial:
         self.resumable = {}  # {hash of a checkpoint file that a run left: True if raya can resume it}
         self.run_without_fault(SMALL_RENDER + ["-o", "x.ppm", "--report", str(self.inputs / "saved.json")])
         self.make_checkpoint(options.cl_faults)
-        self.expected = {name: self.expect(name) for name in COMMANDS}
+        self.expected = {name: self.files_without_fault(name) for name in COMMANDS}
 
     def run_without_fault(self, arguments, inputs=(), **variables):
         """Runs raya without a failing allocation. Returns (process, files)."""
@@ -82,7 +82,7 @@ class Trial:
                 return
         raise AssertionError("no failed render left a checkpoint")
 
-    def expect(self, name):
+    def files_without_fault(self, name):
         done, files = self.run_without_fault(COMMANDS[name], INPUTS.get(name, ()))
         assert done.returncode == 0, done.stderr.decode()
         return {file: comparable(file, content) for file, content in files.items()}
@@ -180,18 +180,18 @@ def comparable(name, content):
 
 def faults_of(trial, seed, sample):
     """Returns [(command, fault)]: every allocation site once, in the first command that reaches it, and allocations by other libraries."""
-    seen, sites, by_library = set(), [], []
+    seen, sites, library_faults = set(), [], []
     for name in COMMANDS:
         numbers, count = trial.sites(name)
         sites += [(name, number) for number in numbers if number not in seen]
         seen.update(numbers)
-        by_library += [(name, f"+{at}") for at in range(1, count + 1)]
-    print(f"{len(sites)} allocation sites of raya, {len(by_library)} allocations by libraries, seed {seed}", flush=True)
+        library_faults += [(name, f"+{at}") for at in range(1, count + 1)]
+    print(f"{len(sites)} allocation sites of raya, {len(library_faults)} allocations by libraries, seed {seed}", flush=True)
     generator = random.Random(seed)
     if sample:
         library_count = max(1, sample // 5)
-        return generator.sample(sites, sample - library_count) + generator.sample(by_library, library_count)
-    return sites + generator.sample(by_library, LIBRARY_ALLOCATIONS)
+        return generator.sample(sites, sample - library_count) + generator.sample(library_faults, library_count)
+    return sites + generator.sample(library_faults, LIBRARY_ALLOCATIONS)
 
 
 def read_log(path, program):

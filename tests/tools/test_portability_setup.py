@@ -10,8 +10,8 @@ import portability_implementations
 import portability_setup
 
 # Start of pocl_get_llvm_cpu_name(): call LLVM; test rdx, rdx; je; mov rbp, rax.
-ASKS_LLVM = bytes.fromhex("5553 4883ec08 e8058ab003 4885d2 7430 4889c5")
-DRIVER = b"\x90" * 64 + ASKS_LLVM + b"\x90" * 64 + b"\0generic\0haswell\0skylake-avx512\0"
+LLVM_CALL = bytes.fromhex("5553 4883ec08 e8058ab003 4885d2 7430 4889c5")
+DRIVER = b"\x90" * 64 + LLVM_CALL + b"\x90" * 64 + b"\0generic\0haswell\0skylake-avx512\0"
 ZEN5 = "vendor_id\t: AuthenticAMD\ncpu family\t: 26\nflags\t\t: fpu avx2 avx512f avx512vl\n"
 
 
@@ -119,7 +119,7 @@ def check_missing_devices(scratch):
     found = portability_implementations.known_implementations(scratch)
     portability_implementations.mark_missing_devices(found, str(raya))
     unavailable = {i.name: i.unavailable for i in found}
-    expect(unavailable["gpu"] == "its driver is installed, and shows no device", f"a driver without its device: {unavailable['gpu']}")
+    expect(unavailable["gpu"] == "its driver is installed, but reports no device", f"a driver without its device: {unavailable['gpu']}")
     expect(unavailable["other"] is None and unavailable["PoCL"] is None, "a driver with a fault, and PoCL without a device, were left out")
 
 

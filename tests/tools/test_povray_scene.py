@@ -132,11 +132,11 @@ class Triangles(unittest.TestCase):
 
     def test_concave_outlines_on_all_axes_in_both_orientations(self):
         for place in (lambda u, v: (1.0, u, v), lambda u, v: (v, 1.0, u), lambda u, v: (u, v, 1.0), lambda u, v: (u, v, u + v)):
-            slope = 3 ** 0.5 if place(1, 1) == (1, 1, 2) else 1
+            area_factor = 3 ** 0.5 if place(1, 1) == (1, 1, 2) else 1
             outline = [place(u, v) for u, v in self.comb]
             for shift in range(len(outline)):
-                self.cut(outline[shift:] + outline[:shift], 14 * slope)
-                self.cut((outline[shift:] + outline[:shift])[::-1], 14 * slope)
+                self.cut(outline[shift:] + outline[:shift], 14 * area_factor)
+                self.cut((outline[shift:] + outline[:shift])[::-1], 14 * area_factor)
 
     def test_a_hole_joined_to_the_outline_is_not_covered(self):
         outline = [(0, 0), (4, 0), (4, 4), (0, 4), (0, 0), (1, 1), (1, 2), (2, 2), (2, 1), (1, 1)]

@@ -112,9 +112,9 @@ class Reports:
         start = time.monotonic()
         (self.folder / file).unlink(missing_ok=True)
         self.run(*launcher, self.raya, *command, code=code, **variables)
-        self.take(schema_name, " ".join(map(str, command)), (self.folder / file).read_text(), time.monotonic() - start)
+        self.add_report(schema_name, " ".join(map(str, command)), (self.folder / file).read_text(), time.monotonic() - start)
 
-    def take(self, schema_name, name, text, seconds=0):
+    def add_report(self, schema_name, name, text, seconds=0):
         print(f"{seconds:6.2f} s  {name}")
         self.made.append((schema_name + ".json", name, json.loads(text)))
 
@@ -147,7 +147,7 @@ class Reports:
             launcher = [self.mpirun, "-n", "2"]
             render(spheres, *ring, launcher=launcher)
             render(spheres, *torus, "--profile", launcher=launcher)
-            self.take("ping", "ping", self.run(*launcher, self.raya, "ping", stdout=subprocess.PIPE))
+            self.add_report("ping", "ping", self.run(*launcher, self.raya, "ping", stdout=subprocess.PIPE))
 
     def make_other_reports(self):
         scene = SCENES / "spheres.nff"
@@ -162,11 +162,11 @@ class Reports:
         self.run(self.patch_kernels, "kernels", *FAULT)
         self.make("verify", *check, "--kernel-dir", "kernels", code=4)
         for arguments in ((self.odd_scene(), "--accel", "grid"), (SCENES / "centre.nff", "--offset", "3")):
-            self.take("info", f"info {arguments[0]}", self.run(self.raya, "info", *arguments, "--json", stdout=subprocess.PIPE))
-        self.take("gpu_day", "tools/gpu_day", gpu_day(self.raya, self.folder / "day")[0].read_text())
+            self.add_report("info", f"info {arguments[0]}", self.run(self.raya, "info", *arguments, "--json", stdout=subprocess.PIPE))
+        self.add_report("gpu_day", "tools/gpu_day", gpu_day(self.raya, self.folder / "day")[0].read_text())
         for mapping in ("cyclic:3", "rows"):
             self.run(self.raya, "explore", scene, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "1", "--format", "fp32", "-o", "e.html")
-            self.take("explore", "raya explore", json.dumps(report_of((self.folder / "e.html").read_text())))
+            self.add_report("explore", "raya explore", json.dumps(report_of((self.folder / "e.html").read_text())))
         for study in ("table2", "table4", "fig8"):
             self.make("study", "study", study, "--size", "32", "--views", "20", "-o", "study", file=f"study/{study}.json")
 
@@ -177,7 +177,7 @@ class Reports:
             self.make("tune", "tune", scene, "--seconds", seconds, "--variants", "none", "--format", "fp32", "--size", "16", "--report", "r.json",
                      XDG_CACHE_HOME=str(self.folder / "cache"))
             seconds *= 2
-        self.take("tuned", "the stored settings", next(self.folder.glob("cache/raya/tuned-*.json")).read_text())
+        self.add_report("tuned", "the stored settings", next(self.folder.glob("cache/raya/tuned-*.json")).read_text())
 
 
 def used_members(rules, made):
@@ -275,7 +275,7 @@ def main(raya, patch_kernels, mpirun=""):
     print(f"{time.monotonic() - start:6.2f} s  {len(made)} reports compared with {len(rules.schemas)} schemas", flush=True)
     mutations = int(os.environ.get("RAYA_REPORT_MUTATIONS") or 600)
     wrong += undetected_damage(rules, Damage(made, seed), mutations)
-    print(f"{time.monotonic() - start:6.2f} s  and {mutations} damaged ones")
+    print(f"{time.monotonic() - start:6.2f} s  {mutations} damaged reports checked")
     print("\n".join(f"FAILED: {line}" for line in wrong))
     return bool(wrong)
 

@@ -71,7 +71,7 @@ echo catch2 config-files; exit 1"
 run_setup
 expect 1 "neither root nor sudo" "$line cmake catch2"
 
-# The same with a sudo that refuses this user, and without a terminal for a password.
+# The same packages are missing; sudo refuses this user, and there is no terminal for a password.
 mock_program sudo 'exit 1'
 run_setup
 expect 1 "neither root nor sudo" "$line cmake catch2"
@@ -87,8 +87,8 @@ mock_program sudo '[[ $* != *apt-get* ]]'
 run_setup
 expect 1 "apt-get failed" "$line cmake catch2"
 
-# Another program holds apt's locks: the lock of `update` until the third attempt, that of `install` until the second. Then: for longer than
-# tools/setup waits.
+# Another program holds apt's locks: the lock of `update` until the third attempt, that of `install` until the second. Then it holds
+# them for longer than tools/setup waits.
 chmod 777 "$machine"
 mock_program sleep "echo \$1 >>$machine/slept"
 mock_program sudo '[[ $* == *apt-get* ]] || exit 0

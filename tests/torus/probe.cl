@@ -8,9 +8,9 @@ void voxel_hits(__global const uint* restrict memories,  // words of all nodes' 
                 __global const float* restrict rays,
                 const uint start,                        // offset of the node's memory, in words
                 const uint voxel,                        // index of the voxel in the node; the node's number of
-                                                         // voxels: the kernel tests only planes
+                                                         // voxels selects a test of the planes alone
                 __global uint* restrict objects,         // [ray]: object number in the voxel; RAYA_NO_OBJECT: miss
-                __global float* restrict distances,      // [ray]: t; for a miss the ray's limit
+                __global float* restrict distances,      // [ray]: distance of the hit; for a miss the ray's limit
                 __global float* restrict places)         // [ray][3][3]: geometric normal, normal, colour; undefined
                                                          // for a miss
 {

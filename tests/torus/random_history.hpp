@@ -21,8 +21,8 @@ class HistoryBuilder {
                                  .first_message = static_cast<std::uint32_t>(history.messages.size())});
         return static_cast<std::uint32_t>(history.tasks.size()) - 1;
     }
-    /// add_ray() adds a ray that the last task sends to node `destination`; add_return() adds a return to the root.
-    /// Both return the message's number.
+    /// add_ray() adds a ray from the most recently added task to node `destination`; add_return() adds a return from
+    /// this task to the root. Both functions return the message's number.
     std::uint32_t add_ray(std::uint32_t destination) { return send(destination, RAYA_PACKET_WORDS, RAYA_KIND_PRIMARY); }
     std::uint32_t add_return() { return send(RAYA_ROOT, RAYA_RETURN_WORDS, RAYA_KIND_RETURN); }
 

@@ -73,9 +73,9 @@ TEST_CASE("messages preempt the main task and delay its end by their processor t
     HistoryBuilder h;
     h.add_task(1, 100'000);  // runs during all other tasks
     h.add_task(0, 10);
-    h.add_task(2, 10, h.add_ray(2));  // passes through node 1
+    h.add_task(2, 10, h.add_ray(2));  // this ray passes through node 1
     h.add_task(3, 10);
-    h.add_return();  // takes the other direction
+    h.add_return();  // from node 3 through node 4 to the root
     const AsyncResult r = simulate(torus_of(5), h.history);
     CHECK(r.finish_ms == about(100'000 * kCycle + 2 * kRayEnd));
     CHECK(r.nodes[1].messages_ms == about(2 * kRayEnd));
@@ -128,12 +128,12 @@ TEST_CASE("a long task delays the tasks that depend on a later ray of its node",
     HistoryBuilder h;
     h.add_task(0, 10);
     const std::uint32_t ray_to_0 = h.add_ray(0), ray_to_1 = h.add_ray(1);
-    h.add_task(0, kLong, ray_to_0);      // superstep 2 of node 0; starts before the ray from node 1 arrives
-    h.add_task(1, 100'000, ray_to_1);    // superstep 2 of node 1
-    h.add_task(0, 10, h.add_ray(0));     // superstep 3 of node 0
-    h.add_task(2, kLong, h.add_ray(2));  // superstep 4 of node 2, after the task above
+    h.add_task(0, kLong, ray_to_0);  // on node 0; starts before the ray from node 1 arrives
+    h.add_task(1, 100'000, ray_to_1);
+    h.add_task(0, 10, h.add_ray(0));     // on node 0; waits for the long task
+    h.add_task(2, kLong, h.add_ray(2));  // on node 2, after the task above
     const double delayed_ms = simulate(torus_of(4), h.history).finish_ms;
-    h.history.tasks[1].cycles = 0;  // the long task of node 0
+    h.history.tasks[1].cycles = 0;  // the long task on node 0
     const double undelayed_ms = simulate(torus_of(4), h.history).finish_ms;
     CHECK(delayed_ms > 2 * kLong * kCycle);
     CHECK(undelayed_ms + 0.1 < kLong * kCycle + 10);
@@ -194,7 +194,7 @@ TEST_CASE("invalid histories are refused", "[torus]") {
     const raya_torus torus = make_torus({3, 2, 1}, Links::kTorus3d);
     const History valid = random_history(random, torus, 100);
     REQUIRE(valid.tasks.size() > 50);
-    const auto refused = [&](const auto& spoil) {
+    const auto check_refused = [&](const auto& spoil) {
         History invalid = valid;
         spoil(invalid);
         CHECK_THROWS_AS(simulate(torus, invalid), std::logic_error);
@@ -203,15 +203,15 @@ TEST_CASE("invalid histories are refused", "[torus]") {
     const auto ray = static_cast<std::size_t>(std::ranges::find_if(valid.messages, is_ray) - valid.messages.begin());
     const auto caused = [](const HistoryTask& t) { return t.cause != HistoryTask::kNoCause; };
     const auto task = static_cast<std::size_t>(std::ranges::find_if(valid.tasks, caused) - valid.tasks.begin());
-    refused([&](History& h) { h.messages[ray].destination ^= 1; });
-    refused([&](History& h) { h.messages[ray].kind = RAYA_KIND_RETURN; });
-    refused([&](History& h) { h.messages[ray].words = 0; });
-    refused([&](History& h) { h.messages[ray].task += 1; });
-    refused([&](History& h) { h.tasks[task].cause = HistoryTask::kNoCause; });
-    refused([&](History& h) { h.tasks[task + 1].cause = h.tasks[task].cause; });
-    refused([&](History& h) { h.tasks[task].node = 6; });
-    refused([&](History& h) { h.tasks.pop_back(); });
-    refused([&](History& h) { h.tasks.front().cause = 0; });
+    check_refused([&](History& h) { h.messages[ray].destination ^= 1; });
+    check_refused([&](History& h) { h.messages[ray].kind = RAYA_KIND_RETURN; });
+    check_refused([&](History& h) { h.messages[ray].words = 0; });
+    check_refused([&](History& h) { h.messages[ray].task += 1; });
+    check_refused([&](History& h) { h.tasks[task].cause = HistoryTask::kNoCause; });
+    check_refused([&](History& h) { h.tasks[task + 1].cause = h.tasks[task].cause; });
+    check_refused([&](History& h) { h.tasks[task].node = 6; });
+    check_refused([&](History& h) { h.tasks.pop_back(); });
+    check_refused([&](History& h) { h.tasks.front().cause = 0; });
     CHECK_NOTHROW(simulate(torus, valid));
     CHECK(simulate(torus, {}).finish_ms == 0);
 }

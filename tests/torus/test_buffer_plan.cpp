@@ -113,7 +113,7 @@ TEST_CASE("queues and mailboxes that exceed the device's memory are refused, wit
     CHECK(refusal(4004) ==
           "s.nff: queues of 4004 packets and their mailboxes in 64 nodes do not fit the memory of a small device; use "
           "--queue 2002 or fewer nodes");
-    // Limit on the total: the queues, and the mailboxes for rays and returns at both ends of each link.
+    // Total memory for 4000 packets: the queues, and the mailboxes for rays and returns at both ends of each link.
     device.total = 64ull * 64 * 4000 + 3 * device.max_buffer;
     CHECK(refusal(4000) == "no error");
     --device.total;
@@ -149,7 +149,7 @@ TEST_CASE("the planned queue is the longest that fits, to the byte", "[torus]") 
     }
 }
 
-TEST_CASE("a queue shorter than a ray's tree can need is refused, with the needed length", "[torus]") {
+TEST_CASE("a queue that is too short for the tree of one ray is refused, with the required length", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     const NodeMemories memories = nodes_with_spheres({3, 4}, torus);
     CHECK(user_error_message([&] { plan_buffers("balls.nff", memories, torus, {}, 6, 7); }) ==
@@ -163,7 +163,7 @@ TEST_CASE("a scene that does not fit is refused with figures, the fullest node a
     const std::uint64_t limit = node_words_bytes(200) + packet_bytes(9, 4);
     const std::string figures = fmt::format(
         "s.nff: does not fit: 3 of 4 nodes can hold their voxels, 1 cannot; node 1 (voxel 1, 0, 0 with 300 objects) "
-        "needs {:.1f} KB and 1.9 KB of buffers, a node has {:.1f} KB; ",
+        "needs {:.1f} KB for the scene and 1.9 KB for buffers, a node has {:.1f} KB; ",
         std::ceil(node_words_bytes(300) / 102.4) / 10, std::floor(double(limit) / 102.4) / 10);
     REQUIRE(packet_bytes(9, 4) == 1920);  // 1.875 KB
     const std::uint64_t sufficient_bytes = (node_words_bytes(300) + 1920 + 1023) / 1024 * 1024;
@@ -227,7 +227,7 @@ TEST_CASE("if a shorter queue fits, the refusal names it", "[torus]") {
     const std::string message =
         user_error_message([&] { plan_buffers("s", memories, torus, limit, 1000, 9, std::ref(trial)); });
     const std::uint64_t sufficient_bytes = (node_words_bytes(300) + packet_bytes(1000, 4) + 1023) / 1024 * 1024;
-    CHECK_THAT(message, Contains("0 of 4 nodes can hold") && Contains("and 226.6 KB of buffers") &&
+    CHECK_THAT(message, Contains("0 of 4 nodes can hold") && Contains("and 226.6 KB for buffers") &&
                             Contains(fmt::format("; use --queue 100 or --pe-memory {}", sufficient_bytes)));
     CHECK(trial.calls == 0);
     CHECK(plan_buffers("s", memories, torus, limit, 100, 9).queue == 100);

@@ -1,5 +1,5 @@
-// Charges of the model that differ from the device's transfers: discarded rays, and one return per ray instead of one
-// return per term.
+// Two charges of the time model: the cost of discarded rays, and the words of one return per ray, although the device
+// sends one return per term.
 #include <catch2/catch.hpp>
 #include <map>
 #include <tuple>
@@ -104,7 +104,7 @@ TEST_CASE("one return per ray: the return leaves from the node in which the last
         CHECK(r.result.contributions >= per_term_result.contributions);
         added_returns += r.result.contributions - per_term_result.contributions;
     }
-    CHECK(added_returns > 100);  // each is the return of a blocked last shadow ray
+    CHECK(added_returns > 100);  // number of returns that blocked last shadow rays send
 }
 
 }  // namespace raya

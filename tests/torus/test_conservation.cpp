@@ -55,8 +55,8 @@ void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t light
     CHECK(r.made[RAYA_KIND_RETURN] <= terms + blocked_rays);
 }
 
-// Checks that each packet crosses as many links as the torus distance between its source and destination, and that the
-// links' words are those of the routing rules.
+// Checks that each packet crosses as many links as the torus distance between its source and destination, and that each
+// link carries the number of words that follows from the routing rules.
 void check_traffic(const RecordedRender& r, const TorusSettings& s) {
     std::uint64_t hops = 0;
     std::vector<std::uint64_t> words(r.result.link_words.size());
@@ -123,7 +123,6 @@ bool is_tour(const std::vector<PacketRecord>& stages, const raya_torus& torus, c
     return is_valid;
 }
 
-// Numbers of rays.
 struct RayCounts {
     std::size_t narrow = 0, wide = 0;
 };

@@ -124,10 +124,10 @@ TEST_CASE("every injected kernel fault is detected", "[torus][.][faults]") {
     wide_rays.format = "spa22";
     wide_rays.packets = {22, true};
     // The eye is outside the box, so several nodes make a ray for the same pixel.
-    const TorusCase outside{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
+    const TorusCase eye_outside{.width = 24, .height = 20, .nodes = {4, 3, 2}, .lanes = 1, .group = 1};
     const Trial trials[] = {{random_view_scene(kSceneSeeds[1]), narrow_rays},
                             {far_mirror_scene(kSceneSeeds[3], "spa22"), wide_rays},
-                            {random_view_scene(kSceneSeeds[6]), outside}};
+                            {random_view_scene(kSceneSeeds[6]), eye_outside}};
     std::vector<Traffic> expected;
     for (const Trial& t : trials) expected.push_back(traffic_of(session, t.scene, t.c));
     for (std::size_t i = 0; i < expected.size(); ++i)

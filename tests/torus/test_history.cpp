@@ -92,7 +92,7 @@ TEST_CASE("cycles, words and messages of wide rays are in the history", "[torus]
     check_against_counts(r);
 }
 
-TEST_CASE("the cost of discarded rays is charged to the rays that a node keeps", "[torus]") {
+TEST_CASE("the cost of discarded rays is added to the cost of the rays that the node keeps", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     HistoryRecorder recorder(torus);
     const auto primary = [](std::uint32_t pixel) { return raya_processed{pixel, RAYA_KIND_PRIMARY, 0, 100}; };
@@ -113,7 +113,7 @@ TEST_CASE("the cost of discarded rays is charged to the rays that a node keeps",
                     std::logic_error);
 }
 
-TEST_CASE("reading a history without settings.history is an error", "[torus]") {
+TEST_CASE("observing the work of the nodes without settings.history is an error", "[torus]") {
     Session session(choose_device(""));
     TorusRenderer renderer(session, test_scene(), settings_of({.nodes = {2, 2, 2}, .voxels = {3, 3, 3}}));
     CHECK_THROWS_AS(renderer.render({}, {.work = [](const NodeWork&) {}}), std::logic_error);

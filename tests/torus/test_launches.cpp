@@ -1,5 +1,5 @@
-// Two settings change neither the image nor the counts: little work per launch, and a kernel instead of copy commands
-// that transfers the packets over the links.
+// Two settings change neither the image nor the counts: launches with little work, and link exchange by a kernel
+// instead of copy commands.
 #include <fmt/core.h>
 
 #include <catch2/catch.hpp>
@@ -179,7 +179,7 @@ TEST_CASE("a node's launch is bounded by intersection tests, and by loop iterati
 
     device.max_loop_iterations = 65'535;
     LaunchPlan short_loops = plan_of(100), one_voxel_too_long = plan_of(10'000);
-    CHECK(short_loops.route() == LaunchBudget{7679, false});  // (65535 - 4096) / 8; a queue may hold 8192 packets
+    CHECK(short_loops.route() == LaunchBudget{7679, false});  // (65535 - 4096) / 8; a full queue has 8192 packets
     CHECK_FALSE(short_loops.accept().single_launch);
     // Units of work per packet: 1 for its batch, 100 for the tests, 12 for its processing (RAYA_WORK_OF_PROCESSING).
     for (const auto& [packets, single_launch] : {std::pair{22u, true}, std::pair{23u, false}}) {

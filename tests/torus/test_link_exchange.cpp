@@ -13,7 +13,7 @@
 namespace raya {
 namespace {
 
-constexpr std::uint32_t kUnsent = 0xdead0000;  // words of the outboxes that hold no packet
+constexpr std::uint32_t kUnsent = 0xdead0000;  // value of the words in outboxes that belong to no packet
 
 // Fills and empties the mailboxes of all nodes, as the nodes' kernels would between two exchanges.
 class Mailboxes {
@@ -120,7 +120,7 @@ class Mailboxes {
 
     /// Returns the number of packets that have arrived.
     std::uint64_t arrived_packets() const { return arrivals_.size(); }
-    /// Numbers of copy commands that copied several mailboxes, and a single mailbox.
+    /// Number of commands that copied several mailboxes; number of commands that copied a single mailbox.
     static inline std::uint64_t multi_box_copies = 0, single_box_copies = 0;
 
   private:
@@ -231,7 +231,7 @@ TEST_CASE("a long mailbox is copied separately from short ones if that moves few
     }
 }
 
-TEST_CASE("a link's words are those of the charged messages, not of all packets that it transfers", "[torus]") {
+TEST_CASE("the words of a link include only the returns that the model charges as messages", "[torus]") {
     Session session(choose_device(""));
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     const NodeDistribution distribution(torus);

@@ -16,7 +16,7 @@ constexpr std::size_t kRays = 640;
 
 struct VoxelHits {
     std::vector<std::uint32_t> objects;  // object numbers in the voxel
-    std::vector<float> distances;        // t
+    std::vector<float> distances;        // distances of the hits
     std::vector<float> places;           // [ray][9]: geometric normal, normal, colour
 };
 

@@ -24,23 +24,23 @@ class NodeCheck {
         return {first, first + static_cast<std::ptrdiff_t>(count)};
     }
 
-    // Compares the node's objects of `words` words each, from word `at` on, with the job's objects `numbers`. The job's
-    // object `first` is at its word `job_at`.
-    void objects(std::uint32_t at, std::uint32_t words, const Words& numbers, std::uint32_t first,
-                 std::uint32_t job_at) {
+    // Compares the node's objects of `words` words each, from word `at` of the node on, with the job's objects
+    // `numbers`. The job's object `first` starts at word `job_at` of the job.
+    void check_objects(std::uint32_t at, std::uint32_t words, const Words& numbers, std::uint32_t first,
+                       std::uint32_t job_at) {
         for (std::size_t i = 0; i < numbers.size(); ++i) {
             const std::size_t node_words_at = at + i * words, job_words_at = job_at + (numbers[i] - first) * words;
             Words node_words = node_.section(node_words_at, words), job_words = job_section(job_words_at, words);
-            surface(node_words[RAYA_OBJECT_SURFACE_AT], job_words[RAYA_OBJECT_SURFACE_AT]);
+            check_surface(node_words[RAYA_OBJECT_SURFACE_AT], job_words[RAYA_OBJECT_SURFACE_AT]);
             node_words[RAYA_OBJECT_SURFACE_AT] = job_words[RAYA_OBJECT_SURFACE_AT];
-            if (words == RAYA_POLYGON_WORDS) outline(node_words, job_words);
+            if (words == RAYA_POLYGON_WORDS) check_outline(node_words, job_words);
             if (node_words != job_words) FAIL("the words of object " << numbers[i] << " differ from the job's");
         }
     }
 
     // Compares the rows of the spheres, which start at a multiple of four words, and the surface offsets that follow
     // the rows.
-    void spheres(const raya_objects& node_objects, const Words& numbers) {
+    void check_spheres(const raya_objects& node_objects, const Words& numbers) {
         const raya_objects& all = header_.objects;
         const std::uint32_t node_surfaces_at = raya_sphere_surfaces_at(node_objects.spheres_at, node_objects.spheres);
         const std::uint32_t job_surfaces_at = raya_sphere_surfaces_at(all.spheres_at, all.spheres);
@@ -49,11 +49,11 @@ class NodeCheck {
             const Words row = node_.section(node_objects.spheres_at + i * RAYA_SPHERE_WORDS, RAYA_SPHERE_WORDS);
             if (row != job_section(all.spheres_at + numbers[i] * RAYA_SPHERE_WORDS, RAYA_SPHERE_WORDS))
                 FAIL("the words of sphere " << numbers[i] << " differ from the job's");
-            surface(node_.section(node_surfaces_at + i, 1)[0], job_section(job_surfaces_at + numbers[i], 1)[0]);
+            check_surface(node_.section(node_surfaces_at + i, 1)[0], job_section(job_surfaces_at + numbers[i], 1)[0]);
         }
     }
 
-    void surface(std::uint32_t node_at, std::uint32_t job_at) {
+    void check_surface(std::uint32_t node_at, std::uint32_t job_at) {
         const auto [entry, is_new] = surfaces_.try_emplace(job_at, node_at);
         if (entry->second != node_at)
             FAIL("the node has two copies of the surface at word " << job_at << " of the job");
@@ -62,7 +62,7 @@ class NodeCheck {
     }
 
     // Checks that the surfaces follow the header without gaps, in the job's order.
-    void surfaces() const {
+    void check_surfaces() const {
         std::uint32_t at = sizeof(raya_node) / 4;
         for (const auto& [job_at, node_at] : surfaces_) {
             CHECK(node_at == at);
@@ -74,7 +74,7 @@ class NodeCheck {
 
   private:
     // Compares corners and normals. Then overwrites the polygon's offsets of corners and normals with those of the job.
-    void outline(Words& node_words, const Words& job_words) {
+    void check_outline(Words& node_words, const Words& job_words) {
         const std::size_t corners = job_words[RAYA_POLYGON_CORNERS] * RAYA_CORNER_WORDS;
         if (node_.section(node_words[RAYA_POLYGON_CORNERS_AT], corners) !=
             job_section(job_words[RAYA_POLYGON_CORNERS_AT], corners))
@@ -124,9 +124,9 @@ void check_voxel(NodeCheck& check, NodeReader& node, const raya_voxel_memory& vo
     CHECK((node_objects.planes == all.planes && node_objects.planes_at == node.header().job.objects.planes_at));
     CHECK(voxel.first_plane == all.spheres);
     CHECK(node.section(voxel.numbers_at, list.size()) == list);
-    check.spheres(node_objects, spheres);
-    check.objects(node_objects.polygons_at, RAYA_POLYGON_WORDS, polygons, polygon, all.polygons_at);
-    check.objects(node_objects.cones_at, RAYA_CONE_WORDS, cones, cone, all.cones_at);
+    check.check_spheres(node_objects, spheres);
+    check.check_objects(node_objects.polygons_at, RAYA_POLYGON_WORDS, polygons, polygon, all.polygons_at);
+    check.check_objects(node_objects.cones_at, RAYA_CONE_WORDS, cones, cone, all.cones_at);
 }
 
 void check_node(const PackedJob& job, const Partition& partition, const raya_torus& torus, NodeReader& node) {
@@ -137,13 +137,13 @@ void check_node(const PackedJob& job, const Partition& partition, const raya_tor
     CHECK(node.section(node.header().job.lights_at, lights) == check.job_section(all.lights_at, lights));
     Words planes(all.objects.planes);
     for (std::uint32_t i = 0; i < planes.size(); ++i) planes[i] = i;
-    check.objects(node.header().job.objects.planes_at, RAYA_PLANE_WORDS, planes, 0, all.objects.planes_at);
+    check.check_objects(node.header().job.objects.planes_at, RAYA_PLANE_WORDS, planes, 0, all.objects.planes_at);
     for (std::uint32_t local = 0; local < node.header().voxels; ++local) {
         const std::uint32_t voxel = raya_voxel_of_node(torus, partition.grid, node.header().number, local);
         const auto first = partition.objects.begin() + partition.starts[voxel];
         check_voxel(check, node, node.voxel(local), {first, partition.objects.begin() + partition.starts[voxel + 1]});
     }
-    check.surfaces();
+    check.check_surfaces();
     // Only the padding before sphere rows was not read, and no word was read twice.
     CHECK(node.words_read(1) + node.words_read(0) == node.size());
     CHECK(node.words_read(0) <= 3 * (node.header().voxels + 1));
@@ -151,10 +151,10 @@ void check_node(const PackedJob& job, const Partition& partition, const raya_tor
 
 // Returns the number of objects in the node with the most objects, counted from the lists.
 std::uint64_t max_objects(const PackedJob& job, const Partition& p, const raya_torus& torus) {
-    std::vector<std::uint64_t> held(raya_nodes(torus), job.header().objects.planes);
+    std::vector<std::uint64_t> objects_of_nodes(raya_nodes(torus), job.header().objects.planes);
     for (std::uint32_t voxel = 0; voxel < raya_voxels(p.grid); ++voxel)
-        held[raya_node_of_voxel(torus, p.grid, voxel)] += p.starts[voxel + 1] - p.starts[voxel];
-    return *std::max_element(held.begin(), held.end());
+        objects_of_nodes[raya_node_of_voxel(torus, p.grid, voxel)] += p.starts[voxel + 1] - p.starts[voxel];
+    return *std::max_element(objects_of_nodes.begin(), objects_of_nodes.end());
 }
 
 }  // namespace
@@ -202,18 +202,18 @@ TEST_CASE("a node holds only the surfaces of its own objects and of the planes",
             pack_nodes(job, partition_of({2, 1, 1}, {{0, 1, 2}, {3}}), make_torus({2, 1, 1}, Links::kTorus3d));
         return std::vector<std::size_t>{memories.starts[1], memories.words.size() - memories.starts[1]};
     };
-    const auto in_rows = [](std::size_t words) { return (words + 3) / 4 * 4; };
-    const auto node_of = [&](std::size_t spheres, std::size_t surfaces, std::size_t planes) {
+    const auto whole_rows = [](std::size_t words) { return (words + 3) / 4 * 4; };
+    const auto node_words = [&](std::size_t spheres, std::size_t surfaces, std::size_t planes) {
         const std::size_t words_before_spheres = (sizeof(raya_node) + sizeof(raya_voxel_memory)) / 4 +
                                                  surfaces * RAYA_SURFACE_WORDS + planes * RAYA_PLANE_WORDS;
-        return in_rows(in_rows(words_before_spheres) +
-                       spheres * (RAYA_SPHERE_WORDS + 2));  // each sphere also has words for its surface and its number
+        return whole_rows(whole_rows(words_before_spheres) +
+                          spheres * (RAYA_SPHERE_WORDS + 2));  // + 2: words for the sphere's surface and number
     };
-    CHECK(words_of(scene) == std::vector<std::size_t>{node_of(3, 3, 0), node_of(1, 1, 0)});
+    CHECK(words_of(scene) == std::vector<std::size_t>{node_words(3, 3, 0), node_words(1, 1, 0)});
     scene.spheres[2].surface = 0;
-    CHECK(words_of(scene) == std::vector<std::size_t>{node_of(3, 2, 0), node_of(1, 1, 0)});
+    CHECK(words_of(scene) == std::vector<std::size_t>{node_words(3, 2, 0), node_words(1, 1, 0)});
     scene.planes = {{{0, 0, 1}, 0, 4}, {{0, 1, 0}, 0, 3}};
-    CHECK(words_of(scene) == std::vector<std::size_t>{node_of(3, 4, 2), node_of(1, 2, 2)});
+    CHECK(words_of(scene) == std::vector<std::size_t>{node_words(3, 4, 2), node_words(1, 2, 2)});
 }
 
 TEST_CASE("nodes hold the same words on a 2-D torus as on a 3-D torus", "[torus]") {

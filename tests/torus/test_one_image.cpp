@@ -21,8 +21,8 @@ std::uint32_t random_cases() {
 
 constexpr std::uint32_t kMaxTestNodes = 100;
 
-// Returns c with random nodes, voxels, links, injection, packet charge and queue length. The kernels need not be
-// rebuilt for them.
+// Returns c with random nodes, voxels, links, injection, packet charge and queue length, none of which requires another
+// build of the kernels.
 TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
     do c.nodes = random_sides(random, 5);
     while (c.nodes[0] * c.nodes[1] * c.nodes[2] > kMaxTestNodes);

@@ -22,7 +22,7 @@ TEST_CASE("the torus reports progress per superstep, and 1 only after the last",
             CAPTURE(i, fractions.size());
             CHECK(fractions[i] < 1);
         }
-        for (const double position : {0.3, 0.5, 0.7, 0.9}) {  // in fractions of the supersteps
+        for (const double position : {0.3, 0.5, 0.7, 0.9}) {  // fraction of the supersteps that are done
             CAPTURE(position);
             CHECK(fractions[static_cast<std::size_t>(position * static_cast<double>(fractions.size()))] ==
                   Approx(position).margin(0.25));

@@ -13,7 +13,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
     return number;
 }
 
-TEST_CASE("a platform has a host per node, two directions and a wire per link, and routes to neighbours", "[torus]") {
+TEST_CASE("a platform has a host per node, two one-way links and a wire per link, and neighbour routes", "[torus]") {
     for (const Links links : {Links::kTorus3d, Links::kTorus2d}) {
         const raya_torus torus = make_torus({4, 4, 4}, links);
         const std::size_t neighbour_pairs = 64 * links_of_node(torus);

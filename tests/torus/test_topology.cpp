@@ -114,7 +114,7 @@ TEST_CASE("a 2-D torus has sides as close to square as its nodes allow", "[torus
         SplitMix random(seed);
         const auto nodes = random_sides(random, 24);
         const raya_torus torus = make_torus(nodes, Links::kTorus2d);
-        CAPTURE(seed, torus_text(torus), torus.slabs);  // of equal ratios, the one with the fewest slabs is chosen
+        CAPTURE(seed, torus_text(torus), torus.slabs);  // if two numbers of slabs give equal ratios, the smaller
         REQUIRE(torus.sides[2] == 1);
         REQUIRE(nodes[2] % torus.slabs == 0);
         REQUIRE(torus.sides[0] == nodes[0] * torus.slabs);
@@ -142,7 +142,7 @@ TEST_CASE("every node has one number and one place", "[torus]") {
                 for (std::uint32_t i = 0; i < t.nodes[0]; ++i) {
                     const std::uint32_t node = raya_node_of(t, i, j, k);
                     if (!numbers.insert(node).second) FAIL("two nodes have the number " << node);
-                    if (node >= raya_nodes(t)) FAIL("a node has the number " << node);
+                    if (node >= raya_nodes(t)) FAIL("number of a node too large: " << node);
                     if (!same(raya_node_place(t, node), {{i, j, k}})) FAIL("wrong raya_node_place() of node " << node);
                     const raya_place p = raya_torus_place(t, node);
                     if (raya_node_at(t, p) != node) FAIL("wrong raya_node_at() of the place of node " << node);

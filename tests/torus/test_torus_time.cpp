@@ -48,13 +48,13 @@ TEST_CASE("a node's processor time is the time for computing, sending and receiv
 TEST_CASE("both directions share a link, wrap-around links included", "[torus]") {
     const raya_torus torus = make_torus({2, 3, 1}, Links::kTorus3d);
     TorusResult result = result_of(torus);
-    const std::uint32_t last_row = raya_node_of(torus, 0, 2, 0), first_row = raya_node_of(torus, 0, 0, 0);  // nodes
-    send(result, last_row, 2, 100, 16);   // up along y from the last row to the first
-    send(result, first_row, 3, 100, 16);  // in the opposite direction over the same link
+    const std::uint32_t last_row_node = raya_node_of(torus, 0, 2, 0), first_row_node = raya_node_of(torus, 0, 0, 0);
+    send(result, last_row_node, 2, 100, 16);   // up along y from the last row to the first
+    send(result, first_row_node, 3, 100, 16);  // in the opposite direction over the same link
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
-    send(result, first_row, 2, 90, 16);  // another link
+    send(result, first_row_node, 2, 90, 16);  // from the first row to the second
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs));
-    send(result, last_row, 2, 100, 16);
+    send(result, last_row_node, 2, 100, 16);
     CHECK(torus_time(torus, result).links_ms == about_ms(1600 * kBothWaysWordMs + 1600 * kWordMs));
     // Two links join two nodes along x, one in each direction round the side. The links do not share bandwidth.
     TorusResult two_nodes = result_of(torus);

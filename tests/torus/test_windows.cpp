@@ -25,19 +25,19 @@ Vec3 vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 // Returns the direction of the ray through an image point. Each operation is rounded to the format, as in the kernels
 // (shading/camera.clh).
 Vec3 direction_of(const Camera& c, double row, double column) {
-    const auto in = [&](double value) { return rounded(value, c.format); };
+    const auto round = [&](double value) { return rounded(value, c.format); };
     Vec3 d;
     for (int axis = 0; axis < 3; ++axis)
-        d[axis] = in(c.job.column_step[axis] * column + in(c.job.row_step[axis] * row + c.job.corner[axis]));
-    const double square = in(d.z * d.z + in(d.y * d.y + in(d.x * d.x)));
-    const double inverse = in(1 / in(std::sqrt(square)));
-    return {in(d.x * inverse), in(d.y * inverse), in(d.z * inverse)};
+        d[axis] = round(c.job.column_step[axis] * column + round(c.job.row_step[axis] * row + c.job.corner[axis]));
+    const double square = round(d.z * d.z + round(d.y * d.y + round(d.x * d.x)));
+    const double inverse = round(1 / round(std::sqrt(square)));
+    return {round(d.x * inverse), round(d.y * inverse), round(d.z * inverse)};
 }
 
 constexpr double kNoEntry = std::numeric_limits<double>::infinity();
 
-// Returns the distance, in double precision, at which a ray enters the block of voxels from `first` to `last`; kNoEntry
-// if the ray misses the block.
+// Returns the distance, in double precision, at which a ray enters the box that the voxels `first` to `last` fill;
+// kNoEntry if the ray misses this box.
 double entry_distance(const raya_grid& grid, const raya_place& first, const raya_place& last, const Vec3& origin,
                       const Vec3& direction) {
     double in = 0, out = kNoEntry;
@@ -53,11 +53,11 @@ double entry_distance(const raya_grid& grid, const raya_place& first, const raya
     return in <= out ? in : kNoEntry;
 }
 
-// Returns true if a ray enters the box at voxel `at`.
+// Returns true if a ray enters the grid's box at voxel `at`.
 bool enters(const raya_grid& grid, const raya_place& at, const Vec3& origin, const Vec3& direction) {
     const raya_place last{{grid.divisions[0] - 1, grid.divisions[1] - 1, grid.divisions[2] - 1}};
-    const double box = entry_distance(grid, {{0, 0, 0}}, last, origin, direction);
-    return box < kNoEntry && entry_distance(grid, at, at, origin, direction) <= box * (1 + 1e-12);
+    const double box_entry = entry_distance(grid, {{0, 0, 0}}, last, origin, direction);
+    return box_entry < kNoEntry && entry_distance(grid, at, at, origin, direction) <= box_entry * (1 + 1e-12);
 }
 
 // The range ([0]: rows, [1]: columns) of the image points whose rays enter the box at a node's voxels.

@@ -250,10 +250,10 @@ TEST_CASE(
             if (parameter.value == &TunedValues::group) return parameter.values;
         return std::vector<std::uint32_t>{};
     };
-    const std::uint32_t llvmpipe = 65'535;
+    const std::uint32_t llvmpipe_iterations = 65'535;
     CHECK(groups_of(0, {}) == std::vector<std::uint32_t>{1, 2, 4});
-    CHECK(groups_of(llvmpipe, {}) == std::vector<std::uint32_t>{1, 2, 4, 8, 16});
-    for (const std::uint32_t max_iterations : {0u, llvmpipe})
+    CHECK(groups_of(llvmpipe_iterations, {}) == std::vector<std::uint32_t>{1, 2, 4, 8, 16});
+    for (const std::uint32_t max_iterations : {0u, llvmpipe_iterations})
         CHECK(groups_of(max_iterations, {.torus = true}) == std::vector<std::uint32_t>{1});
 }
 

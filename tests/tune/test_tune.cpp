@@ -48,7 +48,7 @@ TEST_CASE("t4_text: follows results-schema.json 1.0.0", "[tune]") {
     CHECK(results[0]["measurements"][0]["value"].get<double>() == Approx(80));
 }
 
-TEST_CASE("wins_significantly: requires a gain in nearly all pairs, and above the noise", "[tune]") {
+TEST_CASE("wins_significantly: requires a gain in nearly all pairs of samples, and a gain above the noise", "[tune]") {
     Trial trial = make_trial(TrialStatus::kCorrect);
     const std::vector<double> defaults(9, 0.1), better(9, 0.09);
     trial.samples = {defaults, better};
@@ -62,7 +62,7 @@ TEST_CASE("wins_significantly: requires a gain in nearly all pairs, and above th
     CHECK_FALSE(wins_significantly(make_trial(TrialStatus::kCorrectness)));
 }
 
-TEST_CASE("ratio_of: is the larger of the ratio of minimum times and the median ratio of pairs", "[tune]") {
+TEST_CASE("ratio_of: is the larger of the ratio of minimum times and the median ratio of sample pairs", "[tune]") {
     const Trial faster = make_trial(TrialStatus::kCorrect);  // minima: 0.08 / 0.1; pairs: 0.4, 1.0, 0.8
     CHECK(ratio_of(faster) == Approx(0.8));
     Trial one_fast_sample = faster;

@@ -35,28 +35,28 @@ inline constexpr mpfr_prec_t kExactBits = 700;
 class IeeeOracle {
   public:
     float add(float a, float b) {
-        return rounded([&](mpfr_ptr z) { return mpfr_add(z, take(a_, a), take(b_, b), MPFR_RNDN); });
+        return rounded([&](mpfr_ptr z) { return mpfr_add(z, assign(a_, a), assign(b_, b), MPFR_RNDN); });
     }
     float sub(float a, float b) {
-        return rounded([&](mpfr_ptr z) { return mpfr_sub(z, take(a_, a), take(b_, b), MPFR_RNDN); });
+        return rounded([&](mpfr_ptr z) { return mpfr_sub(z, assign(a_, a), assign(b_, b), MPFR_RNDN); });
     }
     float mul(float a, float b) {
-        return rounded([&](mpfr_ptr z) { return mpfr_mul(z, take(a_, a), take(b_, b), MPFR_RNDN); });
+        return rounded([&](mpfr_ptr z) { return mpfr_mul(z, assign(a_, a), assign(b_, b), MPFR_RNDN); });
     }
     float div(float a, float b) {
-        return rounded([&](mpfr_ptr z) { return mpfr_div(z, take(a_, a), take(b_, b), MPFR_RNDN); });
+        return rounded([&](mpfr_ptr z) { return mpfr_div(z, assign(a_, a), assign(b_, b), MPFR_RNDN); });
     }
     float sqrt(float a) {
-        return rounded([&](mpfr_ptr z) { return mpfr_sqrt(z, take(a_, a), MPFR_RNDN); });
+        return rounded([&](mpfr_ptr z) { return mpfr_sqrt(z, assign(a_, a), MPFR_RNDN); });
     }
     float mad(float a, float b, float c) {
-        return rounded([&](mpfr_ptr z) { return mpfr_fma(z, take(a_, a), take(b_, b), take(c_, c), MPFR_RNDN); });
+        return rounded([&](mpfr_ptr z) { return mpfr_fma(z, assign(a_, a), assign(b_, b), assign(c_, c), MPFR_RNDN); });
     }
     float round(double value) { return static_cast<float>(value); }
 
   private:
     // Assigns `value` to `number`, and returns `number`.
-    static mpfr_ptr take(Mpfr& number, float value) {
+    static mpfr_ptr assign(Mpfr& number, float value) {
         mpfr_set_flt(number, value, MPFR_RNDN);
         return number;
     }
@@ -102,7 +102,7 @@ inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const N
     Mpfr as_fp32(24), via_fp32(bits);  // `exact` rounded to fp32, and then to the format
     mpfr_set(truncated, exact, MPFR_RNDZ);
     mpfr_set(half_steps, exact, MPFR_RNDZ);
-    const bool half = mpfr_cmp(truncated, half_steps) != 0;
+    const bool in_upper_half = mpfr_cmp(truncated, half_steps) != 0;
     mpfr_set(midpoint, truncated, MPFR_RNDZ);
     if (mpfr_cmp_ui(truncated, 0) > 0)
         mpfr_nextabove(midpoint);
@@ -110,11 +110,11 @@ inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const N
         mpfr_nextbelow(midpoint);
     mpfr_set(fine, exact, MPFR_RNDZ);
     mpfr_set(fine_away, exact, MPFR_RNDA);
-    const bool up = mpfr_cmpabs(truncated, (mpfr_set_flt(as_fp32, expected, MPFR_RNDN), as_fp32)) < 0;
+    const bool rounded_away = mpfr_cmpabs(truncated, (mpfr_set_flt(as_fp32, expected, MPFR_RNDN), as_fp32)) < 0;
     if (mpfr_cmp(exact, truncated) == 0)
         note("exact");
-    else if (half && mpfr_cmp(exact, half_steps) == 0)
-        note(up ? "tie up" : "tie down");
+    else if (in_upper_half && mpfr_cmp(exact, half_steps) == 0)
+        note(rounded_away ? "tie up" : "tie down");
     else if (mpfr_cmp(fine, midpoint) == 0)
         note("just above a tie");
     else if (mpfr_cmp(fine_away, midpoint) == 0)
@@ -122,13 +122,13 @@ inline std::set<std::string> features_of(mpfr_ptr exact, float expected, const N
     else if (mpfr_cmp(fine, truncated) == 0)
         note("just above a number");
     else
-        note(half ? "upper half" : "lower half");
+        note(in_upper_half ? "upper half" : "lower half");
     // Rounding to fp32 first may give another result.
     mpfr_set(as_fp32, exact, MPFR_RNDN);
     mpfr_set(via_fp32, as_fp32, format.truncates ? MPFR_RNDZ : MPFR_RNDN);
     if (bits < 24 && mpfr_get_flt(via_fp32, MPFR_RNDN) != expected) features.insert(kDoubleRounding);
     int exponent = 0;
-    if (up && std::frexp(std::abs(expected), &exponent) == 0.5F) note("carries into the next binade");
+    if (rounded_away && std::frexp(std::abs(expected), &exponent) == 0.5F) note("carries into the next binade");
     return features;
 }
 

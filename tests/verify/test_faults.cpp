@@ -52,7 +52,7 @@ SourcePatch empty_kernel_patch(const std::string& file, const std::string& kerne
 
 }  // namespace
 
-TEST_CASE("rounding fault: the formats that round to nearest fail, no others", "[verify][faults]") {
+TEST_CASE("rounding fault: only the checks of reduced formats that round to nearest fail", "[verify][faults]") {
     const auto checks = run({kRoundingFault}, "number");
     CHECK(beginnings(checks, Outcome::kFail) == Names{"e5m10", "e6m15", "e8m12"});
     CHECK(beginnings(checks, Outcome::kPass) == Names{"fp32", "e6m15t", "e8m21t"});
@@ -78,7 +78,7 @@ TEST_CASE("division fault: div fails, not mul", "[verify][faults]") {
     CHECK_THAT(checks[0].verdict.result, Catch::Contains(" of div") && !Catch::Contains(" of mul"));
 }
 
-TEST_CASE("tie fault: known hits of coincident spheres fail, no others", "[verify][faults]") {
+TEST_CASE("tie fault: only the check of known hits of spheres fails, at equal distances", "[verify][faults]") {
     const auto checks = run({kTieFault}, ", fp32");
     CHECK(beginnings(checks, Outcome::kFail) == Names{"known hits of spheres"});
     CHECK(beginnings(checks, Outcome::kPass) ==
@@ -141,7 +141,7 @@ TEST_CASE("a kernel that does nothing: its checks fail", "[verify][faults]") {
     }
 }
 
-TEST_CASE("integer and barrier faults: the machine checks that cover them fail, no others", "[verify][faults]") {
+TEST_CASE("integer and barrier faults: only the machine checks that cover them fail", "[verify][faults]") {
     CHECK(failures(run({}, "machine")) == Names{});
     CHECK(failures(run({kMappingFault}, "machine")) == Names{"mapping: cyclic, block fold", "mapping: blocks"});
     CHECK(failures(run({kBarrierFault}, "machine")) == Names{"local memory and barriers, 32 work-items"});
@@ -154,7 +154,7 @@ TEST_CASE("border fault: only images with the filter fail, and the check names t
     CHECK_THAT(first_fault(checks).where, Catch::StartsWith("row 0, column 19"));
 }
 
-TEST_CASE("faults of link exchange by kernel and of resumed launches: the torus checks that cover them fail, no others",
+TEST_CASE("faults of link exchange by kernel and of resumed launches: only the torus checks that cover them fail",
           "[verify][faults]") {
     const Names by_kernel = {
         "torus3d: exchange of all mailboxes by a kernel", "torus3d: exchange of few mailboxes by a kernel",
@@ -170,7 +170,7 @@ TEST_CASE("faults of link exchange by kernel and of resumed launches: the torus 
     }
 }
 
-TEST_CASE("count faults at one place: the image check with the event fails", "[verify][faults][slow]") {
+TEST_CASE("count faults at one place: the check of an image with this event fails", "[verify][faults][slow]") {
     for (const CountFault& fault : kCountFaults) {
         CAPTURE(fault.event, fault.patch.file, fault.patch.replace);
         const auto checks = run({fault.patch}, fault.only);
@@ -188,10 +188,10 @@ TEST_CASE("count faults at one place: the image check with the event fails", "[v
 TEST_CASE("count faults of every event: an image check fails", "[verify][faults][.][long]") {
     for (int event = 0; event < RAYA_EVENTS; ++event)
         for (const int how : {0, 1, 2}) {
-            const bool walks = event == RAYA_WALKS || event == RAYA_STEPS, torus = event == RAYA_DISCARDED;
+            const bool traversal = event == RAYA_WALKS || event == RAYA_STEPS, torus_only = event == RAYA_DISCARDED;
             CAPTURE(event, how);
-            if (!torus)
-                CHECK(failures(run({ring_count_fault(event, how)}, walks                      ? kOnBvh
+            if (!torus_only)
+                CHECK(failures(run({ring_count_fault(event, how)}, traversal                  ? kOnBvh
                                                                    : event == RAYA_CONE_TESTS ? kOnCones
                                                                                               : kOnGlass))
                           .size() == 1);
@@ -201,7 +201,7 @@ TEST_CASE("count faults of every event: an image check fails", "[verify][faults]
         }
 }
 
-TEST_CASE("count faults: only image checks fail, all that count the event", "[verify][faults][slow]") {
+TEST_CASE("count faults: only image checks that count the events fail", "[verify][faults][slow]") {
     const auto checks = run({kCountFaults.front().patch, torus_count_fault(RAYA_SHADOW, 2)}, "");
     std::set<std::string> layers;
     for (const Check& check : checks)
@@ -219,7 +219,7 @@ TEST_CASE("reference images: have the counts of the ring and of other check kind
                Catch::StartsWith("primary 400 "));
 }
 
-TEST_CASE("verify: a failed build fails its check, and the others continue", "[verify]") {
+TEST_CASE("verify: a failed build fails its check, and the other checks run", "[verify]") {
     const VerifySettings settings{.sources = {"/no/such/folder"}, .only = "machine"};
     const auto checks = verify(choose_device(""), settings);
     CHECK(count_of(checks, Outcome::kFail) > 5);

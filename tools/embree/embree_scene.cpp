@@ -36,12 +36,12 @@ void cone_bounds(const RTCBoundsFunctionArguments* args) {
     }
 }
 
-// Returns t of the ray's nearest hit between `near` and `far`; kNoHit if there is none.
+// Returns t of the ray's nearest hit between `near` and `far`, and sets `normal`; returns kNoHit without a hit.
 float cone_hit(const PeerCone& c, V3 origin, V3 direction, float near, float far, V3& normal) {
-    // `start` is the ray's point nearest to the cone's base. With the origin instead, rounding would let a ray that
-    // starts on the cone hit the cone there.
-    const float moved = dot(c.base - origin, direction);
-    const V3 start = (origin - c.base) + moved * direction;
+    // `start` is the ray's point nearest to the cone's base, relative to the base. With the origin instead, rounding
+    // would let a ray that starts on the cone hit the cone there.
+    const float start_t = dot(c.base - origin, direction);
+    const V3 start = (origin - c.base) + start_t * direction;
     const float z = dot(start, c.axis), dz = dot(direction, c.axis);
     const V3 side = start - z * c.axis, dside = direction - dz * c.axis;
     const float radius = c.radius + c.slope * z, dradius = c.slope * dz;
@@ -54,7 +54,7 @@ float cone_hit(const PeerCone& c, V3 origin, V3 direction, float near, float far
     const float in = b > 0 ? by_a : by_q, out = b > 0 ? by_q : by_a;  // t where the ray enters and leaves the cone
     for (const float t : {std::min(in, out), std::max(in, out)}) {
         if (c.inside && t != out) continue;
-        const float axis_position = z + t * dz, distance = t + moved;
+        const float axis_position = z + t * dz, distance = t + start_t;
         if (!(distance > near && distance < far && axis_position >= 0 && axis_position <= c.height)) continue;
         const V3 from_axis = side + t * dside;
         normal = from_axis - (c.slope * (c.radius + c.slope * axis_position)) * c.axis;

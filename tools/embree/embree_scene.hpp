@@ -61,7 +61,7 @@ class EmbreeScene {
     const std::vector<PeerSurface>& surfaces() const { return surfaces_; }
     double build_s() const { return build_s_; }
 
-    /// Returns the hit that Embree found, or the hit of a plane if that is nearer.
+    /// Returns the hit that Embree found, which the parameters describe, or the hit of a plane if that is nearer.
     PeerHit hit(V3 origin, V3 direction, float t, unsigned geometry, unsigned primitive, V3 normal, float u,
                 float v) const;
     /// Returns true if the ray hits a plane at less than `t`.

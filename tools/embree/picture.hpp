@@ -147,7 +147,7 @@ class Picture {
         return rays;
     }
 
-    // Traces the next ray of each lane. Returns their number; adds the number of shadow rays to `rays`.
+    // Traces the next ray of each lane and returns the number of these rays. Adds the number of shadow rays to `rays`.
     long trace_next_rays(std::array<Lane, kPacketRays>& lanes, RTCIntersectContext& context, long& rays) const {
         alignas(64) std::array<int, kPacketRays> valid{};
         alignas(64) RTCRayHit16 q;

@@ -122,8 +122,8 @@ class Whitted {
         const float side = m.surface->checker;
         const float u = x >= y && x >= z ? m.point.y : y >= z ? m.point.z : m.point.x;
         const float v = x >= y && x >= z ? m.point.z : y >= z ? m.point.x : m.point.y;
-        const float half = 0.5f * (std::floor(u / side) + std::floor(v / side));
-        return half == std::floor(half) ? m.surface->even : m.surface->odd;
+        const float half_sum = 0.5f * (std::floor(u / side) + std::floor(v / side));
+        return half_sum == std::floor(half_sum) ? m.surface->even : m.surface->odd;
     }
 
     const EmbreeScene& embree_;

@@ -1,6 +1,6 @@
 """AMD CUs: clang makes machine code and reports its resource usage.
 
-Registers are the vector registers of a work-item, at most 512; spills are registers that are spilled to memory; scalar registers are
+Registers are the vector registers of a work-item, at most 512. Spills are vector registers spilled to memory; scalar registers are
 spilled to lanes of vector registers. Each of a CU's four SIMDs has 512 vector registers (allocated in units
 of 8), 800 scalar registers (in units of 16) and 8 waves. A CU has 64 KB of local memory and at most 16 groups of more than one wave (LLVM,
 AMDGPUBaseInfo.cpp). The figures come from the metadata of the code, as printed by -Rpass-analysis=kernel-resource-usage.
@@ -26,7 +26,7 @@ def faults_of(text):
 
 
 def waves_of(vector, scalar):
-    """Returns the number of waves for which a CU has registers. vector: number of registers of a work-item; scalar: of a wave."""
+    """Returns the number of waves for which a CU has registers. vector: vector registers of a work-item; scalar: scalar registers of a wave."""
     return 4 * min(8, 512 // rounded_up(max(vector, 1), 8), 800 // rounded_up(max(scalar, 1), 16))
 
 

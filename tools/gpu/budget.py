@@ -40,7 +40,7 @@ class Budget:
         return sorted(name for name in set(self.rows) - found if name[2] in targets)
 
     def write(self, all_figures, versions, whole=True):
-        """Writes the file with new figures. Keeps the rows of other targets; unless all kernels were built (whole), also those of other kernels."""
+        """Writes the file with new figures. Keeps the rows of other targets. whole: all kernels were built; otherwise also keeps other kernels."""
         self.versions.update(versions)
         rows = {name: row for name, row in self.rows.items() if not whole or name[2] not in versions}
         rows.update({f.name: {key: getattr(f, key) for key in COLUMNS} for f in all_figures})

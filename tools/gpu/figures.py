@@ -1,10 +1,10 @@
-"""Resource usage of a kernel on a GPU's core, and its occupancy: how many of its warps fit there.
+"""Resource usage of a kernel on a core of a GPU, and the kernel's occupancy: the number of its warps that fit in a core.
 
-A core runs work-groups: NVIDIA's SM, AMD's CU, Intel's Xe core. A warp runs `width` work-items in lockstep: NVIDIA's warp, AMD's wave, Intel's
-thread. For a group of `group` work-items:
+A core (NVIDIA: SM, AMD: CU, Intel: Xe core) runs work-groups. A warp (NVIDIA: warp, AMD: wave, Intel: thread) runs `width` work-items in
+lockstep. For a group of `group` work-items:
 
     warps of a group  = group / width, rounded up
-    groups            = warps for which there are registers (the vendor's module) / warps of a group; at most the core's maximum of warps and groups;
+    groups            = warps for which a core has registers (by the vendor's rules) / warps of a group; at most the core's maximum of warps and groups;
                         if the kernel uses local memory, at most the core's local memory / the kernel's
     local memory left = largest local memory of a group with which the registers, not local memory, still limit the number of groups
 """

@@ -1,9 +1,9 @@
 """Intel Xe cores: ocloc is the compiler of Intel's own driver.
 
-A thread has 128 registers, or 256 if a core has half as many threads. The compiler chooses the width of a thread, 8, 16 or 32
-work-items, and a smaller width if registers run out. Spills are counted in registers, as ocloc reports them. An Xe core has 128 threads (dg2: 16
-engines of 8) or 64 (pvc: 8 of 8), and 128 KB of local memory. Its maximum number of groups is not known here, so only threads limit them (oneAPI GPU
-Optimization Guide, Intel Xe GPU Architecture).
+A thread has 128 registers, or 256 if the core runs half as many threads. The compiler chooses the width of a thread, 8, 16 or 32
+work-items: a smaller width if registers run out. Spills are counted in registers, as ocloc reports them. An Xe core has 128 threads (dg2: 16
+engines of 8) or 64 (pvc: 8 of 8), and 128 KB of local memory. Its maximum number of groups is not known, so only the number of threads limits the groups
+(oneAPI GPU Optimization Guide, Intel Xe GPU Architecture).
 """
 import re, shutil, struct, subprocess, tempfile
 from pathlib import Path

@@ -22,7 +22,7 @@ USED = re.compile(r"Compiling entry function '(\w+)' for '\w+'.*?(\d+) bytes sta
 
 
 def find_ptxas(given):
-    """Returns the path of ptxas: `given`, or in the folder `given`; otherwise in PATH or in the CUDA toolkit. None if there is none."""
+    """Returns the path of ptxas: the file `given`, or in the folder `given`. Without `given`, searches PATH and the CUDA toolkit. None: not found."""
     if given:
         candidates = [given, *sorted(glob.glob(os.path.join(given, "**", "ptxas"), recursive=True))]
         return next((path for path in candidates if os.path.isfile(path) and os.access(path, os.X_OK)), None)

@@ -3,9 +3,9 @@ import sys
 
 from gpu import figures
 
-LEGEND = """A cell: registers of a work-item (r); spills, if any (sp; AMD's scalar registers: ssp); stack of a work-item in bytes (B); warps
-that fit in a core with the given size of groups (w), and the local memory of each group up to which they fit, in KB. Intel's cells start
-with the width of a thread, since a thread always has 128 or 256 registers."""
+LEGEND = """A cell contains: the registers of a work-item (r); spills, if any (sp; of AMD's scalar registers: ssp); the stack of a work-item in bytes (B); the
+number of warps that fit in a core with groups of this size (w), and the largest local memory of a group with which they fit, in KB. Intel's cells
+start with the number of work-items of a thread (x); their registers are those of a thread, 128 or 256."""
 CORE = {"sm_80": "A100, SM: 64 warps of 32", "sm_90": "H100, SM: 64 warps of 32", "gfx90a": "MI200, CU: 32 waves of 64",
         "dg2": "Arc, Xe core: 128 threads of 8, 16 or 32", "pvc": "Max, Xe core: 64 threads of 16 or 32"}
 
@@ -43,9 +43,9 @@ def page(cells, versions, vendors):
     descriptions = "".join(f"**{', '.join(vendor.targets)}.** {' '.join(text)}\n\n" for vendor, text in words.items())
     return f"""# Resource usage of kernels on GPUs
 
-Written by `tools/gpu_check --write`, which compiles the kernels for GPUs on a machine without one, with raya's own options
-(`host/cl/kernel_options.cpp`), and compares them with `tests/portability/gpu_budget.csv`. For NVIDIA and AMD it uses clang and libclc, and inlines
-all calls; the compilers of their drivers may give other figures. ocloc is the compiler of Intel's driver.
+Written by `tools/gpu_check --write`. `tools/gpu_check` compiles the kernels for GPUs on a machine without a GPU, with the options that renders use
+(`host/cl/kernel_options.cpp`), and compares the figures with `tests/portability/gpu_budget.csv`. For NVIDIA and AMD it uses clang and libclc and
+inlines all calls; the compilers of NVIDIA's and AMD's drivers may give other figures. For Intel it uses ocloc, the compiler of Intel's driver.
 
 | target | core | compilers |
 | --- | --- | --- |
@@ -58,7 +58,7 @@ all calls; the compilers of their drivers may give other figures. ocloc is the c
 
 {LEGEND}
 
-Variants: `spheres`, a scene of spheres and planes only; `grid`, `bvh`, with this acceleration structure in global memory; `costs`, torus nodes record
-the cost of packets; `refined`, for a device without correctly rounded division or `fma`; `any`, kernels without arithmetic.
+Variants: `spheres`: for scenes of spheres and planes only. `grid`, `bvh`: with this acceleration structure in global memory. `costs`: torus nodes record
+the cost of packets. `refined`: for devices without correctly rounded division or `fma`. `any`: the kernel contains no arithmetic on numbers.
 
 {markdown(cells)}"""

@@ -3,6 +3,7 @@
 "use strict";
 
 // Palettes. colours() returns the RGBA words of `count` colours in LEVELS levels of lightness, [colour][level].
+// colour(t, level): returns [red, green, blue]; t and level are 0..1.
 const HUES = 360, LEVELS = 64;
 const colours = (count, colour) => Uint32Array.from(
   {length: count * LEVELS},

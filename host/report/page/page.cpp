@@ -10,16 +10,14 @@ namespace {
 
 const std::string& asset(const std::string& name) { return embedded_files().at("host/report/page/" + name); }
 
-// Escapes <, > and &, so that the browser finds no tag or entity in a string. JSON has these characters only in
-// strings.
+// Escapes <, > and &, so that the browser finds no tag or entity in a string. JSON has them only in strings.
 std::string escape_tags(std::string json) {
     for (const auto& [sign, escape] : {std::pair{"<", "\\u003c"}, {">", "\\u003e"}, {"&", "\\u0026"}})
         json = replaced(std::move(json), sign, escape);
     return json;
 }
 
-// Replaces every {{NAME}} in `text` by the asset NAME, and {{report}} by the report. Inserted text is not searched
-// again.
+// Replaces every {{NAME}} in `text` by the asset NAME, and {{report}} by the report. Does not search inserted text.
 std::string fill_template(const std::string& text, const Json& report) {
     std::string page;
     std::size_t text_begin = 0;  // start of the text that is not copied yet

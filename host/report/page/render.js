@@ -159,7 +159,7 @@ function loads(r) {
     table(
       `Load of each ${unit}`, [unit, "cycles", "of the mean"],
       values.map((value, i) => [String(i), grouped(value), mean > 0 ? percent(value / mean) : "-"]),
-      "The report has all of them in `load.per_pe`.")
+      "The report has all loads in `load.per_pe`.")
   ];
 }
 

@@ -72,9 +72,10 @@ void run(cl_context context, cl_command_queue queue, cl_kernel kernel, const cha
     check(clEnqueueNDRangeKernel(queue, kernel, 1, nullptr, &one, &one, 0, nullptr, nullptr), "running the kernel");
     cl_float found_sum = 0;
     cl_uint found_terms = 0;
-    check(clEnqueueReadBuffer(queue, sum, CL_TRUE, 0, sizeof found_sum, &found_sum, 0, nullptr, nullptr), "reading");
+    check(clEnqueueReadBuffer(queue, sum, CL_TRUE, 0, sizeof found_sum, &found_sum, 0, nullptr, nullptr),
+          "reading the sum");
     check(clEnqueueReadBuffer(queue, terms, CL_TRUE, 0, sizeof found_terms, &found_terms, 0, nullptr, nullptr),
-          "reading");
+          "reading the number of terms");
     std::printf("%-18s %8u terms, sum %.7g\n", name, found_terms, found_sum);
     clReleaseMemObject(sum);
     clReleaseMemObject(terms);
