@@ -173,7 +173,8 @@ def judge_table3(extras, rotations=(2, 18, 34), offsets=range(17)):
     """table3, for scenes with the paper's u(0) and others. extras: costs of a slot of p = 16; offsets: row p has 2 (offsets[p] + 1) rotations."""
     lab = FakeLaboratory([block_of_16(MATCHED_HEIGHT, extra) for extra in extras] + [block_of_16(1000)] * COUNT)
     rows = pd.DataFrame({"p": [0, 8, 16], "rotations": rotations})
-    found = table3.claims_of(lab, rows, pd.DataFrame({"offset": range(17), "rotations": [2 * (p + 1) for p in offsets]}))
+    matched = cluster.matched_times(lab, "filter")
+    found = table3.claims_of(matched, rows, pd.DataFrame({"offset": range(17), "rotations": [2 * (p + 1) for p in offsets]}))
     assert lab.asked == [(256, "supersample", 1, CROWDED)]
     assert f"{len(extras)} matched scenes" in found[-1].ensemble
     return found
@@ -639,7 +640,7 @@ def ensemble_and_scenes(part=0, scenes=(), size=256, views=None, **options):
 def test_ensemble_has_equally_many_pictures_of_each_family(views, family_views):
     ensemble, scenes = ensemble_and_scenes(views=views)
     assert Counter(ensemble.families) == dict.fromkeys(FAMILIES, family_views)
-    assert len(scenes) == len(ensemble.pictures) == len(ensemble.families) and ensemble.description.startswith(f"{len(scenes)} pictures: seeds 1..")
+    assert len(scenes) == len(ensemble.pictures) == len(ensemble.families) and ensemble.description.startswith(f"{len(scenes)} pictures of 9 families, seeds 1..")
     for costs, family in zip(ensemble.pictures, ensemble.families):
         assert costs.label.split(",")[0].split("-")[0] == family.split(",")[0].split("-")[0]
 

@@ -327,7 +327,7 @@ FAULTS = [
     ("pe + pes - origin", "pe + pes - origin - 1"),
     ("n <= distances.length", "n < distances.length"),
     ("otherPes * pes", "otherPes"),
-    ("rows * rows < square", "rows < 3"),
+    ("rows * rows < squaredLength", "rows < 3"),
     ("width % pes === 0 : width === pes", "true : width === pes"),
     ("b <= a ? [0, b] : [a, 0]", "[a, 0]"),
     ("1e-6 * rates.cycle_ns", "1e-6 * 99"),

@@ -15,6 +15,7 @@ import pandas as pd
 from markupsafe import Markup, escape
 from raya.lab import plots
 from raya.lab.claims import decide, errors_sentence
+from raya.lab.families import FAMILIES
 from raya.lab.page import format_value
 from raya.lab.papers import REFERENCES
 from raya.lab.statistics import COMPATIBLE, NOT_REPRODUCED, REPRODUCED, UNTESTABLE
@@ -38,6 +39,8 @@ ABOUT = {
         "interval fulfils the rule. Not reproduced: the interval contradicts the rule. Compatible: neither, because the test has too little "
         "power. Untestable: no study can decide it. Claims that follow from another claim or from figures that scenes were matched to are "
         "derived and have no verdict. Holm's correction covers all tests of this document.",
+        "Ensembles are pictures of scene families, in this order: " + "; ".join(FAMILIES) + ". Each seed gives another scene and another "
+        "view. A command line with scenes has random views of these scenes instead. Intervals treat the families as strata.",
         "\"Derived\" marks a figure that follows by arithmetic from figures that the paper prints. \"[D]\" marks such a figure in a "
         "text. \"+-\" is the half width of a 95 % confidence interval by Student's t.",
     ],
@@ -188,6 +191,16 @@ def claims_with(verdict, pages):
     return [f'{c.claim.paper}, {c.claim.place}: "{c.claim.statement}" {c.reason}' for page in pages for c in page.claims if c.verdict == verdict]
 
 
+def statements_with(verdict, pages):
+    """Returns the statement of each claim with the verdict."""
+    return [c.claim.statement for page in pages for c in page.claims if c.verdict == verdict]
+
+
+def news_of(pages):
+    """Returns the results beyond the papers, a sentence each."""
+    return [sentence for page in pages for sentence in page.news]
+
+
 def prose(text):
     """Returns the escaped HTML of a sentence. Text in backquotes becomes a code element, +- becomes ±."""
     return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", str(escape(text)).replace("+-", "±")))
@@ -225,7 +238,7 @@ def environment():
     jinja_environment.filters.update(classes=classes_of, items=items, markdown_table=markdown_table, prose=prose)
     jinja_environment.globals.update({function.__name__: function for function in (
         cells_of_claims, cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run,
-        claims_with, title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY),
+        claims_with, news_of, statements_with, title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY),
         OPEN_ROWS=OPEN_ROWS, MAX_ROWS=MAX_ROWS)
     return jinja_environment
 

@@ -111,8 +111,11 @@ class Laboratory:
         views_each = max(2, min(limit, -(-(views or self.views) // len(families))))
         first_seeds = {name: self.seed + part * SEEDS + i * FAMILY_SEEDS for i, name in enumerate(families)}
         pictures = [(name, self.costs(make(first_seeds[name] + i), size, antialias)) for name, make in families.items() for i in range(views_each)]
-        seeds_text = "; ".join(f"seeds {seed}..{seed + views_each - 1} of {name}" for name, seed in first_seeds.items())
-        return Ensemble([costs for _, costs in pictures], [name for name, _ in pictures], f"{len(pictures)} pictures: {seeds_text}")
+        seeds = [f"{seed}..{seed + views_each - 1}" for seed in first_seeds.values()]
+        seeds_text = ", ".join(seeds if len(seeds) < 4 else [*seeds[:2], "...", seeds[-1]])
+        families_text = "family" if len(seeds) == 1 else "families"
+        return Ensemble([costs for _, costs in pictures], [name for name, _ in pictures],
+                        f"{len(pictures)} pictures of {len(seeds)} {families_text}, seeds {seeds_text}")
 
 
 def first_scene(scenes):

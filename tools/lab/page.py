@@ -57,6 +57,7 @@ class Plot:
     y_label: str
     series: list
     log: str = ""  # logarithmic axes: "", "x", "y" or "xy"
+    x_names: list = field(default_factory=list)  # names of the positions 1, 2, ... on the x axis; empty: numbers
 
 
 @dataclass

@@ -9,7 +9,6 @@ import matplotlib
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter, NullLocator
 from raya.lab.page import format_value
 
@@ -19,7 +18,6 @@ PAPER_COLOURS = ["#000000", "#8b1a1a", "#1a3a8b", "#1a5e1a"]
 DASHES = ["-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (7, 2, 1.5, 2)), (0, (3, 1.5, 1, 1.5, 1, 1.5))]
 MARKERS = ["o", "s", "^", "v", "P", "X", "d", "<", ">"]
 MAX_MARKERS = 40  # lines with at most MAX_MARKERS points have markers; longer ones have a band for the intervals
-HALO = [withStroke(linewidth=3, foreground="white")]
 
 STYLE = {
     "axes.axisbelow": True, "axes.edgecolor": "#555555", "axes.formatter.use_mathtext": True,
@@ -86,18 +84,10 @@ def draw_series(axes, plot):
     return lines
 
 
-def label_paper_points(axes, plot):
-    """Labels the paper's points with their values, if there are at most eight points."""
-    papers = [s for s in plot.series if s.style == "paper"]
-    if sum(len(s.x) for s in papers) > 8:
-        return
-    for series in papers:
-        for x, y in zip(series.x, series.y):
-            if is_shown(plot, x, y):
-                is_near_right_edge = axes.transAxes.inverted().transform(axes.transData.transform((x, y)))[0] > 0.85
-                axes.annotate(f"{y:.3g}" if y < 1000 else f"{y:.0f}", (x, y), xytext=(-11 if is_near_right_edge else 11, 5),
-                              textcoords="offset points", ha="right" if is_near_right_edge else "left", zorder=6,
-                              path_effects=HALO)
+def legend_text(series):
+    """Returns the label of a series. Up to four values of a paper are part of it, as labels next to the points would cover the curves."""
+    values = ", ".join(f"{y:.3g}" if y < 1000 else f"{y:.0f}" for y in series.y) if series.style == "paper" and len(series.y) <= 4 else ""
+    return textwrap.fill(escape_dollars(f"{series.label}: {values}" if values else series.label), 24)
 
 
 def power_of_ten(value, _):
@@ -141,7 +131,9 @@ def set_axes(axes, plot, points):
     for name, values in (("x", x), ("y", y)):
         if name in plot.log:
             set_log_axis(axes, name, values)
-    if "x" not in plot.log and all(value == int(value) for value in x):
+    if plot.x_names:
+        axes.set_xticks(range(1, len(plot.x_names) + 1), map(escape_dollars, plot.x_names), rotation=35, ha="right")
+    elif "x" not in plot.log and all(value == int(value) for value in x):
         axes.xaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 2.5, 5, 10], integer=True))
     if y and "y" not in plot.log and 0 <= min(y) <= max(y) / 2:
         axes.set_ylim(bottom=0)
@@ -149,7 +141,7 @@ def set_axes(axes, plot, points):
 
 def draw(plot):
     """Returns matplotlib's figure of the plot."""
-    labels = [textwrap.fill(escape_dollars(series.label), 24) for series in plot.series]
+    labels = [legend_text(series) for series in plot.series]
     lines = sum(label.count("\n") + 1 for label in labels)
     figure = Figure(figsize=(9, max(5.2, 0.24 * lines)), layout="constrained")  # inches: 900 pixels wide at 100 an inch
     FigureCanvasAgg(figure)
@@ -169,7 +161,6 @@ def draw(plot):
     figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08, rect=(0, 0.035, 1, 0.965) if hidden else (0, 0, 1, 1))
     figure.draw_without_rendering()  # fixes the layout, so that SVG and PNG agree
     figure.set_layout_engine("none")
-    label_paper_points(axes, plot)
     return figure
 
 

@@ -88,8 +88,6 @@ def best_offset(lab, scenes):
                  for c in first],
                 [claim_of_enough(lab)] if not scenes else [], tables_of(all_choices),
                 [plot for number, choices in enumerate(by_scene, 1) for plot in plots_of(choices, number)],
-                ["Kohata & Ito discuss balance against communication without figures. This study computes the fastest offset for each "
-                 "number of PEs and each anti-aliasing method, and how the clock's uncertainty changes it."],
                 clock=CLOCK, placeholders={
                     "search": f"{VIEWS} views with seeds {seeds_text(lab, 0)}", "evaluation": f"{VIEWS} with seeds {seeds_text(lab, 2)}",
                     "claim_search": seeds_text(lab, 0), "claim_evaluation": seeds_text(lab, 2)})

@@ -16,7 +16,7 @@ What are the figures of Tables 2 to 4 for scenes with their objects in the middl
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Comparison, Page, Plot, Series, Table, estimate, judged, next_value_within, papers, prediction_text, range_text, study
+from raya.lab import Comparison, Page, Plot, Series, Table, estimate, estimates, judged, next_value_within, papers, prediction_text, range_text, study
 from raya.lab.families import CROWDED
 from raya.lab.spa import CLOCK, FACTOR, offset_times, spa_ms
 
@@ -30,11 +30,21 @@ NOT_SEARCHED = [("u(16)", "", "u(16)", papers.IMBALANCE_16, True), ("speed-up, p
                 ("supersampling, p = 16", "ms", "supersampling, p = 16 (ms)", papers.SUPERSAMPLE_16_MS, False)]
 
 
+def scaled_times(costs, size, antialias):
+    """Returns offset_times() of a scene, with the computing times of both passes scaled so that one PE computes for the printed 64,800 ms."""
+    times = offset_times(costs, size, antialias)
+    scale = papers.ONE_PE_COMPUTE_MS / (FACTOR * spa_ms(int(costs.trace.sum())))
+    passes = ["trace_ms", "supersample_ms"]
+    times["total_ms"] += (scale - 1) * times[passes].sum(axis=1)
+    times[passes] *= scale
+    return times
+
+
 def row_of(costs, size):
-    times = offset_times(costs, size, "supersample")
+    times = scaled_times(costs, size, "supersample")
     total = int(costs.trace.sum())
     one_pe_ms = FACTOR * spa_ms(total)
-    supersampling = (times["smooth_ms"] + times["supersample_ms"]) * papers.ONE_PE_COMPUTE_MS / one_pe_ms
+    supersampling = times["smooth_ms"] + times["supersample_ms"]
     u_0, u_16 = (times["imbalance"][p % size] for p in (0, 16))
     return {"scene": costs.label, "u(0)": u_0, "u(16)": u_16, "speed-up": size / (1 + u_16), "recomputed (%)": 100 * costs.recomputed / size**2,
             "cycles a pixel": total / size**2, "1 PE: compute (ms)": one_pe_ms,
@@ -45,6 +55,19 @@ def matched_scenes(ensemble, size):
     """Returns a boolean array: true for each picture whose u(0) differs from the paper's by at most the fraction MATCH."""
     u = ensemble.map(lambda costs: raya.imbalances(costs.trace, size, [0])[0])
     return np.abs(u / papers.IMBALANCE_0 - 1) <= MATCH
+
+
+def matched_times(lab, antialias):
+    """Returns scaled_times() of each matched scene, at 256 x 256 on 256 PEs."""
+    ensemble = lab.ensemble([], papers.SIZE, "supersample", views=2 * lab.views, families=CROWDED, part=1)
+    return [scaled_times(costs, papers.SIZE, antialias)
+            for costs, is_matched in zip(ensemble.pictures, matched_scenes(ensemble, papers.SIZE)) if is_matched]
+
+
+def series_of_matched(label, times, columns):
+    """Returns the series of a plot: mean and interval, over matched scenes, of the sum of columns, for p = 0 .. 16."""
+    of_offset = estimates([one[columns].sum(axis=1)[:17] for one in times])
+    return Series(label, range(17), [e.mean for e in of_offset], half_widths=[e.half for e in of_offset])
 
 
 @study("cluster")
@@ -73,7 +96,7 @@ def cluster(lab, scenes):
                 [Plot("cluster", "Imbalance of each scene, column split and cyclic mapping", "u(0)", "u(16)",
                       [Series("scenes", rows["u(0)"], rows["u(16)"], "points"),
                        Series("matched scenes", matched["u(0)"], matched["u(16)"], "points")] + marks)],
-                ["A family of scenes instead of one fitted scene: the printed figures are compared with a prediction interval."], clock=CLOCK,
+                clock=CLOCK,
                 placeholders={"ensemble": ensemble.description, "match": f"{100 * MATCH:.0f}"}, compared_with=papers.SPA)
 
 

@@ -50,9 +50,6 @@ def divisions(lab, scenes):
                 [Table("divisions", "Each number of objects and divisions", shown)],
                 [Plot(f"divisions-{name}", title, "divisions", label, series_by(rows, "scene", "divisions", column),
                       "xy") for name, (title, label, column, _) in SUBJECTS.items()],
-                ["Yoshitani & Yamazaki print two times, for an unnamed machine and 1024 objects. This study shows tests, "
-                 "steps, modelled and measured times for 14 numbers of divisions and four numbers of objects, and the gain of the "
-                 "best division."],
                 clock="two kinds, on separate axes. Modelled: the counted events at their cost on a T805 at 25 MHz, 40 ns a cycle "
                 "(data sheet of the IMS T805, SGS-Thomson 1996), with the making of packets, without messages. Measured: tracing on "
                 "this device, minimum and median of five samples after a warm-up; a sample is the mean of as many renders as take "

@@ -57,8 +57,6 @@ def page_of(name, lab, scenes, first_pass):
                  Table(name, "Imbalance for each offset", rows, on_page=False),
                  table_of_families(name, picture_u, ensemble.families, n)],
                 plots_of(name, scene.name, phase, rows, near, len(picture_u), in_paper),
-                ["Kohata & Ito plot u for one picture. The best offset changes from picture to picture. Means over many pictures, with "
-                 "intervals, show the effect of the offset itself."],
                 placeholders={"ensemble": ensemble.description}, compared_with=papers.SPA)
 
 

@@ -40,8 +40,7 @@ def inject(lab, scenes):
                             series_by(rows, "inject", "nodes", "root / overlapped (%)"), "x"),
                        Plot("inject-supersteps", "Supersteps", "nodes", "supersteps",
                             series_by(rows, "inject", "nodes", "supersteps"), "xy")],
-                news=["Yoshitani & Yamazaki let the root send all rays and do not discuss the cost. This study compares both methods "
-                      "on 1 to 512 nodes."], clock=CLOCK)
+                news=[f"The root is the bottleneck {bound_text(root)} if it makes all primary rays, and {bound_text(all_nodes)} if all nodes make them."], clock=CLOCK)
 
 
 def bound_text(rows):

@@ -53,8 +53,8 @@ def lattice(lab, scenes):
                 [Table("lattice-chosen", f"p = 0, p = {n}, offsets with as long or longer vectors, and the best of all",
                        table), Table("lattice", "Every offset", rows, on_page=False)],
                 [*plots_of(rows, n, longer, as_long, len(u))],
-                ["Kohata & Ito do not use the lattice of an offset. The lattice predicts which offsets beyond sqrt(P) spread the load as "
-                 "well as sqrt(P), and why the others do not."],
+                [f"The lattice of an offset predicts its balance: of the offsets beyond {n}, the {len(longer)} with longer shortest vectors have a mean u "
+                 f"of {rows['mean u'][longer].mean():.4f}, p = {n} has {rows['mean u'][n]:.4f}."] if len(longer) else [],
                 placeholders={"ensemble": ensemble.description, "length": f"{squares[n]**0.5:.2f}", "mirror": size - n}, compared_with=papers.SPA)
 
 

@@ -147,7 +147,6 @@ def ranks(lab, scenes):
                             c["predicted / measured"], c["remark"])
                  for _, c in checks[checks["ranks"] > 1].iterrows()],
                 tables=tables_of(rows, checks, scaling, summary, networks, ping), plots=[*plots_of(rows, checks)],
-                news=["Each paper has one machine. This study divides its array over any number of hosts, which give the same image."],
                 clock="measured on this host where stated; all other times are predicted from the measured seconds of one rank. The measured time "
                 "of a render starts when its kernels are built and the scene has been broadcast; the predicted total includes the broadcast.")
 

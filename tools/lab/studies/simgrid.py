@@ -93,7 +93,7 @@ def simgrid(lab, scenes):
                               rows.drop(columns=["overlapped", "stepwise"]))],
                 plots=[Plot("simgrid", "Time of the machine, one effect after another", "number of effects", "modelled time (ms)",
                             series)],
-                news=["This study compares the asynchronous torus with an independent simulator. The papers compare with none."],
+                news=[f"An independent simulator gives the asynchronous torus a time that differs by at most {rows['difference (%)'].abs().max():.2g} %."],
                 clock="Modelled on T805s from counted cycles, 40 ns each; both simulators have the same rates.")
 
 

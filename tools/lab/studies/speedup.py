@@ -62,10 +62,10 @@ def fig9(lab, scenes):
     sides = pd.DataFrame([row for image in sizes for row in rows_of_size(image)])
     return Page({"scene": scene.name, "size": size, "pes": size, "offset": OFFSET % size, "pictures": len(tables)},
                 findings_of(rows, grids, sides, in_paper),
-                with_paper(in_paper, comparisons_of(rows, grids, means.iloc[-1], grid_ratios, half_side_speedups, large_side, ensemble.families)),
+                with_paper(in_paper, comparisons_of(rows, grids, means.iloc[-1], grid_ratios, half_side_speedups, large_side, ensemble.families))
+                + (comparisons_of_machines(lab, scene, size) if in_paper else []),
                 claims_of(lab, tables, ensemble) if size == 256 and not scenes else [], tables_of(rows, grids, means, sides),
                 plots_of(rows, grids, means, in_paper),
-                ["Kohata & Ito plot one picture. This study has every number of PEs, two folds, and an ensemble with intervals."],
                 placeholders={"ensemble": ensemble.description}, compared_with=papers.SPA)
 
 
@@ -105,6 +105,17 @@ def comparisons_of(rows, grids, mean, grid_ratios, half_side_speedups, large_sid
                        ratio.mean, "mean of the ensemble; the makers of CAP measured another scene", half_width=ratio.half),
             Comparison(f"Pixel Machine's mapping, {half_side} x {half_side} PEs", "", papers.PIXEL_MACHINE_SPEEDUP, half_side_speedup.mean,
                        "mean of the ensemble; the makers measured another scene: 60 or more", half_width=half_side_speedup.half)]
+
+
+def comparisons_of_machines(lab, scene, size):
+    """Returns the makers' speed-ups next to the modelled times of their machines, which include the transfer of the scene."""
+    def ratio(machine, few, many):
+        totals = [lab.render(scene, machine=machine, mapping=f"grid:{a}x{a}", size=size).report["modelled_ms"]["total"] for a in (few, many)]
+        return totals[0] / totals[1]
+
+    remark = "picture; modelled time with the transfer of the scene (`raya machines` has the rates and their sources)"
+    return [Comparison("machine cap, 64 cells over 256", "", papers.CAP_RATIO, ratio("cap", 8, 16), remark),
+            Comparison("machine pixel-machine, 1 node over 64", "", papers.PIXEL_MACHINE_SPEEDUP, ratio("pixel-machine", 1, 8), remark)]
 
 
 def claims_of(lab, tables, ensemble):

@@ -72,8 +72,6 @@ def table2(lab, scenes):
                 [Table("table2", "Times", rows_of(size, array, one, here, in_paper)),
                  Table("table2-factors", "The whole job for each factor of the clock", factors),
                  Table("table2-host", "Host model, with the ranges that the rounding of the printed 2, 12 and 140 ms leaves", host)],
-                news=["This study computes the gain of the whole job from the balance, its range over the clock's uncertainty, and a model of "
-                      "the host with the ranges that rounding leaves."],
                 pictures=[Picture("table2-picture", f"{scene.name} at {size} x {size}, rendered by the PEs",
                                   "glass and mirror spheres in the middle of the image, above a checkered plane"
                                   if scene.name == "centre" else "the scene of the command line",

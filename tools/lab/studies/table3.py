@@ -15,11 +15,9 @@ What does the filter cost, as a larger offset balances better but increases the 
 """
 import pandas as pd
 from raya.lab import Comparison, Page, Plot, Series, Table, above, counted, estimate, judged, papers, study, with_paper
-from raya.lab.families import CROWDED
-from raya.lab.laboratory import format_for
-from raya.lab.laboratory import SPA
-from raya.lab.spa import CLOCK, FACTOR, FACTORS, offset_times, smoothing_runs
-from raya.lab.studies.cluster import matched_scenes
+from raya.lab.laboratory import SPA, format_for
+from raya.lab.spa import CLOCK, FACTOR, FACTORS, smoothing_runs
+from raya.lab.studies.cluster import matched_times, series_of_matched
 
 TWICE = 2  # bound of the claim filter-total
 
@@ -39,7 +37,7 @@ def at_factor(runs, factor):
 def table3(lab, scenes):
     runs = smoothing_runs(lab, scenes, "filter")
     rows, times, in_paper = runs.rows(), runs.times(), papers.is_papers(runs.scene.name, runs.size)
-    near = times[:17]
+    near, matched = times[:17], matched_times(lab, "filter") if in_paper and not scenes else []
     factors = pd.DataFrame([at_factor(runs, f) for f in sorted([*FACTORS, FACTOR])])
     shown = rows[["p", "rotations", "communication", "filter", "trace", "filtered"]].set_axis(
         ["p", "rotations", "communication (ms)", "filter (ms)", "ray tracing (ms)", "total (ms)"], axis=1)
@@ -48,13 +46,12 @@ def table3(lab, scenes):
     return Page({"scene": runs.scene.name, "size": runs.size, "pes": runs.size, "format": format_for(runs.scene),
                  "factor": FACTOR},
                 findings_of(runs, rows, near, factors), with_paper(in_paper, comparisons_of(rows)),
-                claims_of(lab, rows, near) if in_paper and not scenes else [],
+                claims_of(matched, rows, near) if in_paper and not scenes else [],
                 [Table("table3", "Ray tracing and filter", shown),
                  Table("table3-factors", "The conclusions for each factor of the clock", factors),
                  Table("table3-offsets", "Every offset", offsets, on_page=False)],
-                [plot_of(runs, False, in_paper), plot_of(runs, True, in_paper)],
-                ["Kohata & Ito have two offsets. This study has every offset, and the effect of the clock's uncertainty on each "
-                 "conclusion."], clock=CLOCK, compared_with=papers.SPA)
+                [plot_of(runs, False, in_paper), plot_of(runs, True, in_paper, matched)],
+                clock=CLOCK, compared_with=papers.SPA)
 
 
 def comparisons_of(rows):
@@ -75,11 +72,8 @@ def comparisons_of(rows):
                    first["filtered"] / last["filtered"], "depends little on the clock", derived=True)]
 
 
-def claims_of(lab, rows, near):
-    ensemble = lab.ensemble([], papers.SIZE, "supersample", views=2 * lab.views, families=CROWDED, part=1)  # the scenes of study cluster
-    matched = [costs for costs, one in zip(ensemble.pictures, matched_scenes(ensemble, papers.SIZE)) if one]
-    totals = [offset_times(costs, papers.SIZE, "filter")["total_ms"] for costs in matched]
-    ratio = [total[0] / total[16] for total in totals]
+def claims_of(matched, rows, near):
+    ratio = [times["total_ms"][0] / times["total_ms"][16] for times in matched]
     same = (rows["rotations"] == 2 * (rows["p"] + 1)).all()
     rises = near["rotations"].is_monotonic_increasing
     counted_text = ", ".join(f"{r} for p = {p}" for r, p in zip(rows["rotations"], rows["p"]))
@@ -110,8 +104,8 @@ def findings_of(runs, rows, near, factors):
             "program, so the factor between the two also contains costs that are not in the budget."]
 
 
-def plot_of(runs, with_tracing, in_paper):
-    series = []
+def plot_of(runs, with_tracing, in_paper, matched=()):
+    series = [series_of_matched(f"{len(matched)} matched scenes", matched, ["total_ms"])] if len(matched) > 1 else []
     for factor in (1, FACTOR, 8):
         t = runs.times(factor)[:17]
         y = t["total_ms"] if with_tracing else t["ring_ms"] + t["smooth_ms"]

@@ -54,9 +54,7 @@ def turn(lab, scenes):
         tables += tables_of(number, scene.name, own, rows, root)
         plots.append(plot_of(number, scene.name, own, root))
     return Page({"scenes": settings, "frames": FRAMES, "step_degrees": DEGREES[1], "lowest_view_degrees": 5,
-                 "highest_view_degrees": 75}, findings, tables=tables, plots=plots,
-                news=["Kohata & Ito balance single pictures. Over a turn the imbalance of a mapping changes from frame to frame; this "
-                      "study shows how well an offset chosen for the first frame suits the others."])
+                 "highest_view_degrees": 75}, findings, tables=tables, plots=plots)
 
 
 def findings_of(scene, u, rows, root):
