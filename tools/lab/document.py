@@ -44,6 +44,17 @@ ABOUT = {
         "\"Derived\" marks a figure that follows by arithmetic from figures that the paper prints. \"[D]\" marks such a figure in a "
         "text. \"+-\" is the half width of a 95 % confidence interval by Student's t.",
     ],
+    "figures": [  # of the papers: the study of each, or the reason why there is none
+        "Kohata & Ito, Fig. 1 and Table 1, the hardware: `raya machines spa` lists its numbers; table2 checks the totals of Table 1.",
+        "Figs 2 and 3, ray tracing and its algorithm: drawings without figures. `kernels/README.md` describes ours.",
+        "Figs 4 and 5, the cyclic mapping and the 2-D array: drawings. `raya explore` draws every mapping; lattice counts the blocks of Fig. 5.",
+        "Fig. 6, the picture that they analyse: its scene is not published. table2 shows ours, cluster has a family of scenes like it.",
+        "Figs 7, 8, 9, 12 and 13 and Tables 2, 3 and 4: the studies of the same names.",
+        "Figs 10 and 11, positions of neighbours and transfers of the filter: drawings. table3 and table4 count the rotations.",
+        "Yoshitani & Yamazaki, Figs 1 and 2, the voxels and 2-D DDA: drawings. `docs/packets.md` describes the packets of our 3-D DDA.",
+        "Table 1, contents of a packet: no claim that a study can test. The studies charge its 22 words; `docs/packets.md` lists ours.",
+        "Fig. 3: divisions. Fig. 4: objects.",
+    ],
 }
 
 
