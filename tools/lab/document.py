@@ -280,8 +280,8 @@ def texts_of(page):
 
 
 def write_document(folder, pages, drawings, skip_notes=()):
-    """Writes index.html; for several pages also index.md and claims.csv, and again the pages' verdicts, which now take all claims into account.
-    `skip_notes`: sentences on studies that did not run."""
+    """Writes index.html; for several pages also index.md, claims.md and claims.csv, and again the pages' verdicts, which now take all claims into
+    account. `skip_notes`: sentences on studies that did not run."""
     decide([judgement for page in pages for judgement in page.claims])
     if len(pages) > 1:
         claims = pd.DataFrame([record_of(judgement) for page in pages for judgement in page.claims])
@@ -293,4 +293,5 @@ def write_document(folder, pages, drawings, skip_notes=()):
                                                         references=REFERENCES)
     write_atomically(folder / "index.html", body)
     if len(pages) > 1:
-        write_atomically(folder / "index.md", jinja_environment.get_template("index.md.j2").render(pages=pages, skip_notes=skip_notes))
+        for name in ("index.md", "claims.md"):
+            write_atomically(folder / name, jinja_environment.get_template(f"{name}.j2").render(pages=pages, skip_notes=skip_notes))
