@@ -109,7 +109,8 @@ def plot_of(runs, with_tracing, in_paper, matched=()):
     for factor in (1, FACTOR, 8):
         t = runs.times(factor)[:17]
         y = t["total_ms"] if with_tracing else t["ring_ms"] + t["smooth_ms"]
-        series.append(Series("the clock's factor" if factor == FACTOR else f"factor {factor}", t["offset"], y))
+        label = f"{runs.scene.name}, " + ("the clock's factor" if factor == FACTOR else f"factor {factor}")
+        series.append(Series(label, t["offset"], y))
     name, title, printed = (
         ("table3-total", "Ray tracing and filter", [papers.FILTERED_0_MS, papers.FILTERED_16_MS]) if with_tracing else
         ("table3-filter", "Filtering", [papers.FILTER_0_MS, papers.FILTER_16_MS]))

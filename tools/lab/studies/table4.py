@@ -125,8 +125,8 @@ def findings_of(runs, first, last):
 def plot_of(runs, in_paper, matched):
     near = runs.times()[:17]
     alone = near["smooth_ms"] + near["supersample_ms"]
-    series = [Series("phase alone", near["offset"], alone),
-              Series("with the first pass", near["offset"], alone + near["trace_ms"])]
+    series = [Series(f"{runs.scene.name}, phase alone", near["offset"], alone),
+              Series(f"{runs.scene.name}, with the first pass", near["offset"], alone + near["trace_ms"])]
     if len(matched) > 1:
         series += [series_of_matched(f"{len(matched)} matched scenes, phase alone", matched, ["smooth_ms", "supersample_ms"])]
     if in_paper:
