@@ -10,7 +10,7 @@ of neighbouring pixels over the ring?
 - Transfers: each PE receives the share of every PE at the ring distances of its neighbours; with an offset these are 4 P transfers a side.
   Broadcasts: P a side for the filter, whose sums have a fixed order; P in total for comparisons.
 - PEs have memory for whole shares, which on fewer than 256 PEs is more than the SPA's. The set-up of the exchange is the same for every
-  method and is excluded.
+  method and is included.
 - Output: bus.csv has a row for each anti-aliasing method and number of PEs: counts, and modelled times in ms. "words alone" excludes
   synchronisation.
 """
@@ -29,7 +29,7 @@ def exchange(lab, scene, size, pes, antialias, method):
                         offset=round(pes**0.5) % size, accel="none", antialias=antialias, exchange=method)
     c, ms = result.report["communication"], result.report["modelled_ms"]["communication"]
     words = c["transfer_words"] + c["pe_broadcast_words"]
-    return c[METHODS[method]], ms, 1e3 * words / SPA["link_words_per_s"] if words else ms, result.hash
+    return c[METHODS[method]], ms, SPA["setup_ms"] + 1e3 * words / SPA["link_words_per_s"] if words else ms, result.hash
 
 
 def rows_of(lab, scene, size, antialias):
