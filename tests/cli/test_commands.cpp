@@ -99,6 +99,22 @@ TEST_CASE("COMMAND --help, --help-all: give unit, default and range of every opt
     }
 }
 
+TEST_CASE("machines: lists every machine with the source of each number, and the cited ones", "[cli]") {
+    const std::string out = run_successfully({"machines"}).out;
+    for (const char* name :
+         {"spa: ", "grande: ", "spa1: ", "cap: ", "pixel-machine: ", "links: ", "torus: ", "sight: cited"})
+        CHECK_THAT(out, Catch::Contains(name));
+    for (const char* mark : {"[P]", "[D]", "[T]", "[?]"}) CHECK_THAT(out, Catch::Contains(mark));
+    const std::string spa = run_successfully({"machines", "spa"}).out;
+    CHECK_THAT(spa, Catch::Contains("256 DSPs") && Catch::Contains("6.51") && !Catch::Contains("torus: "));
+}
+
+TEST_CASE("machines: refuses a cited machine with the reason", "[cli]") {
+    const RunOutcome run = run_raya({"machines", "sight"});
+    CHECK(run.code == 2);
+    CHECK_THAT(run.err, Catch::Contains("--machine sight: raya does not model this machine: no public description"));
+}
+
 TEST_CASE("devices: lists each device with its default number of lanes", "[cli]") {
     const std::string out = run_successfully({"devices"}).out;
     INFO(out);
