@@ -35,7 +35,7 @@ class Surface:
     specular: float = 0.0
     shine: float = 0.0
     transmittance: float = 0.0
-    refraction: float = 1.0
+    refraction_index: float = 1.0
     checker: tuple = None  # even r g b, odd r g b, size
     axis: int = None  # the axis that the checker ignores
 
@@ -244,7 +244,7 @@ class Surfaces:
             texture = "texture { Clear } interior_" + texture
         if surface.transmittance <= 0:
             return [f"{shape} {texture} }}"]
-        interior = f"interior {{ ior {surface.refraction!r} }}"
+        interior = f"interior {{ ior {surface.refraction_index!r} }}"
         return [f"{shape} {texture} {interior} no_shadow }}", f"{shape} no_image no_reflection }}"]
 
 

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMaxIntervalS = 86'400;
-constexpr double kMaxSaveFraction = 0.05;          // maximum fraction of the time that saving may take
+constexpr double kMaxSaveFraction = 0.05;          // maximum fraction of the run time that goes into saving
 constexpr double kMinBandS = 0.05, kMaxBandS = 2;  // bounds on a band's target duration, seconds
 
 bool is_checkpoint(const std::string& file) {
@@ -73,27 +73,30 @@ CheckpointFile::CheckpointFile(const CheckpointOptions& options) : options_(opti
     callbacks_.band_s = std::clamp(options.every_s / 4, kMinBandS, kMaxBandS);
     callbacks_.due = [this] { return due(); };
     callbacks_.save = [this](const RingState& state, const StateSettings& settings) { save(state, settings); };
-    callbacks_.resume = [this](const StateSettings& settings, const RingState& sized) { return load(settings, sized); };
+    callbacks_.resume = [this](const StateSettings& settings, const RingState& expected_sizes) {
+        return load(settings, expected_sizes);
+    };
 }
 
 bool CheckpointFile::due() const {
-    const double elapsed_s = seconds_since(last_save_);
-    return elapsed_s >= std::max(options_.every_s, options_.every_s > 0 ? last_save_s_ / kMaxSaveFraction : 0.0);
+    const double elapsed_s = seconds_since(last_save_end_);
+    return elapsed_s >=
+           std::max(options_.every_s, options_.every_s > 0 ? last_save_duration_s_ / kMaxSaveFraction : 0.0);
 }
 
 void CheckpointFile::save(const RingState& state, const StateSettings& settings) {
     const Clock::time_point start = Clock::now();
     write_whole_file(options_.file, state_bytes(state, settings));
-    last_save_ = Clock::now();
-    last_save_s_ = std::chrono::duration<double>(last_save_ - start).count();
+    last_save_end_ = Clock::now();
+    last_save_duration_s_ = std::chrono::duration<double>(last_save_end_ - start).count();
 }
 
-std::optional<RingState> CheckpointFile::load(const StateSettings& settings, const RingState& sized_state) const {
+std::optional<RingState> CheckpointFile::load(const StateSettings& settings, const RingState& expected_sizes) const {
     if (!options_.resume || !fs::exists(options_.file)) return {};
     try {
-        const RingState state = read_state(read_file(options_.file), settings, sized_state);
+        const RingState state = read_state(read_file(options_.file), settings, expected_sizes);
         if (!is_quiet())
-            print_log(fmt::format("raya: {}: continuing at {:.1f} %, after {:.1f} s\n", options_.file,
+            print_log(fmt::format("raya: {}: continuing at {:.1f} %; the runs so far took {:.1f} s\n", options_.file,
                                   100 * state.fraction, state.seconds));
         return state;
     } catch (const UnreadableFile& why) {

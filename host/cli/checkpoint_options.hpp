@@ -38,12 +38,12 @@ class CheckpointFile {
   private:
     bool due() const;  // returns true if the next checkpoint is due
     void save(const RingState& state, const StateSettings& settings);
-    std::optional<RingState> load(const StateSettings& settings, const RingState& sized_state) const;
+    std::optional<RingState> load(const StateSettings& settings, const RingState& expected_sizes) const;
 
     const CheckpointOptions& options_;
     RingCheckpointing callbacks_;
-    Clock::time_point last_save_ = Clock::now();  // end of the last save; before the first save: construction
-    double last_save_s_ = 0;                      // duration of the last save, seconds
+    Clock::time_point last_save_end_ = Clock::now();  // before the first save: time of construction
+    double last_save_duration_s_ = 0;                 // seconds
 };
 
 }  // namespace raya

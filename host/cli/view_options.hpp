@@ -26,7 +26,7 @@ struct ViewOptions {
 };
 
 /// Adds --from, --at, --up, --angle, --background and --light.
-void add_view_options(CLI::App& command, ViewOptions& view);
+void add_view_options(CLI::App& command, ViewOptions& options);
 
 /// Returns the names of the options that add_view_options() adds, without dashes.
 const std::vector<std::string>& view_option_names();
@@ -35,6 +35,6 @@ const std::vector<std::string>& view_option_names();
 void change_viewpoint(const ViewOptions& options, View& view);
 
 /// Applies all options to the scene, with the range checks of the NFF reader. Throws UserError with the option's name.
-void change_view(const ViewOptions& view, Scene& scene);
+void change_view(const ViewOptions& options, Scene& scene);
 
 }  // namespace raya

@@ -20,7 +20,7 @@ namespace raya {
 /// Anti-aliasing of an image on the ring machine.
 struct Antialiasing {
     std::string method;             // "filter" or "supersample"
-    std::string exchange;           // transfer of neighbours' pixels: "ring", "bus", "bus-broadcast"
+    std::string exchange;           // transfer of neighbouring pixels: "ring", "bus", "bus-broadcast"
     std::string points;             // points of supersampling: "axes" or "diagonals"
     double threshold = 0;           // threshold of supersampling, 0..1
     std::uint64_t recomputed = 0;   // number of pixels supersampled

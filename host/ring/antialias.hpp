@@ -31,7 +31,7 @@ void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool d
 /// Returns "axes" or "diagonals". `points`: RAYA_POINTS_AXES or RAYA_POINTS_DIAGONALS.
 std::string points_name(raya_u32 points);
 
-/// Returns, for each side, the number of ring or bus moves that bring the neighbours' pixels to every PE, if each move
+/// Returns, for each side, the number of ring or bus moves that bring the neighbouring pixels to every PE, if each move
 /// carries a PE's whole share. The filter processes the sides one by one, as its rounded sums depend on the sides'
 /// order. Supersampling compares the sides in any order, so that one series of broadcasts serves all sides.
 MovesOfSides smoothing_moves(const Antialias& antialias, const raya_mapping& mapping);

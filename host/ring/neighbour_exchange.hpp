@@ -1,4 +1,4 @@
-// Exchange of neighbours' pixels between PEs, over ring or bus. Every PE receives the blocks of the PEs that own
+// Exchange of neighbouring pixels between PEs, over ring or bus. Every PE receives the blocks of the PEs that own
 // neighbours of its pixels.
 #pragma once
 #include <array>
@@ -21,7 +21,7 @@ struct Arrival {
     std::uint32_t begin;     // index of the block's first pixel in the share of PE (i + distance) mod P
 };
 
-/// Exchanges neighbours' pixels. Each move carries a band: at most `band` pixels of each PE. If a PE's memory can hold
+/// Exchanges neighbouring pixels. Each move carries a band: at most `band` pixels of each PE. If a PE's memory can hold
 /// a second share (see PeMemory), the band is the whole share; otherwise the bands of the share are moved one after
 /// another.
 class NeighbourExchange {

@@ -44,10 +44,10 @@ inline constexpr std::string_view kStateMagic = "raya state 2\n";
 /// Returns the bytes of a checkpoint file.
 std::string state_bytes(const RingState& state, const StateSettings& settings);
 
-/// Reads a checkpoint. The vectors of `sized_state` must have the sizes of this render; their contents are not used.
+/// Reads a checkpoint. The vectors of `expected_sizes` must have the sizes of this render; their contents are not used.
 /// Throws UserError, whose text does not contain the file's name, if the bytes are not a checkpoint, are damaged, or
 /// belong to a different render. In the last case the text contains the first setting that differs.
-RingState read_state(std::string_view bytes, const StateSettings& settings, RingState sized_state);
+RingState read_state(std::string_view bytes, const StateSettings& settings, RingState expected_sizes);
 
 /// Callbacks for the checkpoints of a render.
 struct RingCheckpointing {
@@ -58,7 +58,7 @@ struct RingCheckpointing {
     std::function<void(const RingState&, const StateSettings&)> save;
     /// Returns the checkpoint to resume, or empty to start from the beginning. Arguments: the renderer's settings, and
     /// the state for read_state().
-    std::function<std::optional<RingState>(const StateSettings&, const RingState& sized_state)> resume;
+    std::function<std::optional<RingState>(const StateSettings&, const RingState& expected_sizes)> resume;
 };
 
 }  // namespace raya

@@ -1,5 +1,5 @@
-// Routes of neighbours' pixels over ring or bus: the PEs that own the neighbours, and the number of moves that bring
-// the pixels.
+// Routes of neighbouring pixels over ring or bus: the PEs that own the pixels next to a PE's pixels, and the number of
+// moves that bring them.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,7 +17,7 @@ enum class RingDirection { kDown, kUp };
 /// the block of PE (i + s) mod P; after s upward rotations, that of PE (i - s) mod P.
 struct Leg {
     RingDirection direction = RingDirection::kDown;
-    // Numbers of rotations after which the PEs use the blocks, ascending. 0: each PE uses its own block.
+    // Ascending. After each of these numbers of rotations, the PEs use the blocks that they then hold. 0: their own.
     std::vector<std::uint32_t> stops;
 
     std::uint32_t rotations() const { return stops.empty() ? 0 : stops.back(); }
@@ -32,8 +32,8 @@ std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya
 /// each direction, the downward leg first.
 std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances);
 
-/// Methods of exchanging neighbours' pixels. The ring moves data of all PEs at the same time; the bus moves data of one
-/// PE at a time (Kohata & Ito 1993, section on the array).
+/// Methods of exchanging neighbouring pixels. The ring moves data of all PEs at the same time; the bus moves data of
+/// one PE at a time (Kohata & Ito 1993, section on the array).
 enum class ExchangeMethod {
     kRing,      // rotations of all blocks; the paper's anti-aliasing
     kBus,       // transfers to each PE from the PEs that own the neighbours of its pixels

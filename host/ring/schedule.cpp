@@ -18,7 +18,7 @@ void check_image(const CostImage& image, std::uint32_t pes) {
     const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
     if (pixels == 0 || image.cycles.size() != pixels)
         throw std::invalid_argument("a cost image must have at least one pixel, and one cost for each pixel");
-    if (pes < 1 || pes > pixels) throw std::invalid_argument("P must be 1..W H");
+    if (pes < 1 || pes > pixels) throw std::invalid_argument("the number of PEs must be 1..W * H");
 }
 
 void check_mapping(const CostImage& image, const raya_mapping& mapping) {
@@ -52,8 +52,8 @@ void add_loads_of_offset(const CostImage& image, const std::vector<std::uint32_t
     }
 }
 
-/// Adds the costs of each PE's static part to `busy`. Returns a flag for each pixel of the image: true if the pixel is
-/// in a static part. `fraction`: fraction of each PE's pixels that is in the static part.
+/// Adds the cost of each PE's static part to `busy`: the first `fraction` of its pixels, which are not scheduled
+/// dynamically. Returns a flag for each pixel of the image: true if the pixel is in a static part.
 std::vector<bool> add_static_costs(const CostImage& image, const raya_mapping& static_mapping, double fraction,
                                    std::vector<std::uint64_t>& busy) {
     std::vector<bool> done(image.cycles.size());
@@ -73,7 +73,7 @@ std::vector<bool> add_static_costs(const CostImage& image, const raya_mapping& s
 
 /// Divides the pixels that are not done into chunks of `chunk` pixels, and returns the cost of each chunk without
 /// overhead.
-std::vector<std::uint64_t> chunks_of(const CostImage& image, const std::vector<bool>& done, std::uint32_t chunk) {
+std::vector<std::uint64_t> chunk_costs(const CostImage& image, const std::vector<bool>& done, std::uint32_t chunk) {
     std::vector<std::uint64_t> chunks;
     std::uint32_t free_pixels = 0;  // number of pixels that the last chunk can still take
     for (std::size_t at = 0; at < done.size(); ++at) {
@@ -131,7 +131,8 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
                                          const std::vector<std::uint32_t>& offsets) {
     check_image(image, pes);
     if (fold != RAYA_FOLD_CYCLIC && fold != RAYA_FOLD_BLOCK)
-        throw std::invalid_argument("the fold must be one of RAYA_FOLD_*: other mappings have no offset");
+        throw std::invalid_argument(
+            "`fold` must be RAYA_FOLD_CYCLIC or RAYA_FOLD_BLOCK: only cyclic mappings have an offset");
     const auto owners = owners_of_slots({image.width, image.height, pes, 0, fold});
     std::vector<double> imbalances;
     std::vector<std::uint64_t> per_pe;
@@ -152,7 +153,7 @@ Schedule dynamic_schedule(const CostImage& image, const raya_mapping& static_map
         throw std::invalid_argument("a plan's chunk, overhead, static fraction or root cycles are out of range");
     std::vector<std::uint64_t> finish(static_mapping.pes);
     const auto done = add_static_costs(image, static_mapping, plan.static_fraction, finish);
-    const auto chunks = chunks_of(image, done, plan.chunk);
+    const auto chunks = chunk_costs(image, done, plan.chunk);
     assign_chunks(chunks, plan, finish);
     Schedule schedule{load_of(std::move(finish)), chunks.size()};
     Load& load = schedule.load;

@@ -1,5 +1,5 @@
-// The parts of anti-aliasing that need neighbours' pixels: the 3 x 3 filter (kernels/ring/filter.cl), and the detection
-// of pixels that differ from a neighbour (kernels/ring/contrast.cl).
+// The parts of anti-aliasing that need neighbouring pixels: the 3 x 3 filter (kernels/ring/filter.cl), and the
+// detection of pixels that differ from a neighbour (kernels/ring/contrast.cl).
 #pragma once
 #include <cstdint>
 #include <span>

@@ -63,7 +63,7 @@ class NffWriter {
     void write_surface(int index, bool flat) {
         const Surface& s = scene_.surfaces.at(static_cast<std::size_t>(index));
         const std::string fill = fmt::format("f {} {} {} {} {} {}", text_of(s.colour), s.diffuse, s.specular, s.shine,
-                                             s.transmittance, s.refraction);
+                                             s.transmittance, s.refraction_index);
         if (fill != last_fill_) write_line("{}", fill);
         last_fill_ = fill;
         if (!s.checker) return;

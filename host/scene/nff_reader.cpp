@@ -156,10 +156,11 @@ class NffReader {
         surface.specular = read_weight("Ks");
         surface.shine = tokens_.take_number("Shine");
         surface.transmittance = read_weight("T");
-        surface.refraction = tokens_.take_number("the index of refraction");
+        surface.refraction_index = tokens_.take_number("the index of refraction");
         if (surface.shine < 0) refuse(fmt::format("Shine is {}: must not be negative", surface.shine));
-        if (surface.transmittance > 0 && surface.refraction <= 0)
-            refuse(fmt::format("the index of refraction is {}: must be positive where T > 0", surface.refraction));
+        if (surface.transmittance > 0 && surface.refraction_index <= 0)
+            refuse(
+                fmt::format("the index of refraction is {}: must be positive where T > 0", surface.refraction_index));
         current_surface_ = static_cast<int>(scene_.surfaces.size());
         scene_.surfaces.push_back(surface);
     }

@@ -66,7 +66,7 @@ void pack_camera(raya_job& job, const View& view, const JobSettings& settings) {
 void pack_surface(JobWords& words, const Surface& s) {
     const Checker checker = s.checker.value_or(Checker{s.colour, s.colour, 0});
     put(words, checker.even);
-    for (const double value : {s.diffuse, s.specular, s.shine, s.transmittance, s.refraction}) put(words, value);
+    for (const double value : {s.diffuse, s.specular, s.shine, s.transmittance, s.refraction_index}) put(words, value);
     put(words, checker.odd);
     put_length(words, checker.size);
 }

@@ -22,7 +22,7 @@ using SurfaceKey = std::array<double, 16>;
 /// Returns all numbers of a surface, so that equal surfaces have equal keys.
 SurfaceKey surface_key(const Surface& s) {
     const Checker c = s.checker.value_or(Checker{Colour(0), Colour(0), 0});
-    return {s.colour.x, s.colour.y, s.colour.z, s.diffuse, s.specular, s.shine, s.transmittance, s.refraction,
+    return {s.colour.x, s.colour.y, s.colour.z, s.diffuse, s.specular, s.shine, s.transmittance, s.refraction_index,
             c.even.x,   c.even.y,   c.even.z,   c.odd.x,   c.odd.y,    c.odd.z, c.size,          s.checker ? 1.0 : 0.0};
 }
 

@@ -42,11 +42,11 @@ struct Checker {
 /// Colour and shading parameters of a surface (`f` of NFF).
 struct Surface {
     Colour colour{1, 1, 1};
-    double diffuse = 1;        // Kd: weight of diffusely reflected light
-    double specular = 0;       // Ks: weight of highlight and reflected ray
-    double shine = 0;          // Phong exponent
-    double transmittance = 0;  // T: weight of the refracted ray
-    double refraction = 1;     // index of refraction, > 0 if transmittance > 0
+    double diffuse = 1;           // Kd: weight of diffusely reflected light
+    double specular = 0;          // Ks: weight of highlight and reflected ray
+    double shine = 0;             // Phong exponent
+    double transmittance = 0;     // T: weight of the refracted ray
+    double refraction_index = 1;  // > 0 if transmittance > 0
     std::optional<Checker> checker{};
     bool operator==(const Surface&) const = default;
 };

@@ -29,7 +29,7 @@ class Composer {
     explicit Composer(Kernels& kernels);
 
     /// Returns [pixel][3]: linear red, green and blue, rounded to the kernels' number format. Throws DeviceError if
-    /// the device cuts loops short (kernels/shared/loop_canary.clh).
+    /// the device ends loops early (kernels/shared/loop_canary.clh).
     std::vector<float> compose(const Contributions& contributions);
 
   private:

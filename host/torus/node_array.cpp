@@ -261,8 +261,8 @@ void NodeArray::report_work(const NodeStatus& injected, const NodeWorkSink& sink
     }
 }
 
-void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns) {
-    gather_remaining(returns);
+void NodeArray::continue_gather(const NodeStatus& status, std::vector<raya_head>& returns) {
+    finish_gather(returns);
     if (!distribution_.has(RAYA_ROOT)) return;
     returns_pending_ = status.at(RAYA_ROOT, RAYA_STATUS_HOST);
     session_.read("gather", returns_, 0, returns_readback_, 0, returns_pending_);
@@ -270,7 +270,7 @@ void NodeArray::gather(const NodeStatus& status, std::vector<raya_head>& returns
 
 // Called one superstep after the start of the readback. In between, read_status() has waited for the command queue, so
 // the readback is complete.
-void NodeArray::gather_remaining(std::vector<raya_head>& returns) {
+void NodeArray::finish_gather(std::vector<raya_head>& returns) {
     if (returns_pending_ == 0) return;
     session_.wait("gather", returns_readback_);
     const std::span<const raya_head> read = returns_readback_.first(std::exchange(returns_pending_, 0));
@@ -295,7 +295,7 @@ PacketCounts NodeArray::read_packets(const Buffer<std::uint64_t>& counters) {
     return total_counts;
 }
 
-PacketCounts NodeArray::read_made() { return read_packets(made_); }
-PacketCounts NodeArray::read_ended() { return read_packets(ended_); }
+PacketCounts NodeArray::read_created_counts() { return read_packets(made_); }
+PacketCounts NodeArray::read_ended_counts() { return read_packets(ended_); }
 
 }  // namespace raya

@@ -69,7 +69,7 @@ using Accept = DescribedKernel<"torus/accept.cl", "accept", InputWords, InputWor
 
 /// The torus nodes of this rank. Each kernel is launched with one work-group per node, and relaunched until no node has
 /// work left. Commands are labelled with the kernel's name. Functions that launch kernels throw DeviceError if the
-/// device cuts loops short even in the smallest launch.
+/// device ends loops early even in the smallest launch (kernels/shared/loop_canary.clh).
 class NodeArray {
   public:
     /// Builds the kernels with `options` and allocates the device memory. `memories`: memories of this rank's nodes, by
@@ -80,7 +80,7 @@ class NodeArray {
     /// Empties queues and mailboxes, sets counters to 0, and restarts the generation of primary rays.
     void clear();
 
-    /// Sets the pixels of the following images; the default is TorusSettings::pixels.
+    /// Chooses the pixels that the following renders compute; the default is TorusSettings::pixels.
     void set_pixels(const PixelSubset& pixels);
 
     /// A range of slots. inner(): nodes without links to other ranks; border(): the remaining nodes.
@@ -110,20 +110,20 @@ class NodeArray {
     /// KernelOptions::costs and a single rank.
     void report_work(const NodeStatus& injected, const NodeWorkSink& sink);
 
-    /// In rank 0, appends to `returns` the packets that the previous gather() started to read. Then starts to read the
-    /// returns that have reached the root since the previous call. After the last superstep, gather_remaining() appends
-    /// the packets that the last gather() started to read.
-    void gather(const NodeStatus& status, std::vector<raya_head>& returns);
-    void gather_remaining(std::vector<raya_head>& returns);
+    /// In rank 0, appends to `returns` the packets that the previous continue_gather() started to read. Then starts to
+    /// read the returns that have reached the root since the previous call. After the last superstep, finish_gather()
+    /// appends the packets that the last continue_gather() started to read.
+    void continue_gather(const NodeStatus& status, std::vector<raya_head>& returns);
+    void finish_gather(std::vector<raya_head>& returns);
 
-    /// In rank 0, passes the new messages in the outboxes of all ranks to `sink`: packets that the outbox's node
-    /// created or changed and that the model charges as messages. All ranks must call record_packets() in every
+    /// In rank 0, passes the new messages in the outboxes of all ranks to `sink`: the charged packets
+    /// (docs/glossary.md) that the outbox's node created or changed. All ranks must call record_packets() in every
     /// superstep. An empty sink skips the superstep; it must be empty in all ranks or in none.
     void record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
     std::vector<std::uint64_t> read_events();  // rank 0: [node][RAYA_EVENTS] of all nodes; other ranks: empty
-    PacketCounts read_made();                  // numbers of packets that nodes created, sums over all ranks
-    PacketCounts read_ended();  // numbers of packets that nodes processed to the end, sums over all ranks
+    PacketCounts read_created_counts();        // numbers of packets that nodes created, sums over all ranks
+    PacketCounts read_ended_counts();  // numbers of packets that nodes processed to the end, sums over all ranks
 
     /// Returns [node][RAYA_LINKS]: number of messages over the link since clear(), for the nodes of all ranks.
     std::vector<std::uint64_t> link_packets() const;
@@ -132,7 +132,7 @@ class NodeArray {
     std::uint64_t moved_rays() const { return ray_links_.moved_packets(); }
     std::uint64_t moved_returns() const { return return_links_.moved_packets(); }
     const std::string& build_options() const { return build_options_; }
-    bool words_local() const { return options_.words_local; }  // kernels copy a node's words to local memory
+    bool copies_words_to_local() const { return options_.words_local; }  // kernels copy a node's words to local memory
 
   private:
     NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,

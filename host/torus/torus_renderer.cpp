@@ -190,7 +190,7 @@ std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusResult& 
     for (std::uint32_t superstep = 0;; ++superstep) {
         nodes->route();
         const NodeStatus status = nodes->read_status();
-        nodes->gather(status, returns);
+        nodes->continue_gather(status, returns);
         if (observers.packets)
             nodes->record_packets(status, superstep,
                                   superstep % observers.packets_every ? PacketSink{} : observers.packets);
@@ -212,7 +212,7 @@ std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusResult& 
         nodes->finish_exchange();
         nodes->accept(nodes->border(), reserve, superstep);
         if (ended) {
-            nodes->gather_remaining(returns);
+            nodes->finish_gather(returns);
             return {};
         }
         if (!continues)
@@ -242,8 +242,8 @@ void TorusRenderer::Impl::collect(TorusResult& result) {
         loads[i / RAYA_EVENTS] += cycles[i % RAYA_EVENTS] * events[i];
     }
     if (ranks.is_first()) result.load = load_of(std::move(loads));
-    result.made = nodes->read_made();
-    result.ended = nodes->read_ended();
+    result.made = nodes->read_created_counts();
+    result.ended = nodes->read_ended_counts();
     const NodeStatus status = nodes->read_status();
     for (std::uint32_t node = 0; node < raya_nodes(settings.torus); ++node)
         result.queue_max = std::max<std::uint64_t>(result.queue_max, status.at(node, RAYA_STATUS_QUEUE_MAX));
@@ -280,7 +280,7 @@ void TorusRenderer::Impl::describe(TorusResult& result) const {
     result.copies = job.memories.copies;
     result.scale = job.scale;
     result.buffers = job.buffers;
-    result.copied_words = nodes->words_local() ? job.words : 0;
+    result.copied_words = nodes->copies_words_to_local() ? job.words : 0;
     result.node_bytes = node_bytes(job.buffers);
     result.links_by_kernel = nodes->links_by_kernel();
     result.links_origin = nodes->links_origin();

@@ -32,8 +32,8 @@ class TorusRenderer {
     /// Returns the factor by which the scene's lengths are multiplied.
     const LengthScale& scale() const;
 
-    /// Sets the pixels of the following images, so that one renderer can render the pixel subsets of several groups of
-    /// nodes one after another.
+    /// Chooses the pixels that the following renders compute, so that one renderer can render the pixel subsets of
+    /// several groups of nodes one after another.
     void set_pixels(const PixelSubset& pixels);
 
     /// Sets the capacity of the queues, in packets, for the following images. The queues may exceed a node's memory.

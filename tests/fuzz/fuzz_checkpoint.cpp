@@ -11,7 +11,7 @@ using namespace raya::fuzz;
 namespace {
 
 // Returns a state whose vectors have the sizes of those in the corpus's checkpoints.
-RingState sized_state() {
+RingState expected_sizes() {
     RingState state;
     state.image.resize(3);
     state.pixels.resize(2);
@@ -34,10 +34,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const CheckpointOptions options{.file = folder.write("render.rst", text_of(data, size)), .resume = true};
     try {
         const CheckpointFile file(options);
-        const auto state = file.checkpointing()->resume(settings, sized_state());
+        const auto state = file.checkpointing()->resume(settings, expected_sizes());
         if (!state) report_finding("an existing checkpoint is not found", options.file);
         const std::string written = state_bytes(*state, settings);
-        if (state_bytes(read_state(written, settings, sized_state()), settings) != written)
+        if (state_bytes(read_state(written, settings, expected_sizes()), settings) != written)
             report_finding("a checkpoint changes if it is written and read again", text_of(data, size).substr(0, 200));
     } catch (const UserError& error) {
         check_refusal(error.what(), options.file);

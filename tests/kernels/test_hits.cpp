@@ -69,7 +69,7 @@ TEST_CASE("closest hits agree with the reference, with the same bits in all buil
             const Scene scene = random_scene(kind, seed);
             const ProbedHits hits = closest_hits(runner, job_words(scene), words);
             const auto [entry, is_first] = first.try_emplace(kind.name, hits);
-            if (is_first) grazing += fmt::format(" {},", check_against_reference(scene, rays, hits));
+            if (is_first) grazing += fmt::format(" {} {},", kind.name, check_against_reference(scene, rays, hits));
             CHECK(hits.objects == entry->second.objects);
             CHECK(bits(hits.distances) == bits(entry->second.distances));
         }

@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t kPlaceRays = 4'000;
 
-constexpr double kColourLimit = 1e-7;        // error of rounding the scene's colours to fp32
-constexpr double kMaxPlacesGrazing = 0.002;  // maximum fraction of rays that graze an edge or a checker square's side
+constexpr double kColourLimit = 1e-7;          // error of rounding the scene's colours to fp32
+constexpr double kMaxGrazingFraction = 0.002;  // maximum fraction of rays that graze an edge or a checker square's side
 
 RayResult reference_place(const Scene& scene, const reference::Ray& ray) {
     const auto hit = reference::closest_hit(scene, ray);
@@ -47,10 +47,10 @@ double curvature(const Scene& scene, std::size_t object, const Vec3& point) {
 
 // The error of a normal is the error of the hit point times the curvature.
 RayResult limits_of(const Scene& scene, std::size_t object, const Vec3& point) {
-    const double place = kPlaceLimit * scene_extent(scene);
+    const double position_limit = kPlaceLimit * scene_extent(scene);
     RayResult limits{0, 0};
-    limits.insert(limits.end(), 3, place);
-    limits.insert(limits.end(), 6, place * curvature(scene, object, point));
+    limits.insert(limits.end(), 3, position_limit);
+    limits.insert(limits.end(), 6, position_limit * curvature(scene, object, point));
     limits.insert(limits.end(), 3, kColourLimit);
     return limits;
 }
@@ -75,7 +75,7 @@ std::size_t check_against_reference(const Scene& scene, const std::vector<refere
         leaving += places.leaving[i];
     }
     CHECK(leaving > agreement.rays / 50);  // rays hit both sides of objects
-    CHECK(static_cast<double>(agreement.grazing) <= kMaxPlacesGrazing * static_cast<double>(agreement.rays));
+    CHECK(static_cast<double>(agreement.grazing) <= kMaxGrazingFraction * static_cast<double>(agreement.rays));
     return agreement.grazing;
 }
 
@@ -118,7 +118,7 @@ TEST_CASE("hit points, normals, sides and colours agree with the reference, with
             const auto [entry, is_first] = first.try_emplace(kind.name, places);
             if (is_first) {
                 const ProbedHits hits = closest_hits(runner, job, words);
-                grazing += fmt::format(" {},", check_against_reference(scene, rays, hits, places));
+                grazing += fmt::format(" {} {},", kind.name, check_against_reference(scene, rays, hits, places));
                 check_secondary_origins(scene, hits, places);
             }
             CHECK(places.leaving == entry->second.leaving);
@@ -126,8 +126,9 @@ TEST_CASE("hit points, normals, sides and colours agree with the reference, with
         }
     }
     grazing.pop_back();
-    fmt::print("Grazing rays whose places differ from the reference by more than the limits, of {} rays per kind:{}.\n",
-               kPlaceRays, grazing);
+    fmt::print(
+        "Grazing rays whose hit points, normals or colours are outside the limits, of {} rays per kind of object:{}.\n",
+        kPlaceRays, grazing);
 }
 
 }  // namespace raya

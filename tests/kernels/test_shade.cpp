@@ -89,7 +89,7 @@ RayResult reference_step(const Scene& scene, const reference::Ray& ray) {
     for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(hit->point[axis]));
     const Vec3 margin = 0x1p-20 * largest * hit->geometric;
     const Vec3 mirror = reference::reflected_direction(ray.direction, hit->shading);
-    const double e = hit->leaving ? surface.refraction : 1 / surface.refraction;
+    const double e = hit->leaving ? surface.refraction_index : 1 / surface.refraction_index;
     std::optional<Vec3> through;
     if (surface.transmittance > 0) through = reference::refracted_direction(ray.direction, hit->shading, e);
     const double reflectance = surface.specular + (surface.transmittance > 0 && !through ? surface.transmittance : 0);

@@ -4,8 +4,8 @@
     compare_golden.py OUT GOLDEN [STUDY...]     OUT: folder of `raya study -o`; GOLDEN: folder with the recorded *.csv;
                                                 STUDY: names of studies (default: all recorded tables)
 
-Figures except measured times must agree to 1 part in 10^9, half widths of intervals to 1 in 10^6. golden_names.csv maps
-columns and cells that were renamed after the recording. Verdicts are not compared, because their rules are newer than the recording.
+Figures except measured times must agree to 1 part in 10^9, half widths of intervals to 1 in 10^6. golden_names.csv lists the columns and
+cells that were renamed after the recording. Verdicts are not compared, because their rules are newer than the recording.
 Prints the differences and the number of compared figures. Exit codes: 0 equal; 1 a difference.
 """
 import csv
@@ -32,11 +32,11 @@ def rows_of(path):
         return list(csv.reader(file))
 
 
-RENAMED = dict(rows_of(Path(__file__).with_name("golden_names.csv"))[1:])  # {recorded text: current text}
+RENAMED = dict(rows_of(Path(__file__).with_name("golden_names.csv"))[1:])  # {[FILE/]recorded text: current text}
 
 
-def renamed(text):
-    return RENAMED.get(text, text)
+def renamed(text, stem):
+    return RENAMED.get(f"{stem}/{text}", RENAMED.get(text, text))
 
 
 def same(current, recorded, tolerance):
@@ -54,7 +54,7 @@ def is_measured(stem, column):
 
 
 def compare_table(current, recorded, stem):
-    """Returns (number of figures compared, number of figures skipped, list of differences). stem: file name without extension."""
+    """Returns (number of figures compared, number of figures skipped, list of differences). stem: file name of the table without extension."""
     if current[0] != recorded[0]:
         return 0, 0, [f"{stem}: columns {current[0]} instead of {recorded[0]}"]
     if len(current) != len(recorded):
@@ -85,7 +85,7 @@ def main(out, golden, wanted):
         if not (out / path.name).exists():
             differences.append(f"{path.name}: no such file")
             continue
-        golden_rows = [[renamed(cell) for cell in row] for row in rows_of(path)]
+        golden_rows = [[renamed(cell, path.stem) for cell in row] for row in rows_of(path)]
         table_compared, table_skipped, table_differences = compare_table(rows_of(out / path.name), golden_rows, path.stem)
         compared, skipped, differences = compared + table_compared, skipped + table_skipped, differences + table_differences
     for line in differences:

@@ -6,7 +6,7 @@ from raya.lab import Comparison, Page, Table  # noqa: E402
 from raya.lab.document import cells_of_comparisons, cells_of_table, classes_of, command_of  # noqa: E402
 
 
-@pytest.mark.parametrize("cell, css_class", [  # n: numbers; t: more than 15 characters; w: more than 60
+@pytest.mark.parametrize("cell, css_class", [  # classes: n, numbers; t, more than 15 characters; w, more than 60
     ("1.5", "n"), ("-", "n"), ("", "n"), ("inf", "n"), ("-1.1102e-14", "n"), ("1.41 +- 0.053", "n"), ("283 ms", "n"),
     ("1.58 (derived)", "n"), ("653 ms (derived)", "n"), ("8 x 8", ""), ("46x46x3", ""), ("64 PEs: objects", ""),
     ("4.80 without the first", "t"), ("fp32", ""), ("a" * 61, "w")])

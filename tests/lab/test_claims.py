@@ -34,14 +34,14 @@ def families(count):
 
 
 def ensemble_of(traces):
-    """An ensemble of these cost images. A picture has one image for both its first pass and its supersampling."""
+    """Returns an ensemble with these cost images. Each is used both for the first pass and for the supersampling of its picture."""
     pictures = [Costs(f"picture {i}", image, image, {}, 0) for i, image in enumerate(traces)]
     return Ensemble(pictures, families(len(pictures)), f"{len(pictures)} pictures")
 
 
 class FakeLaboratory:
-    """A laboratory whose ensembles have the given cost images. parts: {part: cost images}, instead of `traces` for all parts. asked: (size,
-    antialias, part, families) of each ensemble that a study asked for."""
+    """A laboratory whose ensembles have given cost images: parts, as {part: cost images}, or else `traces` for each part. asked: (size, antialias,
+    part, families) of each ensemble that a study asked for."""
 
     network, seed, views = None, 1, COUNT
 
@@ -61,23 +61,23 @@ class FakeLaboratory:
 
 
 def values_of(mean, spread, count=COUNT):
-    """Values with this mean in each family: half of them are mean - spread, half mean + spread."""
+    """Returns values with this mean in each family: half of them are mean - spread, the others mean + spread."""
     return mean + spread * np.resize([-1.0, 1.0], count)
 
 
 def slot_image(p, slot=5, height=500, side=SIDE):
-    """A cost image in which the pixels of one slot of offset p cost `height` more than the others."""
+    """Returns a cost image in which the pixels of one slot of the mapping with offset p cost `height` more than the others."""
     return 1000 + np.uint64(height) * (raya.owners(side, side, offset=p, pes=side) == slot % side).astype(np.uint64)
 
 
 def slot_images(make, heights=values_of(500, 50)):
-    """Cost images make(slot, height), one for each height, with random slots."""
+    """Returns cost images make(slot, height), one for each height, with random slots."""
     random = np.random.default_rng(SEED)
     return [make(int(random.integers(SIDE)), int(height)) for height in heights]
 
 
 def in_turn(*kinds, count=COUNT):
-    """Pictures of the kinds in turn, so that each family has pictures of all kinds."""
+    """Returns `count` pictures, in turn from the kinds, so that each family has pictures of all kinds."""
     return [kinds[i % len(kinds)] for i in range(count)]
 
 
@@ -109,7 +109,7 @@ def judge_fig7(traces):
 
 
 def humps_along_16(heights):
-    """Cost images whose loads have a hump in the middle with p = 16, and none with p = 0."""
+    """Returns cost images whose PEs in the middle have higher loads (a hump) with p = 16, but not with p = 0."""
     slots = raya.owners(SIDE, SIDE, offset=16, pes=SIDE)
     return [(1000 + height * HUMP[slots]).astype(np.uint64) for height in heights]
 
@@ -160,7 +160,7 @@ def judge_table2(pes=256):
 
 
 def block_of_16(height, extra=0, offset=16):
-    """256 x 16 pixels. 16 neighbouring columns cost `height` more; p = 16 spreads them evenly. A slot of `offset` costs `extra` more."""
+    """Returns 256 x 16 pixels. 16 neighbouring columns cost `height` more; p = 16 spreads them evenly. A slot of `offset` costs `extra` more."""
     image = np.full((16, 256), 100_000, np.uint64)
     image[:, 120:136] += np.uint64(height)
     return image + np.uint64(extra) * (raya.owners(256, 16, offset=offset, pes=256) == 7).astype(np.uint64)
@@ -170,7 +170,7 @@ MATCHED_HEIGHT = 188_370  # height for the paper's u(0) = (1 + 1.8837) / (1 + 1.
 
 
 def judge_table3(extras, rotations=(2, 18, 34), offsets=range(17)):
-    """table3, for scenes with the paper's u(0) and others. extras: costs of a slot of p = 16; offsets: row p has 2 (offsets[p] + 1) rotations."""
+    """table3, for scenes with and without the paper's u(0). extras: extra costs of a slot of p = 16; offset p has 2 (offsets[p] + 1) rotations."""
     lab = FakeLaboratory([block_of_16(MATCHED_HEIGHT, extra) for extra in extras] + [block_of_16(1000)] * COUNT)
     rows = pd.DataFrame({"p": [0, 8, 16], "rotations": rotations})
     matched = cluster.matched_times(lab, "filter")
@@ -192,7 +192,7 @@ def judge_table4(heights, rotations=(2, 18, 34), words=768, ratio=1.0, uneven_at
 
 
 def uneven_image(offsets, height=50_000):
-    """256 x 16 pixels. With each of the offsets one PE has more load than the others, both of 256 PEs and of 64 PEs."""
+    """Returns 256 x 16 pixels. With each of the offsets, one of 256 PEs and one of 64 PEs has more load than the others."""
     image = np.full((16, 256), 100_000, np.uint64)
     for p in offsets:
         image += np.uint64(height) * (raya.owners(256, 16, offset=p, pes=64) == 3 * p % 64).astype(np.uint64)
@@ -219,12 +219,12 @@ def judge_static_vs_dynamic(*kinds, count=COUNT):
 
 
 def random_pixels(fraction, ratio, side=128):
-    """A cost image in which this fraction of the pixels costs `ratio` times as much as the others."""
+    """Returns a cost image in which this fraction of the pixels costs `ratio` times as much as the others."""
     return np.random.default_rng(SEED).choice(np.array([10**6, ratio * 10**6], np.uint64), (side, side), p=[1 - fraction, fraction])
 
 
 def last_pixel_late(side=128):
-    """With p = 16, 256 PEs have equal loads: the last pixel costs as much as all pixels of another PE. Dynamic distribution assigns it last."""
+    """Returns a cost image with which 256 PEs have equal loads at p = 16. Its last pixel costs as much as another PE's pixels."""
     owners = raya.owners(side, side, offset=16, pes=256)
     image = np.full((side, side), 10**6, np.uint64)
     owned = owners == owners[-1, -1]
@@ -367,7 +367,7 @@ CASES = [
      {"comparison-communicates": "no", "comparison-like-filter": "no", "gain-exceeds-communication": "?"}),
 
     ("best-offset", "pixels of equal cost", lambda: judge_best_offset([uneven_image([])] * 4, [uneven_image([])] * 4), {"root-is-enough": "yes"}),
-    ("best-offset", "offsets up to sqrt(P) are uneven but for sqrt(P) itself, 8 and 16",
+    ("best-offset", "offsets up to sqrt(P) are uneven except 8 and 16, the values of sqrt(P)",
      lambda: judge_best_offset(*[[uneven_image([*range(8), *range(9, 16)])] * 4] * 2), {"root-is-enough": "yes"}),
     ("best-offset", "offsets up to sqrt(P) are uneven", lambda: judge_best_offset(
         [BAD_UP_TO_ROOT] * 4, [uneven_image(range(17), height) for height in values_of(50_000, 5000, 4)]), {"root-is-enough": "no"}),
@@ -385,7 +385,7 @@ CASES = [
      {"static-inadequate": "yes", "hybrid-nearly-optimal": "no", "dynamic-balances": "yes"}),
     ("static-vs-dynamic", "as above, with one pixel for each of 4096 PEs", lambda: judge_static_vs_dynamic(random_pixels(0.1, 20, 64), count=4),
      {"static-inadequate": "no", "hybrid-nearly-optimal": "no", "dynamic-balances": "yes"}),
-    ("static-vs-dynamic", "half of the pixels costs twice as much, so hybrids are nearly optimal on few PEs",
+    ("static-vs-dynamic", "half of the pixels cost twice as much, so hybrids are nearly optimal on few PEs",
      lambda: judge_static_vs_dynamic(random_pixels(0.5, 2), count=4),
      {"static-inadequate": "no", "hybrid-nearly-optimal": "no", "dynamic-balances": "yes"}),
     ("static-vs-dynamic", "pixels of equal cost and a costly tenth in turn", lambda: judge_static_vs_dynamic(EQUAL, random_pixels(0.1, 20), count=4),
@@ -406,7 +406,7 @@ CASES = [
      {"random-is-slower": "yes", "not-linear": "yes", "front-voxels": "yes"}),
     ("objects", "random objects are faster, and time is linear", lambda: judge_objects((0.9, 0.92), (1.05, 0.2), (1.04, 0.3)),
      {"random-is-slower": "no", "not-linear": "no", "front-voxels": "no"}),
-    ("objects", "random objects are at the bounds", lambda: judge_objects((0.9, 1.1), (3, 0.8), (1.25, 0.5)),
+    ("objects", "figures of random objects are at the bounds of the rules", lambda: judge_objects((0.9, 1.1), (3, 0.8), (1.25, 0.5)),
      {"random-is-slower": "?", "not-linear": "?", "front-voxels": "?"}),
     ("objects", "time grows more than the objects, and rays visit more voxels", lambda: judge_objects((1.2, 1.25), (0.8, 1.5), (0.8, 1.5)),
      {"random-is-slower": "yes", "not-linear": "no", "front-voxels": "no"}),
@@ -477,7 +477,7 @@ def ids_judged():
 
 
 def test_each_claim_is_judged_once_by_the_study_that_it_names():
-    """No study judges a claim without a verdict."""
+    """No study judges a claim that has no verdict (derived or untestable)."""
     names = {}
     for name, study in studies().items():
         names.setdefault(study.run.__module__.split(".")[-1], []).append(name)
@@ -497,7 +497,7 @@ def test_claim_is_complete(claim):
     assert claim.kind in ("test", "counted", "derived", "untestable")
     assert claim.paper in (papers.SPA, papers.TP, papers.DYNAMIC) and claim.study in ORDER
     assert claim.place and claim.statement.endswith(".") and claim.rule.endswith(".")
-    assert claim.original or claim.paper == papers.DYNAMIC  # the other papers are in Japanese
+    assert claim.original or claim.paper == papers.DYNAMIC  # only the others are in Japanese and need a translation
 
 
 def test_each_paper_has_claims():
@@ -505,7 +505,7 @@ def test_each_paper_has_claims():
 
 
 def test_claims_without_a_verdict_are_on_a_page_with_verdicts():
-    """A page shows the derived and untestable claims of its study next to those that it judges."""
+    """A page shows the derived and untestable claims of its study next to the claims that the study judges."""
     with_verdicts = {claim.study for claim in CLAIMS.values() if claim.kind in ("test", "counted")}
     for claim in CLAIMS.values():
         assert claim.study in with_verdicts, claim.id
@@ -549,7 +549,7 @@ def test_bound_of_the_rule_is_that_of_the_study(key, part):
 
 @pytest.mark.parametrize("study, pictures", [("images", images.FINER_VIEWS), ("images", Laboratory("").views)])
 def test_proportion_of_the_default_pictures_can_be_reproduced(study, pictures):
-    """If a claim on a fraction of the pictures holds for all pictures, it is reproduced, at least without Holm's correction."""
+    """A claim on a fraction of the pictures that holds for all pictures is reproduced, at least without Holm's correction."""
     test = proportion([True] * pictures, images.SHARE)
     decide(judgements := [judged("cyclic-is-high", test)])
     assert judgements[0].verdict == REPRODUCED, f"{pictures} pictures: {test}"
@@ -664,7 +664,7 @@ def direction_of(scene):
 
 
 def test_pictures_are_independent():
-    """Values of scenes with the same view or the same places of objects would be correlated. Only the family `cluster` has a single view."""
+    """Values of scenes with equal views or equal positions of objects would be correlated. Only the scenes of the family `cluster` share a view."""
     ensemble, scenes = ensemble_and_scenes()
     random_views = [scene for scene, family in zip(scenes, ensemble.families) if family != "cluster"]
     views = Counter(map(direction_of, random_views))

@@ -1,4 +1,4 @@
-"""A study with invalid rows ends with an error that names the line or the comparison, and writes no file."""
+"""A study with invalid rows ends with an error that names the line or the invalid object, and writes no file."""
 import json
 import os
 import subprocess

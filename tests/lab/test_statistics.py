@@ -7,7 +7,7 @@ pytest.importorskip("raya", reason="the module is not built; configure with -DRA
 from raya.lab import statistics as s  # noqa: E402
 
 SEED, DRAWS = 20261124, 2000
-SIDE, POWER = 0.025, 0.8  # probability of a wrong verdict on one side; power at the detectable deviation
+SIDE, POWER = 0.025, 0.8  # SIDE: maximum probability of a wrong verdict on one side; POWER: at the detectable deviation
 # Standard deviations of u(0) in the nine families of families.py, 64 x 64 pixels, 300 seeds.
 FAMILY_DEVIATIONS = [0.55, 0.72, 0.60, 0.11, 0.62, 0.07, 0.20, 0.16, 0.16]
 ONE_DOMINATES = [1] + 8 * [0.01]
@@ -18,7 +18,7 @@ def random():
 
 
 def error_of(probability, draws):
-    """Three standard deviations of a simulated probability."""
+    """Returns three standard deviations of a simulated probability."""
     return 3 * (probability * (1 - probability) / draws) ** 0.5
 
 
@@ -66,7 +66,7 @@ def test_interval_of_64_skewed_values_contains_the_mean():
 
 def stratified_coverage(deviations, count, draw):
     """Returns the fraction of intervals of families, with `count` values per family, that contain the mean of the families' means. draw:
-    function(generator, shape) with mean 0 and deviation 1. The means are 0, 1, ..., so an interval that ignores families is much too long."""
+    function(generator, shape) with mean 0 and deviation 1. The families' means are 0, 1, ..., so an interval that ignores families is too long."""
     generator, families = random(), [name for name in range(len(deviations)) for _ in range(count)]
     scale, shift = np.repeat(deviations, count), np.array(families)
     estimates = [s.estimate(shift + scale * draw(generator, len(families)), families) for _ in range(DRAWS)]
@@ -111,7 +111,7 @@ def test_estimate_of_one_family_is_that_without_families():
 
 @pytest.mark.parametrize("values", [[], [[1, 2], [3, 4]], np.zeros((3, 0))])
 def test_only_a_list_of_values_has_an_estimate(values):
-    """A name in a damaged table may select an empty column or two columns."""
+    """A column name of a damaged table may select no values or two columns."""
     with pytest.raises(ValueError):
         s.estimate(values)
 
@@ -167,7 +167,7 @@ def test_estimate_of_a_worked_example():
 def test_estimate_of_one_value_has_no_interval():
     e = s.estimate([0.25])
     assert e.mean == 0.25 and np.isnan(e.half) and e.text() == "0.250"
-    assert not e.low > 0 and not e.high < 1  # so the interval decides no claim
+    assert not e.low > 0 and not e.high < 1  # comparisons with nan are false, so the interval decides no claim
 
 
 def test_prediction_of_39_values_is_their_range():
@@ -286,7 +286,7 @@ def test_proportion_of_too_few_pictures_has_no_detectable_deviation():
 
 @pytest.mark.parametrize("count", [5])
 def test_another_picture_contradicts_a_true_figure_with_5_percent(count):
-    """The figure is one more value, so the test wrongly finds it too small with a probability of 2.5 %, and too large with 2.5 %."""
+    """The figure is one more value of the same distribution. The test wrongly finds it too small, or too large, with 2.5 % probability each."""
     values = random().normal(100, 5, (DRAWS, count + 1))
     tests = [s.next_value_within(row[0], row[1:], 1e-6) for row in values]
     for side in (-1, 1):
@@ -386,7 +386,7 @@ def test_verdicts_on_no_test_and_on_one_test():
 
 @pytest.mark.parametrize("clear, alike", [(0, False), (20, False), (0, True)])
 def test_one_or_more_wrong_verdicts_of_20_null_tests(clear, alike):
-    """Any decision on 20 tests at their bounds is wrong. clear: number of other tests, all clearly reproduced; alike: the 20 p values are equal."""
+    """Any decision on 20 tests at their bounds is wrong. clear: number of further tests, all clearly reproduced. alike: the 20 p values are equal."""
     draws, generator, wrong = 5000, random(), 0
     for _ in range(draws):
         null = np.repeat(generator.uniform(), 20) if alike else generator.uniform(size=20)

@@ -17,15 +17,15 @@ inline std::uint32_t widest_lanes() {
 }
 
 /// Returns the number of rows of random operands: the environment variable RAYA_NUMBER_CASES, by default
-/// `default_cases`, rounded up to a multiple of kMaxLanes.
-inline std::size_t number_cases(std::size_t default_cases) {
+/// `default_rows`, rounded up to a multiple of kMaxLanes.
+inline std::size_t row_count(std::size_t default_rows) {
     const char* text = std::getenv("RAYA_NUMBER_CASES");
-    const std::size_t wanted = text == nullptr ? default_cases : std::stoul(text);
+    const std::size_t wanted = text == nullptr ? default_rows : std::stoul(text);
     return (wanted + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
 }
 
 /// Returns true if RAYA_NUMBER_CASES asks for more than twice the default number of rows.
-inline bool is_long_run(std::size_t default_cases) { return number_cases(default_cases) > 2 * default_cases; }
+inline bool is_long_run(std::size_t default_rows) { return row_count(default_rows) > 2 * default_rows; }
 
 /// Returns a build that uses the device's division, square root and fma.
 inline NumberBuild number_build(const NumberFormat& format, std::uint32_t lanes = widest_lanes()) {

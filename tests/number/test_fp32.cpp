@@ -15,7 +15,7 @@ constexpr std::uint64_t kFp32Seed = 754;
 const NumberFormat kFp32;
 
 void check_fp32(const NumberBuild& build) {
-    const NumberRows rows = RandomOperands(kFp32, kFp32Seed).rows(number_cases(kFp32Rows));
+    const NumberRows rows = RandomOperands(kFp32, kFp32Seed).rows(row_count(kFp32Rows));
     std::vector<std::size_t> operations = kRoundingOperations;
     operations.insert(operations.end(), {kMax, kFloor, kRound, kFromIndex, kNeg, kAbs});
     HostOracle host;

@@ -1,5 +1,5 @@
 // Compares the results of operations in reduced formats with those of MPFR, bit for bit, on random operands. With
-// RAYA_NUMBER_CASES=1000000 the test uses that many rows per format, more formats and all numbers of lanes.
+// RAYA_NUMBER_CASES=1000000 the test uses that many rows of operands per format, more formats and all numbers of lanes.
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kDefaultRows = 40'000;
 constexpr std::uint64_t kOracleSeed = 1993;
 
-struct Size {
+struct FormatBits {
     int exponent_bits, fraction_bits;
 };
 
@@ -22,10 +22,10 @@ struct Size {
 /// format and the SPA's format. The layer has separate code for X = 8 and for Y > 15. The formats include each of these
 /// cases alone, and both together.
 std::vector<NumberFormat> tested_formats() {
-    std::vector<Size> sizes = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
+    std::vector<FormatBits> sizes = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
     if (is_long_run(kDefaultRows)) sizes.insert(sizes.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
     std::vector<NumberFormat> formats;
-    for (const Size& size : sizes)
+    for (const FormatBits& size : sizes)
         for (const bool truncates : {false, true})
             formats.push_back({size.exponent_bits, size.fraction_bits, truncates});
     return formats;
@@ -43,7 +43,7 @@ std::vector<std::uint32_t> tested_lanes(const NumberFormat& format) {
 
 TEST_CASE("every operation rounds the exact value once, as MPFR does", "[number][oracle]") {
     for (const NumberFormat& format : tested_formats()) {
-        const NumberRows rows = RandomOperands(format, kOracleSeed).rows(number_cases(kDefaultRows));
+        const NumberRows rows = RandomOperands(format, kOracleSeed).rows(row_count(kDefaultRows));
         const std::vector<ExpectedNumbers> expected = expected_by_mpfr(format, rows);
         for (const std::uint32_t lanes : tested_lanes(format)) {
             const NumberBuild build = number_build(format, lanes);
@@ -53,13 +53,13 @@ TEST_CASE("every operation rounds the exact value once, as MPFR does", "[number]
     }
 }
 
-TEST_CASE("refined division and square root are correctly rounded on a device that computes them inexactly",
+TEST_CASE("on a device with inexact division and square root, the refined operations round correctly",
           "[number][refined]") {
     for (const NumberFormat& format :
          {NumberFormat{6, 15, false}, NumberFormat{8, 21, false}, NumberFormat{5, 12, true}})
         for (const std::uint32_t lanes : {1u, widest_lanes()}) {
             if (lanes == 1 && format.fraction_bits != 15) continue;
-            const NumberRows rows = RandomOperands(format, kOracleSeed).rows(number_cases(kDefaultRows));
+            const NumberRows rows = RandomOperands(format, kOracleSeed).rows(row_count(kDefaultRows));
             const NumberBuild build = refined_build(format, lanes);
             CAPTURE(build.name(), kOracleSeed);
             CHECK(wrong_numbers(build, rows, expected_by_mpfr(format, rows)) == "");

@@ -76,7 +76,7 @@ class TreeTracer {
         double reflectance = material.specular;
         std::optional<Vec3> refracted;
         if (material.transmittance > 0) {
-            const double e = hit.leaving ? material.refraction : 1 / material.refraction;
+            const double e = hit.leaving ? material.refraction_index : 1 / material.refraction_index;
             refracted = refracted_direction(ray.direction, hit.shading, e);
             if (!refracted) {
                 record(kTotalReflection);
@@ -140,13 +140,13 @@ Ray primary_ray(const Scene& scene, const Options& options, double x, double y) 
     };
     const Vec3 view_direction = (view.at - view.from).normalized();
     const Vec3 right = view_direction.cross(view.up).normalized();
-    const Vec3 top = right.cross(view_direction);
+    const Vec3 up = right.cross(view_direction);
     const double half_height = std::tan(view.angle_degrees * std::numbers::pi / 360);
     const double half_width = half_height * length(options.width) / length(options.height);
     const double fx = fraction(x, options.width);
     const double fy = fraction(y, options.height);
     return {view.from,
-            (view_direction + (2 * fx - 1) * half_width * right + (1 - 2 * fy) * half_height * top).normalized()};
+            (view_direction + (2 * fx - 1) * half_width * right + (1 - 2 * fy) * half_height * up).normalized()};
 }
 
 Colour trace_pixel(const Scene& scene, const Options& options, double x, double y, Counts& counts, History* history) {

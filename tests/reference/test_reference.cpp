@@ -14,7 +14,9 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 Surface matt(const Colour& colour) { return {.colour = colour, .diffuse = 1, .checker = {}}; }
 Surface mirror(double ks) { return {.diffuse = 0, .specular = ks, .checker = {}}; }
-Surface glass(double t, double ior) { return {.diffuse = 0, .transmittance = t, .refraction = ior, .checker = {}}; }
+Surface glass(double t, double ior) {
+    return {.diffuse = 0, .transmittance = t, .refraction_index = ior, .checker = {}};
+}
 
 /// Returns an empty scene, viewed from (0, 0, eye_z) towards the origin with an angle of 30 degrees; y is up.
 Scene scene_from(double eye_z) {
@@ -182,7 +184,7 @@ TEST_CASE("a glass sphere shows the squares of a checkered plane where the close
 TEST_CASE("under total reflection, one reflected ray carries the reflected and the transmitted fraction") {
     constexpr double kKs = 0.25, kT = 0.5, kIor = 1.5;
     Scene scene;
-    scene.surfaces = {{.diffuse = 0, .specular = kKs, .transmittance = kT, .refraction = kIor, .checker = {}},
+    scene.surfaces = {{.diffuse = 0, .specular = kKs, .transmittance = kT, .refraction_index = kIor, .checker = {}},
                       matt({1, 1, 1})};
     scene.planes = {{{0, 0, 1}, 0, 0}, {{0, 0, 1}, -2, 1}};  // water seen from below; a bright ground
     const double critical = std::asin(1 / kIor);

@@ -21,7 +21,7 @@ Scene two_spheres() {
     scene.view = {.from = {0, 0, 5}, .at = {0, 0, 0}, .up = {0, 1, 0}, .angle_degrees = 40};
     scene.background = {0.2, 0.3, 0.4};
     scene.surfaces = {{.colour = {0.8, 0.6, 0.4}, .diffuse = 0.7, .specular = 0.2, .shine = 10, .checker = {}},
-                      {.diffuse = 0.1, .specular = 0.2, .transmittance = 0.6, .refraction = 1.4, .checker = {}}};
+                      {.diffuse = 0.1, .specular = 0.2, .transmittance = 0.6, .refraction_index = 1.4, .checker = {}}};
     scene.spheres = {{{0, 0, 0}, 1, 0}, {{0.8, 0.8, 1}, 0.4, 1}};
     scene.lights = {{{4, 4, 5}, {}}};
     return scene;

@@ -24,9 +24,13 @@ Scene hard_spheres(std::uint32_t seed) {
     scene.view = {.from = {0, -6, 1.5}, .at = {0, 0, 0}, .up = {0, 0, 1}, .angle_degrees = 50};
     scene.background = {0.3, 0.4, 0.6};
     scene.lights = {{{4, -5, 6}, {}}, {{-3, 1, 2}, {}}};
-    scene.surfaces = {
-        {.colour = {0.9, 0.5, 0.3}, .diffuse = 0.6, .specular = 0.4, .shine = 30},
-        {.colour = {1, 1, 1}, .diffuse = 0.1, .specular = 0.1, .shine = 90, .transmittance = 0.8, .refraction = 1.4}};
+    scene.surfaces = {{.colour = {0.9, 0.5, 0.3}, .diffuse = 0.6, .specular = 0.4, .shine = 30},
+                      {.colour = {1, 1, 1},
+                       .diffuse = 0.1,
+                       .specular = 0.1,
+                       .shine = 90,
+                       .transmittance = 0.8,
+                       .refraction_index = 1.4}};
     for (int i = 0; i < 25; ++i) {
         const Vec3 centre(uniform(-2, 2), uniform(-2, 2), uniform(-2, 2));
         const double radius = std::pow(10, uniform(-2.5, 0));

@@ -6,7 +6,7 @@
 namespace raya {
 namespace {
 
-Scene dark_scene() {
+Scene known_answer_scene() {
     Scene scene;
     scene.name = "known answer";
     scene.view.from = {0, 0, 0};
@@ -22,7 +22,7 @@ float pixel(const RingResult& r, int row, int column, int channel) {
 }  // namespace
 
 TEST_CASE("a sphere of Kd = 1 without lights is as bright as the ambient light", "[ring]") {
-    Scene scene = dark_scene();
+    Scene scene = known_answer_scene();
     scene.background = {1, 1, 1};
     scene.surfaces = {{.colour = {1, 1, 1}, .diffuse = 1}};
     scene.spheres = {{{0, 0, 5}, 1, 0}, {{1, 1, 4}, 0.5, 0}};
@@ -32,9 +32,9 @@ TEST_CASE("a sphere of Kd = 1 without lights is as bright as the ambient light",
 }
 
 TEST_CASE("a perfect mirror and clear glass are invisible in uniform surroundings", "[ring]") {
-    Scene scene = dark_scene();
+    Scene scene = known_answer_scene();
     scene.background = {0.25, 0.5, 0.75};
-    scene.surfaces = {{.diffuse = 0, .specular = 1}, {.diffuse = 0, .transmittance = 1, .refraction = 1.5}};
+    scene.surfaces = {{.diffuse = 0, .specular = 1}, {.diffuse = 0, .transmittance = 1, .refraction_index = 1.5}};
     scene.spheres = {{{0, 0, 5}, 1, 0}, {{-1.5, 0, 5}, 0.7, 1}};
     const RingResult result = render_scene(scene, {.width = 32, .height = 32, .pes = 32, .bounces = 31});
     CHECK(result.all.events[RAYA_REFLECTED] > 20);
@@ -44,7 +44,7 @@ TEST_CASE("a perfect mirror and clear glass are invisible in uniform surrounding
 }
 
 TEST_CASE("the light between two mirrors is a geometric series with one term per bounce", "[ring]") {
-    Scene scene = dark_scene();
+    Scene scene = known_answer_scene();
     scene.view.from = {0, 0, 0.5};
     scene.view.at = {0, 0, 1};
     scene.surfaces = {{.colour = {1, 0.5, 0.25}, .diffuse = 0.5, .specular = 0.5}};
@@ -60,12 +60,12 @@ TEST_CASE("the light between two mirrors is a geometric series with one term per
 }
 
 TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre and half way to its rim", "[ring]") {
-    Scene scene = dark_scene();
+    Scene scene = known_answer_scene();
     scene.lights = {{{0, 0, 0}, Colour(1, 1, 1)}};
     scene.surfaces = {{.colour = {1, 0.5, 0}, .diffuse = 0.4, .specular = 0.3, .shine = 20}};
     scene.spheres = {{{0, 0, 5}, 1, 0}};
     const RingResult result = render_scene(scene, {.width = 65, .height = 65, .pes = 65, .bounces = 0});
-    const double ambient = 0.5;  // sqrt(1) / 2
+    const double ambient = 0.5;  // ambient intensity with n = 1 light: sqrt(n) / (2 n)
     CHECK(pixel(result, 32, 32, 0) == Approx(0.4 * (ambient + 1) + 0.3).epsilon(1e-5));
     CHECK(pixel(result, 32, 32, 1) == Approx(0.2 * (ambient + 1) + 0.3).epsilon(1e-5));
     CHECK(pixel(result, 32, 32, 2) == Approx(0.3).epsilon(1e-5));
@@ -79,8 +79,8 @@ TEST_CASE("a sphere lit from the eye follows Kd (N.L) + Ks (R.L)^n at its centre
 }
 
 TEST_CASE("glass of index 1 is invisible, and a ray through the centre of a glass sphere is not deflected", "[ring]") {
-    Scene scene = dark_scene();
-    scene.surfaces = {{.diffuse = 0, .transmittance = 1, .refraction = 1},
+    Scene scene = known_answer_scene();
+    scene.surfaces = {{.diffuse = 0, .transmittance = 1, .refraction_index = 1},
                       {.colour = {0.2, 0.6, 1}, .checker = Checker{{1, 0, 0}, {0, 0, 1}, 0.37}}};
     scene.planes = {{{0, 0, 1}, 9, 1}};
     const RingCase c{.width = 33, .height = 33, .pes = 33};
@@ -92,7 +92,7 @@ TEST_CASE("glass of index 1 is invisible, and a ray through the centre of a glas
     for (std::size_t i = 0; i < wall.image.rgb.size(); ++i)
         unequal += std::abs(wall.image.rgb[i] - through.image.rgb[i]) > 1e-5f;
     CHECK(unequal <= 3);
-    scene.surfaces[0].refraction = 1.5;
+    scene.surfaces[0].refraction_index = 1.5;
     const RingResult glass = render_scene(scene, c);
     for (int channel = 0; channel < 3; ++channel)
         CHECK(pixel(glass, 16, 16, channel) == Approx(pixel(wall, 16, 16, channel)));

@@ -76,5 +76,6 @@ TEST_CASE("an invalid mapping is refused with the valid range or a valid value",
     check_error(tiles_mapping(9, 25), {320, 200}, 8,
                 Contains("--mapping tiles:9x25") && Contains("320 x 200") && Contains("tiles:8x25"));
     check_error(tiles_mapping(320, 99), {320, 200}, 8, Contains("tiles:320x100"));
-    check_error(tiles_mapping(16'384, 3), {7, 200}, 8, Contains("tiles:7x2"));  // 2 and 4 are equally near to 3
+    // Of the divisors of 200, 2 and 4 are equally near to 3; the message suggests the smaller one.
+    check_error(tiles_mapping(16'384, 3), {7, 200}, 8, Contains("tiles:7x2"));
 }

@@ -26,8 +26,8 @@ class TestCheckpoint {
             ++count_;
             if (--bands_left_ == 0) throw Stopped();
         };
-        checkpointing_.resume = [this](const StateSettings& settings, const RingState& sized) {
-            return saved_.empty() ? std::optional<RingState>() : read_state(saved_, settings, sized);
+        checkpointing_.resume = [this](const StateSettings& settings, const RingState& expected_sizes) {
+            return saved_.empty() ? std::optional<RingState>() : read_state(saved_, settings, expected_sizes);
         };
     }
     const RingCheckpointing* checkpointing() const { return &checkpointing_; }

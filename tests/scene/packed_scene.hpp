@@ -44,7 +44,7 @@ class PackedScene {
         s.specular = real(at + RAYA_SURFACE_SPECULAR);
         s.shine = real(at + RAYA_SURFACE_SHINE);
         s.transmittance = real(at + RAYA_SURFACE_TRANSMIT);
-        s.refraction = real(at + RAYA_SURFACE_REFRACTION);
+        s.refraction_index = real(at + RAYA_SURFACE_REFRACTION);
         const Colour odd = vector(at + RAYA_SURFACE_ODD);
         const double size = real(at + RAYA_SURFACE_CHECKER);
         if (size > 0) s.checker = Checker{s.colour, odd, size};

@@ -29,7 +29,8 @@ constexpr double kRounding = 0x1p-24;  // relative error of one rounding to fp32
 constexpr double kNormalLimit = 8 * 100 * kRounding;
 
 Surface rounded(Surface s) {
-    for (double* value : {&s.diffuse, &s.specular, &s.shine, &s.transmittance, &s.refraction}) *value = fp32(*value);
+    for (double* value : {&s.diffuse, &s.specular, &s.shine, &s.transmittance, &s.refraction_index})
+        *value = fp32(*value);
     if (s.checker) s.checker = Checker{fp32(s.checker->even), fp32(s.checker->odd), fp32(s.checker->size)};
     s.colour = s.checker ? s.checker->even : fp32(s.colour);  // a checkered surface has the colour of its even squares
     return s;

@@ -106,7 +106,7 @@ export RAYA_BUILD_OPTIONS=-cl-opt-disable POCL_DEVICES=basic OCL_ICD_VENDORS=/no
 matrix --only "PoCL loopvec"
 unset RAYA_BUILD_OPTIONS POCL_DEVICES OCL_ICD_VENDORS RAYA_NUMBER_CASES
 ((code == 0)) || fail "exit code $code where all is right"
-expect "| PoCL loopvec | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | 1 known |"
+expect "| PoCL loopvec | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 per format right | 24 right | 1 known |"
 expect "PoCL loopvec, image: SKIP groups: one work-item only"
 [[ $out == *$'\n'"8 cells: 5 right, 0 FAIL, 3 undecided." ]] || fail "the last line does not count the cells"
 expect "PoCL loopvec, defects: long_loop, n = 9: expected failure, 8 instead of 9: a reason"
@@ -115,8 +115,8 @@ matrix --only PoCL
 ((code == 1)) || fail "exit code $code where something is wrong"
 expect "| PoCL loops | toy | OpenCL 3.0, driver 1 | FAIL 1/1 |"
 expect "PoCL loops, number: FAIL add: bits differ"
-expect "| PoCL -cl-opt-disable | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | 24 right | FAIL |"
-expect "| PoCL basic | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 a format right | FAIL 24/24 |"
+expect "| PoCL -cl-opt-disable | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 per format right | 24 right | FAIL |"
+expect "| PoCL basic | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 per format right | FAIL 24/24 |"
 expect "basic; right: 5a5a5a5a"
 
 # Tests matrices without a right cell, where every check is skipped or too slow; then a check that passes and then crashes.

@@ -99,7 +99,7 @@ class Reading(unittest.TestCase):
 
     def test_surfaces_have_their_checkers(self):
         matt, glass = translation.Surface((0.8, 0.75, 0.65), 0.85, 0, 0, 0, 1), self.scene.spheres[1][2]
-        self.assertEqual((glass.transmittance, glass.refraction, glass.shine), (0.85, 1.5, 100))
+        self.assertEqual((glass.transmittance, glass.refraction_index, glass.shine), (0.85, 1.5, 100))
         self.assertEqual([surface.axis for *_, surface in self.scene.planes + self.scene.polygons], [2, 0, 1, None, None])
         self.assertEqual(self.scene.planes[0][2].checker, (0.85, 0.8, 0.7, 0.3, 0.3, 0.5, 1.5))
         self.assertEqual(self.scene.planes[0][2].colour, matt.colour)

@@ -229,7 +229,7 @@ TEST_CASE("a launch whose loops the device cuts short is repeated with half the 
     }
 }
 
-TEST_CASE("compose is repeated with more work-groups if the device cuts its loops short", "[torus]") {
+TEST_CASE("compose is repeated with more work-groups if the device ends loops early", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kSceneSeeds[0]);
     TorusCase c{.width = 16, .height = 15, .nodes = {2, 1, 1}, .lanes = 1, .group = 1, .bounces = 1};

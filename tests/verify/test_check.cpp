@@ -40,7 +40,7 @@ TEST_CASE("run_check: a check that throws an exception fails, with remedies for 
                Contains("report it") && !Contains("driver"));
 }
 
-TEST_CASE("remedies: leave out options that are already set", "[verify]") {
+TEST_CASE("remedies do not name options that are already set", "[verify]") {
     using Catch::Contains;
     ::unsetenv("RAYA_BUILD_OPTIONS");
     CHECK_THAT(text_of(compiler_remedies()), Contains("-cl-opt-disable"));

@@ -18,7 +18,7 @@ PeerSurface surface_of(const Surface& s) {
             static_cast<float>(s.specular),
             static_cast<float>(s.shine),
             static_cast<float>(s.transmittance),
-            static_cast<float>(s.refraction)};
+            static_cast<float>(s.refraction_index)};
 }
 
 void cone_bounds(const RTCBoundsFunctionArguments* args) {

@@ -27,7 +27,7 @@ inline V3 to_float(const Vec3& v) {
 struct PeerSurface {
     V3 even, odd;
     float checker = 0;  // side of a checker's square; 0: no checker
-    float diffuse, specular, shine, transmittance, refraction;
+    float diffuse, specular, shine, transmittance, refraction_index;
 };
 
 struct PeerTriangle {

@@ -102,7 +102,7 @@ class Whitted {
         const PeerSurface& s = *m.surface;
         float mirror_weight = s.specular;
         if (s.transmittance > 0) {
-            const float e = m.leaving ? s.refraction : 1 / s.refraction, c = -dot(m.normal, r.direction);
+            const float e = m.leaving ? s.refraction_index : 1 / s.refraction_index, c = -dot(m.normal, r.direction);
             const float g = 1 - e * e * (1 - c * c);
             if (g < 0) {
                 mirror_weight += s.transmittance;

@@ -24,7 +24,7 @@ class Budget:
 
     def faults(self, figures):
         """Yields a text for each figure that exceeds the budget."""
-        row = self.rows.get(figures.name)
+        row = self.rows.get(figures.key)
         if row is None:
             yield "has no budget"
             return
@@ -43,7 +43,7 @@ class Budget:
         """Writes the file with new figures. Keeps the rows of other targets. whole: all kernels were built; otherwise also keeps other kernels."""
         self.versions.update(versions)
         rows = {name: row for name, row in self.rows.items() if not whole or name[2] not in versions}
-        rows.update({f.name: {key: getattr(f, key) for key in COLUMNS} for f in all_figures})
+        rows.update({f.key: {key: getattr(f, key) for key in COLUMNS} for f in all_figures})
         lines = [HEADER, *(f"{VERSION}{target}: {version}\n" for target, version in self.versions.items()), ",".join(COLUMNS) + "\n"]
         lines += [",".join(str(row[key]) for key in COLUMNS) + "\n" for _, row in sorted(rows.items())]
         self.path.write_text("".join(lines))

@@ -6,7 +6,7 @@ lockstep. For a group of `group` work-items:
     warps of a group  = group / width, rounded up
     groups            = warps for which a core has registers (by the vendor's rules) / warps of a group; at most the core's maximum of warps and groups;
                         if the kernel uses local memory, at most the core's local memory / the kernel's
-    local memory left = largest local memory of a group with which the registers, not local memory, still limit the number of groups
+    max. local memory = largest local memory of a group with which the registers, not local memory, still limit the number of groups
 """
 from dataclasses import dataclass
 
@@ -29,10 +29,10 @@ class Figures:
     local: int
     scalar_spills: int = 0  # AMD: scalar registers spilled to lanes of vector registers
     warps: int = 0          # maximum number of warps that fit in a core at the same time
-    local_left: int = 0     # largest local memory of a group with which registers still limit the number of groups
+    max_local_bytes: int = 0  # largest local memory of a group with which registers still limit the number of groups
 
     @property
-    def name(self):
+    def key(self):
         return self.kernel, self.variant, self.target
 
 
@@ -57,7 +57,7 @@ class Core:
     max_single_warp_groups: int = 0  # maximum number of groups of a single warp, if it differs from `groups`
 
     def set_occupancy(self, figures, warps_by_registers):
-        """Sets warps and local_left of the figures, and returns them."""
+        """Sets warps and max_local_bytes of the figures, and returns them."""
         warps_per_group = rounded_up(figures.group, figures.width) // figures.width
         max_groups = self.max_single_warp_groups if warps_per_group == 1 and self.max_single_warp_groups else self.groups
         groups = min(min(self.warps, warps_by_registers) // warps_per_group, max_groups)
@@ -65,7 +65,7 @@ class Core:
             groups = min(groups, self.local // rounded_up(figures.local + self.reserved, self.unit))
         figures.warps = groups * warps_per_group
         if groups:
-            figures.local_left = min(self.group_local, self.local // groups // self.unit * self.unit - self.reserved)
+            figures.max_local_bytes = min(self.group_local, self.local // groups // self.unit * self.unit - self.reserved)
         return figures
 
 

@@ -39,7 +39,7 @@ def settings_of(arguments):
 
 
 def selected_studies(name):
-    """Returns (studies to run, one sentence for each skipped study). Raises ValueError if the named study cannot run on this machine."""
+    """Returns (studies to run, a sentence for each skipped study). Raises ValueError if the named study cannot run on this machine."""
     if name.endswith(".py"):
         return [study_of_file(name)], []
     known = studies()
@@ -109,7 +109,7 @@ def run_all(options, chosen, skip_notes, scenes):
                     continue
                 page.run = {"command": command_of(study, options), "version": f"raya {raya.__version__}",
                             "device": f"{device['name']} ({device['platform']}, driver {device['driver']})"}
-                decide(page.claims)  # write_document() decides again, over the claims of all pages
+                decide(page.claims)  # write_document() decides again, with the claims of all pages
                 drawings[page.name] = write_page(folder, page)
                 pages.append(page)
                 if options.verbosity >= 0:

@@ -17,14 +17,14 @@ KINDS = "test", "counted", "derived", "untestable"
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of a paper, in its own words (`original`) and in English. `rule` decides the verdict, or says why there is none."""
+    """A statement of a paper, in the paper's words (`original`) and in English. `rule` decides the verdict, or states why there is none."""
 
     id: str
     paper: str  # authors and year
-    place: str  # section, table or figure
+    place: str  # section, table or figure of the paper
     original: str
     statement: str
-    study: str
+    study: str  # name of the study that judges the claim
     kind: str  # one of KINDS
     rule: str
 
@@ -43,13 +43,13 @@ class Judgement:
 
     claim: Claim
     ensemble: str = ""  # the pictures that the test uses
-    reason: str = ""  # our figures, as a sentence
+    reason: str = ""  # a sentence with our figures
     test: Optional[Test] = None
     verdict: str = field(default="", init=False)
 
     @property
     def power(self):
-        """Sentence on the deviation that the test can detect; empty for a claim without a statistical test."""
+        """A sentence on the deviation that the test can detect; empty for a claim without a statistical test."""
         if self.test is None or np.isnan(self.test.detectable):
             return ""
         return f"A deviation of {self.test.detectable:.2g} from the bound would be detected with a probability of {100 * POWER:.0f} %."
@@ -60,12 +60,12 @@ def judged(key, test, ensemble="", reason=""):
 
 
 def undecided_claims(study):
-    """Returns judgements, without a test, of the study's derived and untestable claims."""
+    """Returns judgements on the study's derived and untestable claims, which have no test."""
     return [Judgement(claim) for claim in CLAIMS.values() if claim.study == study and claim.kind in ("derived", "untestable")]
 
 
 def decide(judgements):
-    """Sets the verdicts, with Holm's correction over all judgements."""
+    """Sets the verdicts of the judgements, with Holm's correction over all of their tests."""
     found = verdicts({id(judgement): judgement.test for judgement in judgements if judgement.test is not None})
     for judgement in judgements:
         judgement.verdict = found.get(id(judgement)) or (UNTESTABLE if judgement.claim.kind == "untestable" else judgement.claim.kind)
@@ -76,6 +76,6 @@ def errors_sentence(judgements):
     tests = [judgement for judgement in judgements if judgement.claim.kind == "test"]
     if not tests:
         return ""
-    return (f"{len(tests)} of the claims are decided by statistical tests. With Holm's correction the probability that one or more of their "
-            f"verdicts \"reproduced\" and \"not reproduced\" are wrong is at most {100 * LEVEL:.0f} %. Without the "
-            f"correction, {LEVEL * len(tests):.1f} wrong ones would be expected if every tested quantity were exactly at the bound of its rule.")
+    return (f"{len(tests)} of the claims are decided by statistical tests. With Holm's correction the probability that one or more verdicts "
+            f"\"reproduced\" or \"not reproduced\" of these tests are wrong is at most {100 * LEVEL:.0f} %. Without it, "
+            f"{LEVEL * len(tests):.1f} wrong verdicts would be expected if every tested quantity were exactly at the bound of its rule.")

@@ -37,23 +37,23 @@ ABOUT = {
         "The kernels count loads, packets and tests. Times are modelled from these counts unless a page calls them measured.",
         "A claim is a statement of a paper. claims.toml has each claim once, with a rule that was fixed before the result. Reproduced: the "
         "interval fulfils the rule. Not reproduced: the interval contradicts the rule. Compatible: neither, because the test has too little "
-        "power. Untestable: no study can decide it. Claims that follow from another claim or from figures that scenes were matched to are "
-        "derived and have no verdict. Holm's correction covers all tests of this document.",
-        "Ensembles are pictures of scene families, in this order: " + "; ".join(FAMILIES) + ". Each seed gives another scene and another "
-        "view. A command line with scenes has random views of these scenes instead. Intervals treat the families as strata.",
-        "\"Derived\" marks a figure that follows by arithmetic from figures that the paper prints. \"[D]\" marks such a figure in a "
-        "text. \"+-\" is the half width of a 95 % confidence interval by Student's t.",
+        "power. Untestable: no study can decide the claim. Derived, without a verdict: the claim follows from another claim, or from figures "
+        "to which scenes were matched. Holm's correction covers all tests of this document.",
+        "An ensemble has pictures of scene families, in this order: " + "; ".join(FAMILIES) + ". Each seed gives another scene or another "
+        "view. If the command line names scenes, an ensemble has random views of these scenes instead. Intervals treat the families as strata.",
+        "\"Derived\" marks a figure that we computed from figures that the paper prints. \"[D]\" marks such a figure in a "
+        "text. \"+-\" precedes the half width of a 95 % confidence interval by Student's t.",
     ],
-    "figures": [  # of the papers: the study of each, or the reason why there is none
-        "Kohata & Ito, Fig. 1 and Table 1, the hardware: `raya machines spa` lists its numbers; table2 checks the totals of Table 1.",
-        "Figs 2 and 3, ray tracing and its algorithm: drawings without figures. `kernels/README.md` describes ours.",
-        "Figs 4 and 5, the cyclic mapping and the 2-D array: drawings. `raya explore` draws every mapping; lattice counts the blocks of Fig. 5.",
-        "Fig. 6, the picture that they analyse: its scene is not published. table2 shows ours, cluster has a family of scenes like it.",
+    "figures": [  # figures and tables of the papers: the study of each, or the reason why there is none
+        "Kohata & Ito, Fig. 1 and Table 1, the hardware: `raya machines spa` lists its numbers; study table2 checks the totals of Table 1.",
+        "Figs 2 and 3, ray tracing and its algorithm: drawings without numbers. `kernels/README.md` describes our algorithm.",
+        "Figs 4 and 5, the cyclic mapping and the 2-D array: drawings. `raya explore` draws every mapping; study lattice counts Fig. 5's blocks.",
+        "Fig. 6, the picture that they analyse: its scene is not published. Study table2 shows ours, study cluster has scenes like it.",
         "Figs 7, 8, 9, 12 and 13 and Tables 2, 3 and 4: the studies of the same names.",
-        "Figs 10 and 11, positions of neighbours and transfers of the filter: drawings. table3 and table4 count the rotations.",
+        "Figs 10 and 11, positions of neighbours and transfers of the filter: drawings. Studies table3 and table4 count the rotations.",
         "Yoshitani & Yamazaki, Figs 1 and 2, the voxels and 2-D DDA: drawings. `docs/packets.md` describes the packets of our 3-D DDA.",
-        "Table 1, contents of a packet: no claim that a study can test. The studies charge its 22 words; `docs/packets.md` lists ours.",
-        "Fig. 3: divisions. Fig. 4: objects.",
+        "Their Table 1, contents of a packet: no claim that a study can test. The studies use its 22 words; `docs/packets.md` lists ours.",
+        "Their Fig. 3: study divisions. Their Fig. 4: study objects.",
     ],
 }
 
@@ -122,8 +122,8 @@ def ratio(comparison):
 
 
 def cells_of_comparisons(page):
-    """Returns the table of comparisons, [row][column], the header first. Omits the paper's columns if no comparison has a paper's figure, and empty
-    remarks."""
+    """Returns the table of comparisons, [row][column], the header first. Omits the paper's columns if no comparison has a paper's figure, and the
+    column of remarks if there is none."""
     def ours(c):
         return f"{format_value(c.ours)}{f' +- {c.half_width:.2g}' if c.half_width else ''} {c.unit}".rstrip()
 
@@ -173,8 +173,8 @@ def lines_of_run(page):
 
 
 def command_of(pages):
-    """Returns the command that makes all pages. For several pages: the longest command, because it has all options and scenes, with `all` as the
-    study."""
+    """Returns the command that makes all pages. For several pages: the longest of their commands, because it has all options and scenes, with the
+    study `all`."""
     command = max((page.run.get("command", "") for page in pages), key=len)
     return command if len(pages) == 1 else re.sub(r"^raya study \S+", "raya study all", command)
 
@@ -198,7 +198,7 @@ def verdict_sentences(pages):
 
 
 def claims_with(verdict, pages):
-    """Returns a sentence on each claim with the verdict."""
+    """Returns a sentence with place, statement and our figures for each claim with the verdict."""
     return [f'{c.claim.paper}, {c.claim.place}: "{c.claim.statement}" {c.reason}' for page in pages for c in page.claims if c.verdict == verdict]
 
 
@@ -208,7 +208,7 @@ def statements_with(verdict, pages):
 
 
 def news_of(pages):
-    """Returns the results beyond the papers, a sentence each."""
+    """Returns a sentence for each result beyond the papers."""
     return [sentence for page in pages for sentence in page.news]
 
 
@@ -217,7 +217,7 @@ def prose(text):
     return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", str(escape(text)).replace("+-", "±")))
 
 
-# A cell of a numeric column: empty, '-', or a number with interval, unit and "(derived)", which are optional.
+# A cell of a numeric column: empty, '-', or a number, optionally with interval, unit and "(derived)".
 NUMBER = re.compile(r"-?|(-?[\d.]+(e[-+]?\d+)?|-?inf)( \+- \S+)?( [^\s\d]+)?( \(derived\))?")
 
 
@@ -255,8 +255,8 @@ def environment():
 
 
 def write_page(folder, page):
-    """Writes all files of one study. Returns its drawings for the document: {name: SVG of a plot, or base64 text of a PNG}. The verdicts must be
-    decided."""
+    """Writes all files of one study, whose verdicts decide() must have set. Returns its drawings for the document: {name: SVG of a plot, or base64
+    text of a PNG}."""
     drawings, files = {}, {}
     for table in page.tables:
         files[f"{table.name}.csv"] = table.rows.to_csv(index=False, na_rep="-")
@@ -268,7 +268,7 @@ def write_page(folder, page):
         files.update({f"{plot.name}.{kind}": content for kind, content in drawn.items()})
         drawings[plot.name] = inlined(drawn["svg"].decode())
     files.update(texts_of(page))
-    for name, content in files.items():  # after all content has been made, so that an error leaves no partial output
+    for name, content in files.items():  # only after all content has been made, so that an error leaves no files
         write_atomically(folder / name, content)
     return drawings
 
@@ -280,8 +280,8 @@ def texts_of(page):
 
 
 def write_document(folder, pages, drawings, skip_notes=()):
-    """Writes index.html; for several pages also index.md, claims.md and claims.csv, and again the pages' verdicts, which now take all claims into
-    account. `skip_notes`: sentences on studies that did not run."""
+    """Writes index.html. For several pages, also writes index.md, claims.md and claims.csv, and rewrites the pages' JSON and Markdown, because their
+    verdicts now take all claims into account. `skip_notes`: sentences on studies that did not run."""
     decide([judgement for page in pages for judgement in page.claims])
     if len(pages) > 1:
         claims = pd.DataFrame([record_of(judgement) for page in pages for judgement in page.claims])

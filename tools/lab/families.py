@@ -1,5 +1,5 @@
-"""The scene families of the studies of load: scenes of 6 to 31 objects, as in the experiments of Kohata & Ito 1993, section 4. Each seed gives
-another scene and another view, so the pictures of a family are independent."""
+"""The scene families of the studies of load balance: scenes of 6 to 31 objects, as in Kohata & Ito 1993, section 4. Each seed gives another scene or
+another view, so the pictures of a family are independent."""
 import raya
 
 
@@ -34,4 +34,4 @@ FAMILIES = {"cluster": cluster,
             **{f"{name}, scattered": _scattered(lambda name=name: raya.example(name)) for name in ("centre", "spheres", "mirrors", "glass")},
             "balls-1, scattered": _scattered(lambda: raya.generate.balls(1).renamed("balls-1")),
             "random, 6 to 13": _random(6, 13), "random, 14 to 21": _random(14, 21), "random, 22 to 30": _random(22, 30)}
-CROWDED = {"cluster": cluster}  # the families with their objects in the middle of the image
+CROWDED = {"cluster": cluster}  # families whose scenes have their objects in the middle of the image

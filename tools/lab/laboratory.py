@@ -13,18 +13,18 @@ from raya.lab.families import FAMILIES, view_of
 MACHINES = {machine["name"]: machine for machine in raya.machines()}
 SPA = MACHINES["spa"]
 VIEWS = 108  # default number of pictures of an ensemble
-# Numbers of seeds reserved for each part of a study, and for each family of a part. A seed would give two families the same view.
+# Numbers of seeds reserved for each part of a study, and for each family of a part. With the same seed two families would have the same view.
 SEEDS, FAMILY_SEEDS = 100_000, 1000
 TESTS = tuple(f"{kind}_tests" for kind in ("sphere", "plane", "polygon", "cone"))
 
 
 def rays_of(events):
-    """Returns the number of rays of all kinds in a render's event counts."""
+    """Returns the number of rays of all kinds, from a render's event counts."""
     return sum(events[kind] for kind in ("primary", "reflected", "refracted", "shadow"))
 
 
 def tests_of(events):
-    """Returns the number of intersection tests with objects of all kinds in a render's event counts."""
+    """Returns the number of intersection tests with objects of all kinds, from a render's event counts."""
     return sum(events[kind] for kind in TESTS)
 
 
@@ -34,7 +34,7 @@ class Costs:
 
     label: str
     trace: np.ndarray  # uint64 [H, W]: modelled cycles of each pixel in the first pass
-    supersample: np.ndarray  # the same for the supersampling pass; None without supersampling
+    supersample: np.ndarray  # modelled cycles of each pixel in the supersampling pass; None without supersampling
     report: dict
     job_words: int  # number of 32-bit words that the scene takes in each PE
 
@@ -65,8 +65,8 @@ def format_for(scene):
 class Laboratory:
     """Renders scenes. Cost images are cached in `folder`, by scene and settings, so that the studies of one run share them.
 
-    size: pixels per side; None: each study's default. views: pictures of an ensemble; seed: seed of the first picture. network: (seconds per message,
-    seconds per byte) or None. options: `device`, and options of every render.
+    size: pixels per side; None: each study's default. views: pictures per ensemble. seed: seed of the first picture. network: (seconds per message,
+    seconds per byte) or None. options: `device`, and options of raya.render() for every render.
     """
 
     def __init__(self, folder, size=None, network=None, views=None, seed=1, **options):
@@ -86,7 +86,7 @@ class Laboratory:
         return raya.render(scene, session=self.session, **common, **options)
 
     def costs(self, scene, size, antialias="none"):
-        """Returns the cost images (`Costs`) of the scene, size x size pixels, on PEs of the SPA without their memory limit."""
+        """Returns the cost images (`Costs`) of a render of size x size pixels on PEs of the SPA, without their memory limit."""
         options = dict(machine="grande", format=format_for(scene), bounces=SPA["bounces"], size=size, pes=size,
                        offset=16 % size, accel="none", antialias=antialias)
         key = hashlib.sha256(repr((scene.nff, sorted(options.items()))).encode()).hexdigest()
@@ -138,8 +138,8 @@ def time_calls(run, runs, sampling_s, warm=True):
 
 
 def mean_seconds(run, minimum_s=0.02):
-    """Returns the mean of the seconds that run() returns, over as many calls as take minimum_s seconds together. The overhead of clock and
-    launch would distort shorter times."""
+    """Returns the mean of the seconds that run() returns. Calls it until the sum is minimum_s or more, as the overhead of clock and launch would
+    distort shorter times."""
     total = calls = 0
     while total < minimum_s:
         total += run()

@@ -1,4 +1,4 @@
-"""The nearest-to-square grid mapping for a number of PEs, and the lattice of the pixels of one PE.
+"""The 2-D grid mapping that is nearest to a square, and the lattice that the pixels of one PE form.
 
 With the cyclic mapping and a PE for each column, the pixels of a PE form a lattice with the basis (p, 1) and (W, 0), in (columns, rows), for an
 offset p and an image of W columns.
@@ -14,11 +14,11 @@ def squarest_grid(pes):
 
 def shortest_square(offset, side):
     """Returns the squared length of the lattice's shortest vector, in pixels squared."""
-    rows = np.arange(1, side + 1)  # after `side` rows a PE is back in its column
+    rows = np.arange(1, side + 1)  # after `side` rows a slot is back in its first column
     right = rows * offset % side
     return int((rows**2 + np.minimum(right, side - right)**2).min())
 
 
 def shares_blocks(offset, side, n):
-    """Returns true if no PE owns two pixels of any n x n block."""
+    """Returns true if no PE owns two or more pixels of an n x n block, wherever the block lies in the image."""
     return n <= side and all(min(rows * offset % side, side - rows * offset % side) >= n for rows in range(1, n))

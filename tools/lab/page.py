@@ -43,8 +43,8 @@ class Series:
 
 
 def series_by(rows, label, x, y, half=None, style="line"):
-    """[Series]: one for each value of column `label`, in order of first occurrence. x, y, half: names of the columns of the points and of the half
-    widths of their intervals."""
+    """Returns a list with a Series for each value of column `label`, in order of first occurrence. x, y, half: names of the columns of the points and
+    of the half widths of their intervals."""
     return [Series(str(value), group[x], group[y], style, group[half] if half else [])
             for value, group in rows.groupby(label, sort=False)]
 
@@ -70,9 +70,9 @@ class Picture:
 
 @dataclass
 class Comparison:
-    """One of our figures (`ours`) and the corresponding figure of the paper (`paper`; None if the paper has none), both in `unit`."""
+    """One of our figures (`ours`) and the same figure in the paper (`paper`; None if the paper does not have it), both in `unit`."""
 
-    what: str
+    what: str  # name of the figure
     unit: str
     paper: Optional[float]
     ours: float
@@ -88,7 +88,7 @@ class Comparison:
 
 
 def with_paper(in_paper, comparisons):
-    """Returns the comparisons, without the paper's figures unless in_paper: the study uses the paper's scene and size."""
+    """Returns the comparisons. in_paper: the study uses the paper's scene and size; if false, the paper's figures are removed."""
     return comparisons if in_paper else [replace(comparison, paper=None) for comparison in comparisons]
 
 
@@ -96,10 +96,10 @@ def with_paper(in_paper, comparisons):
 class Page:
     """The result of a study. A study's run() sets the members up to `compared_with`; describe() and the program set the others."""
 
-    settings: dict  # values of {names} in the prose, written to the JSON report
+    settings: dict  # values of {names} in the prose; the JSON report contains them
     findings: list = field(default_factory=list)  # sentences, the most important one first
     comparisons: list = field(default_factory=list)
-    claims: list = field(default_factory=list)  # of Judgement, made by judged()
+    claims: list = field(default_factory=list)  # of Judgement, as returned by judged()
     tables: list = field(default_factory=list)
     plots: list = field(default_factory=list)
     news: list = field(default_factory=list)  # sentences on results that go beyond the papers
@@ -134,7 +134,7 @@ class Page:
 
 
 def format_value(value):
-    """Returns text of a number on a page, with five significant digits."""
+    """Returns a number as text for a page, with five significant digits."""
     if isinstance(value, str):
         return value
     if value is None or (isinstance(value, float) and np.isnan(value)):

@@ -20,7 +20,7 @@ EXCHANGE_0_MS, EXCHANGE_16_MS, SUPERSAMPLE_0_MS, SUPERSAMPLE_16_MS = 2, 12, 739,
 FILTER_ARITHMETIC_MS, FILTER_8_MS, EXCHANGE_8_MS = 7, 14, 7
 # [D] Fraction of recomputed pixels, from Table 4, if its computation time is that of supersampling alone.
 RECOMPUTED_MIN, RECOMPUTED_MAX = 0.16, 0.18
-# [D] From Tables 2 and 3. Only the digits that remain certain after the rounding of 653, 283 and 64,800 ms are given.
+# [D] From Tables 2 and 3, with the digits that are certain although 653, 283 and 64,800 ms are rounded.
 SPEEDUP_16 = 229  # printed in the abstracts
 SPEEDUP_0 = 99.2
 IMBALANCE_0, IMBALANCE_16 = 1.58, 0.118  # u(0), u(16); Figs 7 and 8 print no u
@@ -30,11 +30,11 @@ CAP_RATIO = 3.86  # text next to Fig. 9: speed-up of CAP with 256 PEs over CAP w
 PIXEL_MACHINE_SPEEDUP = 60  # text next to Fig. 9: 64 nodes, "60 or more"
 
 # Yoshitani & Yamazaki, about 1995.
-RAY_WORDS = 22  # [D] Table 1: scalars of a ray packet, without the data for the voxel search and the data of the object hit
+RAY_WORDS = 22  # [D] Table 1: number of scalars in a ray packet, without the data for the voxel search and of the object hit
 FEW_DIVISIONS, MANY_DIVISIONS = 32, 1024  # numbers of divisions in Fig. 3, for 1024 objects on one machine
-FEW_DIVISIONS_S, MANY_DIVISIONS_S = 313, 60
+FEW_DIVISIONS_S, MANY_DIVISIONS_S = 313, 60  # seconds for these numbers of divisions
 DIVISIONS_FALL = FEW_DIVISIONS_S / MANY_DIVISIONS_S  # [D]
-TESTS_FALL = 5  # tests fall "to about 1/5"
+TESTS_FALL = 5  # the number of tests falls "to about 1/5"
 
 # Havran & Sixta 1999, uniform grid with 3D-DDA on SPD's scenes: {(scene, divisions along x, y, z): (tests per ray, steps per ray)}.
 UNIFORM_GRIDS = {

@@ -17,7 +17,7 @@ COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#0
 PAPER_COLOURS = ["#000000", "#8b1a1a", "#1a3a8b", "#1a5e1a"]
 DASHES = ["-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (7, 2, 1.5, 2)), (0, (3, 1.5, 1, 1.5, 1, 1.5))]
 MARKERS = ["o", "s", "^", "v", "P", "X", "d", "<", ">"]
-MAX_MARKERS = 40  # lines with at most MAX_MARKERS points have markers; longer ones have a band for the intervals
+MAX_MARKERS = 40  # lines with at most MAX_MARKERS points have markers and error bars; longer ones show intervals as a band
 
 STYLE = {
     "axes.axisbelow": True, "axes.edgecolor": "#555555", "axes.formatter.use_mathtext": True,
@@ -55,8 +55,8 @@ def is_shown(plot, x, y):
 
 
 def draw_intervals(axes, plot, series, colour):
-    """Draws error bars; for more than MAX_MARKERS points, a band. On a logarithmic axis, intervals that reach 0 are clipped at half of the lowest
-    positive value."""
+    """Draws the intervals as error bars; above MAX_MARKERS points, as a band. On a logarithmic axis, intervals that reach 0 are clipped at half
+    of the lowest positive value."""
     points = [(x, y, h) for x, y, h in zip(series.x, series.y, series.half_widths) if is_shown(plot, x, y)]
     if not points:
         return
@@ -72,7 +72,7 @@ def draw_intervals(axes, plot, series, colour):
 
 def draw_series(axes, plot):
     """Draws all series. Returns matplotlib's lines for the legend."""
-    lines, series_counts = [], {True: 0, False: 0}  # number of drawn series, by "is the paper's"
+    lines, series_counts = [], {True: 0, False: 0}  # {is the series the paper's?: number of series drawn so far}
     for series in plot.series:
         paper = series.style == "paper"
         options = line_options(series.style, series_counts[paper], len(series.x))
@@ -85,7 +85,7 @@ def draw_series(axes, plot):
 
 
 def legend_text(series):
-    """Returns the label of a series. Up to four values of a paper are part of it, as labels next to the points would cover the curves."""
+    """Returns the label of a series. It includes up to four values of a paper, because labels next to the points would cover the curves."""
     values = ", ".join(f"{y:.3g}" if y < 1000 else f"{y:.0f}" for y in series.y) if series.style == "paper" and len(series.y) <= 4 else ""
     return textwrap.fill(escape_dollars(f"{series.label}: {values}" if values else series.label), 24)
 
@@ -99,7 +99,7 @@ def power_of_ten(value, _):
 
 
 def mark_powers_of_two(axis, values):
-    """Puts ticks at powers of two: about nine at most."""
+    """Puts at most about nine ticks at powers of two."""
     first, last = (math.frexp(value)[1] - 1 for value in (min(values), max(values)))
     axis.set_major_locator(FixedLocator([2.0**n for n in range(first, last + 1, (last - first) // 9 + 1)]))
     axis.set_minor_locator(NullLocator())

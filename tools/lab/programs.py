@@ -1,4 +1,4 @@
-"""Runs programs for studies: raya on MPI ranks, and the programs that raya's build puts next to raya."""
+"""Runs programs for studies: raya on MPI ranks, and programs that the build puts next to raya."""
 import json
 import os
 import shlex
@@ -19,7 +19,7 @@ def sibling_program(name):
 
 def output_of(command, name, **options):
     """Returns the standard output of a command. If the command fails, raises InputError with `name` and the last line of stderr that starts with
-    "raya: ", or else the last line. options: arguments of subprocess.run()."""
+    "raya: ", or the last line if none does. options: arguments of subprocess.run()."""
     run = subprocess.run(command, capture_output=True, text=True, **options)
     if run.returncode:
         lines = [line for line in run.stderr.splitlines() if line.strip()]

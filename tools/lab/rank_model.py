@@ -1,5 +1,5 @@
-"""Predicts render times on MPI ranks from the measured times of one rank, the counts of a render, and two constants of the network: alpha, seconds
-per message, and beta, seconds per byte."""
+"""Predicts render times on MPI ranks from the measured times of one rank, the counts of a render, and two constants of the network: alpha (seconds
+per message) and beta (seconds per byte)."""
 import os
 
 import numpy as np
@@ -8,7 +8,7 @@ from raya.lab.laboratory import format_for
 from raya.lab.voxels import UNLIMITED_MEMORY, even_scene, near_cube, powers_of_two, sides_text
 
 MAX_RANKS = 65_536
-SIDES, QUEUE = (8, 8, 8), 1024  # of the torus: nodes along each axis; packets that a queue holds
+SIDES, QUEUE = (8, 8, 8), 1024  # number of the torus's nodes along each axis; number of packets that a node's queue holds
 PARTS = ("compute", "host", "exchange", "collect", "broadcast")  # parts of a render's time
 
 
@@ -56,8 +56,8 @@ class RingModel:
 
 
 class TorusModel:
-    """Model of a torus of 8 x 8 x 8 nodes, whose counts come from one render. extrapolate_counts() gives those of larger tori, for more ranks than
-    nodes."""
+    """Model of a torus of 8 x 8 x 8 nodes, whose counts come from one render. For more ranks than nodes, extrapolate_counts() computes the counts of
+    larger tori."""
 
     name, label = "torus", "trace_voxel"
 
@@ -97,8 +97,8 @@ class TorusModel:
 
 
 def count_on_bricks(result, ranks):
-    """Returns the counts of a torus render on ranks: cycles, messages and bytes, each the sum over the supersteps of the maximum over the ranks. A
-    rank has a brick, a cuboid of nodes. In a superstep, all packets from a brick to another rank in one direction form one message."""
+    """Returns the counts of a torus render on ranks: cycles, messages and bytes, each as the sum over the supersteps of the maximum over the ranks. A
+    rank models a brick, a cuboid of nodes. In a superstep, all packets from a brick to another rank in one direction form one message."""
     rank_of, ends = raya.ranks_of_nodes(SIDES, ranks), raya.link_ends(SIDES)
     cycles, words = result.step_cycles, result.step_link_words
     by_rank = np.stack([cycles[:, rank_of == rank].sum(1) for rank in range(ranks)], 1)

@@ -1,4 +1,4 @@
-"""Modelled times of the SPA (Kohata & Ito 1993), all with the same clock model. CLOCK describes the model and its uncertainty."""
+"""Modelled times of the SPA (Kohata & Ito 1993), all with the same clock model. The text CLOCK describes the model and its uncertainty."""
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -9,20 +9,20 @@ from raya.lab import papers
 from raya.lab.laboratory import SPA, first_scene, format_for
 
 ROUNDING = 0.5  # ms: the tables print whole milliseconds
-FACTORS = list(range(1, 9))  # factors of the clock model for which conclusions are shown
+FACTORS = list(range(1, 9))  # factors of the clock for which conclusions are shown
 
 
 FACTOR = SPA["cycle_factor"]
 # The filter's arithmetic takes 9 - 2 = 19 - 12 = 7 ms (Tables 3 and 4); each of these four times is rounded to 1 ms.
 FACTOR_MIN, FACTOR_MAX = (FACTOR * (1 + rounding_ms / papers.FILTER_ARITHMETIC_MS) for rounding_ms in (-2 * ROUNDING, 2 * ROUNDING))
-CLOCK = (f"modelled by the program's clock (docs/clock.md). Computing takes the instruction budget's cycles of 100 ns times a factor of "
-         f"{FACTOR:.2f} ({FACTOR_MIN:.2f} .. {FACTOR_MAX:.2f} by rounding): the filter's 7 ms [D] divided by the time of its budget, "
-         "which does not depend on a scene. Rotations, exchanges and transfers take the printed rates. Nothing is fitted to a "
-         "scene. We assume that the factor holds for ray tracing too; conclusions are therefore shown for factors of 1 to 8.")
+CLOCK = (f"modelled (docs/clock.md). Computing time = cycles of the instruction budget x 100 ns x the clock's factor of {FACTOR:.2f} "
+         f"({FACTOR_MIN:.2f} .. {FACTOR_MAX:.2f} by the rounding of printed times). The factor is the 7 ms of the filter's arithmetic [D] "
+         "divided by its time by the budget. Rotations, exchanges and transfers have rates from printed times. Nothing is fitted to a "
+         "scene. We assume that the factor also holds for ray tracing, and show conclusions for factors of 1 to 8.")
 
 
 def spa_ms(cycles):
-    """Returns the milliseconds of a PE for modelled cycles, without the clock's factor."""
+    """Returns the milliseconds in which a PE executes modelled cycles, without the clock's factor."""
     return cycles * SPA["cycle_ns"] * 1e-6
 
 
@@ -41,13 +41,13 @@ def host_model():
 
 @dataclass
 class SpaRun:
-    """A render on PEs of the SPA, without their memory limit if the scene does not fit."""
+    """A render on PEs of the SPA; if the scene does not fit into them, without their memory limit."""
 
     result: raya.Result
     report: dict
 
     def time(self, factor=FACTOR):
-        """Returns the report's modelled_ms, with another factor of the clock."""
+        """Returns the report's modelled_ms, computed with this factor of the clock."""
         t, ratio = dict(self.report["modelled_ms"]), factor / FACTOR
         t["total"] += (ratio - 1) * t["compute"]
         for part in ("compute", "filter", "compare"):
@@ -71,8 +71,8 @@ def run_on_spa(lab, scene, size, pes, offset, antialias="none"):
 
 
 def offset_times(costs, pes, antialias, factor=FACTOR):
-    """Returns a data frame of modelled times with the cyclic fold, one row per offset: columns offset, imbalance, trace_ms, smooth_ms,
-    supersample_ms, ring_ms, rotations, total_ms. Broadcast and gather are excluded, because they take the same time for every offset."""
+    """Returns a data frame of modelled times with the cyclic fold, one row per offset: offset, imbalance, trace_ms, smooth_ms (filter or comparison),
+    supersample_ms, ring_ms (exchange), rotations, total_ms. Broadcast and gather are excluded: their times are the same for every offset."""
     times = pd.DataFrame(raya.offset_times(costs.trace, pes, antialias,
                                            costs.supersample if antialias == "supersample" else None))
     times[["trace_ms", "smooth_ms", "supersample_ms"]] *= factor / FACTOR
@@ -82,13 +82,13 @@ def offset_times(costs, pes, antialias, factor=FACTOR):
 
 @dataclass
 class SmoothingRuns:
-    """Anti-aliased renders of a scene with a PE for each column, at offsets 0, 8 and 16. times() computes all other offsets from their costs."""
+    """Anti-aliased renders of a scene with a PE for each column, at offsets 0, 8 and 16. times() computes the times of all offsets from `costs`."""
 
     scene: raya.Scene
     size: int
     antialias: str
     runs: dict  # {offset: SpaRun}
-    costs: object
+    costs: object  # cost images `trace` and `supersample`, as in Costs
 
     def rows(self, factor=FACTOR):
         """Returns a data frame with a row for each rendered offset; times in ms."""

@@ -1,6 +1,6 @@
 """Confidence intervals, tests and verdicts, with numpy and scipy.
 
-A claim is tested with a rule that claims.toml states before the result. Values are independent, one for each scene. `families`: the family of
+claims.toml states the rule of each test, which was fixed before the result. Values are independent, one for each picture. `families`: the family of
 each value. The families are strata: a mean is the mean of the families' means, and its interval contains only the variation within families.
 """
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class Estimate:
 
 
 def mean_and_error(values, families=None):
-    """Returns (mean, standard error of the mean, degrees of freedom) of independent values, or of strata with equal weights."""
+    """Returns (mean, standard error of the mean, degrees of freedom) of independent values; with families, of strata with equal weights."""
     values = np.asarray(values, float)
     if values.ndim != 1 or not len(values):
         raise ValueError(f"an array of shape {values.shape} is not a list of values")
@@ -57,7 +57,7 @@ def estimate(values, families=None, confidence=0.95):
 
 
 def estimates(columns, families=None):
-    """Returns the estimate of each column of an array [value, column]."""
+    """Returns a list with the estimate of each column of an array [value, column]."""
     return [estimate(column, families) for column in np.asarray(columns).T]
 
 
@@ -77,7 +77,7 @@ class Test:
 
 
 def _one_sided(values, bound, families):
-    """Returns the p value of 'the mean is at most `bound`'; 0.5 without an interval."""
+    """Returns the p value of the hypothesis that the mean is at most `bound`; 0.5 if the values have no interval."""
     mean, error, degrees = mean_and_error(values, families)
     if np.isnan(error):
         return 0.5
@@ -105,7 +105,7 @@ def below(values, bound=0.0, families=None, digits=3):
 def within(values, low, high, families=None, digits=3):
     """Tests the claim that the mean lies in low..high: equivalence test by two one-sided tests."""
     values = np.asarray(values, float)
-    under, over = (1 - _one_sided(*case, families) for case in ((-values, -low), (values, high)))  # p of 'mean < low' and of 'mean > high'
+    under, over = (1 - _one_sided(*case, families) for case in ((-values, -low), (values, high)))  # p values: mean < low, mean > high
     return Test(max(under, over), min(1 - under, 1 - over), estimate(values, families).text(digits), _detectable(values, families))
 
 
@@ -121,7 +121,7 @@ def proportion(holds, bound):
 
 
 def every(tests, interval=""):
-    """Tests the claim that all of several claims hold. p_for: that of the weakest test. p_against: the smallest one, with Bonferroni's correction."""
+    """Tests that several claims all hold. p_for: the largest p_for. p_against: the smallest p_against, with Bonferroni's correction."""
     tests = list(tests)
     against = min(1.0, len(tests) * min(test.p_against for test in tests))
     weakest = max(tests, key=lambda test: test.p_for)
@@ -129,8 +129,8 @@ def every(tests, interval=""):
 
 
 def next_value_within(figure, values, tolerance, digits=3):
-    """Tests the claim that one more picture's value differs from a paper's figure by at most the fraction `tolerance` (0..1) of the figure. Uses
-    Student's t distribution for one more value; `values`: those of our independent pictures."""
+    """Tests the claim that one more picture's value differs from a paper's figure by at most the fraction `tolerance` (0..1) of the figure. `values`:
+    those of our independent pictures. Uses Student's t distribution for one more value."""
     values = np.asarray(values, float)
     spread, degrees = values.std(ddof=1) * np.sqrt(1 + 1 / len(values)), len(values) - 1
     cumulative = lambda value: float(stats.t.cdf((value - values.mean()) / spread, degrees))
@@ -157,7 +157,7 @@ def verdicts(tests):
 
 
 def bonferroni_confidence(tests):
-    """Returns the confidence of each of `tests` intervals with which all intervals hold together with 95 % (Bonferroni)."""
+    """Returns the confidence that each of `tests` intervals needs, so that all of them hold at once with 95 % (Bonferroni)."""
     return 1 - 0.05 / tests
 
 

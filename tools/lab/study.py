@@ -13,8 +13,8 @@ REGISTRY = {}
 class Study:
     name: str
     run: Callable  # (laboratory, scenes) -> Page; scenes: those on the command line, or an empty list
-    prose: str  # title, question, method: a line, a paragraph, a list
-    one_scene: bool = False
+    prose: str  # a line with the title, a paragraph with the question, a list with the method
+    one_scene: bool = False  # the study takes only one scene of the command line
     missing: Callable = lambda: ""  # returns a message with a remedy if the study cannot run on this machine, else ""
 
 

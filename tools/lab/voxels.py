@@ -1,4 +1,4 @@
-"""Common code of the studies of space division: renders on the torus, and with a grid on one PE, and the figures of these renders."""
+"""Common code of the studies of space division: renders on the torus or with a grid on one PE, and the figures of these renders."""
 import math
 
 import pandas as pd
@@ -7,9 +7,9 @@ from raya.lab.laboratory import mean_seconds, rays_of, tests_of, time_calls
 
 CLOCK = ("modelled from counted events on T805 transputers at 25 MHz (data sheet of the IMS T805, SGS-Thomson 1996): 40 ns a "
          "cycle; links of 1.7 MB/s in one direction and 2.4 MB/s in both together; a message of w words costs the processor at "
-         "either end 2 w + 19 cycles. Overlapped: the time of the busiest processor or link, which nothing else delays. Stepwise: "
-         "every superstep waits for its busiest node, then for its busiest link. A real machine lies between the two. No time on "
-         "this page is measured.")
+         "either end 2 w + 19 cycles. Overlapped: the time of the busiest processor or link, as if it waited for nothing. Stepwise: "
+         "in each superstep all nodes compute, then all links transfer, and each half takes the time of the busiest one. A real "
+         "machine takes a time between the two. No time on this page is measured.")
 UNLIMITED_MEMORY = 1 << 40  # bytes of a node's memory
 BOUNCES = next(m for m in raya.machines() if m["name"] == "torus")["bounces"]
 
@@ -38,7 +38,7 @@ def balls_scene(level):
     return raya.generate.balls(level).renamed(f"balls-{level}")
 
 
-# {column of a table: member of Run}, for columns whose name differs from the member's.
+# {column of a table: member of Run} for columns whose name differs from the member's.
 MEMBERS = {
     "divisions": "voxels", "A x B x C": "sides", "tests a ray": "tests_per_ray", "steps a ray": "steps_per_ray",
     "modelled (s)": "modelled_s", "measured (ms)": "measured_ms", "measured, median (ms)": "median_ms",
@@ -49,7 +49,7 @@ MEMBERS = {
 
 
 class Run:
-    """Figures of one render: on the torus with modelled times (time: None), or on one PE with a modelled time and the measured `time` (Timing)."""
+    """Figures of one render. On the torus its times are modelled, and `time` is None. On one PE, `time` is the measured time (Timing)."""
 
     def __init__(self, scene, result, voxels, time=None):
         e, report = result.events, result.report
@@ -57,7 +57,7 @@ class Run:
         self.voxels, self.sides = math.prod(voxels), sides_text(voxels)
         self.rays, self.tests, self.steps, self.primary = rays_of(e), tests_of(e), e["steps"], e["primary"]
         self.tests_per_ray, self.steps_per_ray = self.tests / max(1, self.rays), self.steps / max(1, self.rays)
-        # Entries in the voxels' object lists, not counting the first entry of each object.
+        # Number of entries in the voxels' object lists, without the first entry of each object.
         self.copies = report["torus" if time is None else "accel"]["copies"]
         self.voxels_of_object = 1 + self.copies / self.objects
         if time is not None:

@@ -46,7 +46,7 @@ def error_location(error, run):
 
 
 def serve(pipe):
-    """Main loop of the child: receives arguments of run_study() from the pipe, sends (result, error), ends at EOF."""
+    """Main loop of the child: receives arguments of run_study() from the pipe, sends (result, error), and ends when the pipe is closed."""
     for number in (signal.SIGINT, signal.SIGQUIT):  # a terminal sends these signals to both processes; the parent ends this one
         signal.signal(number, signal.SIG_IGN)
     while True:

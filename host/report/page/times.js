@@ -7,7 +7,7 @@ const RING_PARTS = [
   ["compute", "compute", "tracing, and anti-aliasing", /^(trace|supersample|filter\.)/],
   ["compute: filter", "filter", "sums and means of neighbours", /^filter\./],
   ["compute: compare", "compare", "finding pixels that differ from a neighbour", /^supersample\.compare/],
-  ["communication", "communication", "neighbours' pixels over ring or bus", /^(ring\.|bus\.send|bus\.pe)/],
+  ["communication", "communication", "neighbouring pixels over ring or bus", /^(ring\.|bus\.send|bus\.pe)/],
   ["image", "image", "pixels to the host", /^bus\.gather/],
   ["display", "display", "the image on the host's screen", /^$/]
 ];

@@ -3,23 +3,23 @@
 From how many objects on is a grid or a BVH faster than testing all objects, which of the two is faster, and how does time grow with the
 number of objects?
 
-- Source: none of the papers; the study measures this machine. The scenes balls are SPD's (Haines 1987), the peer is Embree 3 (Wald et al. 2014).
-- Machine: the ring machine `grande` in fp32, scene in global memory, {size} x {size} pixels in tiles of {tile} x {tile}, {bounces} bounces;
-  `--accel` none, grid (default number of voxels) and bvh. The study fails if two methods give different images.
+- Source: none of the papers. The study measures this computer. The scenes balls are SPD's (Haines 1987); Embree 3 (Wald et al. 2014) is timed too.
+- Renderer: raya's machine `grande` (the SPA's ring without its memory limit) in fp32, {size} x {size} pixels, each PE with a tile of {tile} x {tile},
+  {bounces} bounces; `--accel` none, grid (default number of voxels) or bvh. The study fails if two of these methods give different images.
 - Scenes: {scenes}
-- Time of a render (ms): from the packed scene to the image, without building kernels, grid or BVH. A sample is the mean of as many renders as
-  take 20 ms. The methods take turns, up to {rounds} each; a method stops after {sampling_s} s of samples. Figures: minimum and median.
-- A render without an accelerator is skipped if it would take longer than {max_render_s} s. The prediction is the number of rays times the
-  number of objects times the time of a test in the scene before.
-- Counted: tests, of any ray with any object; steps, the voxels or BVH nodes that rays enter; memory (KB), the scene with its grid or BVH on a
-  PE. Build (ms) is measured: the time to make the grid or BVH on the host.
-- The figure of several scenes that differ only in their seed is their mean. The ratio of two methods is computed in each scene and averaged;
-  for a single scene it is computed in each turn. A method counts as faster if the 95 % interval of the ratio excludes 1; with a single
-  ratio, if that ratio differs from 1.
-- Growth: the exponent of the number of objects in the time and in the tests of a ray, fitted for each seed by least squares of logarithms
+- The time of a render (ms) starts with the packed scene and ends with the image; it excludes building kernels, grid and BVH. A sample is the
+  mean of as many renders as take 20 ms. The methods are timed in turn, up to {rounds} times each, but not again after {sampling_s} s of samples.
+- A render without an accelerator is skipped if its predicted time exceeds {max_render_s} s: the number of rays times the number of objects times
+  the time of one test in the last scene that was rendered without an accelerator.
+- Counts: a test is an intersection test of any ray with any object; a step is a voxel or BVH node that a ray enters; memory (KB) is that of the
+  scene with its grid or BVH on one PE. Build (ms) is measured: the time to make the grid or BVH on the host.
+- Scenes that differ only in their seed form a group; figures are means over the group. The ratio of two methods' times is averaged over the scenes
+  of a group, or over the turns if the group is a single scene. A method counts as faster if the 95 % interval of the mean ratio excludes 1 (if
+  there is only one ratio: if it is not 1).
+- Growth: the exponent e in time per ray = c n^e, and in tests per ray = c n^e, for n objects: a least-squares fit of the logarithms for each seed
   over the scenes of {min_fitted} or more objects.
-- Embree: the same rays (tools/embree) on all cores, traced one by one or in packets of sixteen, whichever is faster. Only the loop over the
-  pixels is timed, three renders a turn. A ratio is formed only if the numbers of rays differ by at most one in a thousand.
+- Embree traces the same rays (tools/embree) on all cores, one by one or in packets of sixteen, whichever is faster. Its time is that of the loop over
+  the pixels, with three renders in each turn. A ratio is computed only if the numbers of rays differ by at most one in a thousand.
 - Output: accel.csv has a row for each group of scenes and method, accel-scenes.csv one for each scene and method (words have 32 bits),
   accel-growth.csv the exponents. Columns +- are half widths of 95 % intervals.
 """
@@ -34,7 +34,7 @@ from raya.lab.programs import output_of, sibling_program
 
 NONE, GRID, BVH, EMBREE = "none", "grid", "bvh", "Embree"
 BOUNCES, ROUNDS, MAX_RENDER_S, SAMPLING_S, PEER_SAMPLES, SEEDS = 4, 5, 30, 10, 3, 5
-MIN_FITTED_OBJECTS = 100  # of the scenes of a fit
+MIN_FITTED_OBJECTS = 100  # minimum number of objects of a scene that the fit uses
 RAYS_TOLERANCE = 1e-3  # maximum relative difference of the numbers of rays of two methods whose times form a ratio
 USER_SCENES = "named"
 # {member of a row: column of the table}; a row has the figures of one scene and one method.
@@ -53,7 +53,7 @@ def own_scenes():
 
 
 class Method:
-    """A prepared render of one scene with one method. `seconds`: its timing samples; `turns`: the best time of each turn (ms)."""
+    """One scene with one method, ready to be timed. `seconds`: the timing samples; `turns`: the shortest time of each turn (ms)."""
 
     def __init__(self, name, turn, **figures):
         self.name, self.turn, self.figures, self.seconds, self.turns = name, turn, figures, [], []
@@ -133,7 +133,7 @@ def measure(lab, size, scenes):
 
 
 def pairs(rows, method, other):
-    """Returns a row for each scene that was rendered with both methods. Column `same`: the numbers of rays differ by at most RAYS_TOLERANCE."""
+    """Returns a row for each scene rendered with both methods. Column `same`: true if the numbers of rays differ by at most RAYS_TOLERANCE."""
     both = rows[rows["method"] == method].merge(rows[rows["method"] == other], on=["series", "scene", "seed", "objects"],
                                           suffixes=("", " of other"))
     rays = both[["rays", "rays of other"]]
@@ -141,7 +141,7 @@ def pairs(rows, method, other):
 
 
 def ratios(rows, method, other):
-    """Returns {group, objects, times: Estimate of the ratio of two methods' times} for each group with scenes in which both traced as many rays."""
+    """Returns {group, objects, times: Estimate of the ratio of two methods' times} for each group; uses the scenes whose pair is `same`."""
     found = []
     for group, scene_pairs in pairs(rows, method, other).query("same").groupby("scene", sort=False):
         times = scene_pairs["best"] / scene_pairs["best of other"]
@@ -176,13 +176,13 @@ def accel(lab, scenes):
         {name: int for name in ("tests", "steps", "scene_words", "accel_words")}).rename(columns=EACH)
     tables = [Table("accel", "Each number of objects and method", rows.drop(columns=["series"])),
               Table("accel-scenes", "Each scene and method", each, on_page=False)]
-    tables += [Table("accel-growth", "Exponent of objects in the time and the tests of a ray", growth)] if len(growth) else []
+    tables += [Table("accel-growth", "Exponent of the number of objects in the time per ray and in the tests per ray", growth)] if len(growth) else []
     return Page({"size": size, "bounces": BOUNCES, "rounds": ROUNDS, "format": "fp32"}, findings, tables=tables,
                 plots=plots_of(rows), placeholders={
                     "tile": math.gcd(size, 16), "sampling_s": SAMPLING_S, "max_render_s": MAX_RENDER_S, "min_fitted": MIN_FITTED_OBJECTS,
-                    "scenes": "those of the command line." if scenes else "SPD's balls, where each level has nine times the "
-                    "spheres of the one before; and spheres at random positions in a cube, some of them mirrors, with several "
-                    "seeds for each number."})
+                    "scenes": "those of the command line." if scenes else "SPD's balls, where each level has nine times as many "
+                    "spheres as the previous level; and spheres at random positions in a cube, some of them mirrors, with several "
+                    "seeds for each number of spheres."})
 
 
 def rows_of(runs):
@@ -215,14 +215,14 @@ def growth_of(runs):
 
 
 def faster_from(ratio_list, method):
-    """Part of a sentence: the number of objects from which on a method is faster than testing all objects. ratio_list: in ascending order of
+    """Returns part of a sentence: from how many objects on a method is faster than testing all objects. ratio_list: in ascending order of
     objects."""
     start = len(ratio_list)
     while start > 0 and ratio_list[start - 1]["times"].low_or_mean > 1:
         start -= 1
     if start == len(ratio_list):
         return f"{method} is not measurably faster at {ratio_list[-1]['objects']} objects"
-    return f"{method} is faster from {ratio_list[start]['objects']} objects on{', the smallest number tried' if start == 0 else ''}"
+    return f"{method} is faster from {ratio_list[start]['objects']} objects on{' (the smallest number tried)' if start == 0 else ''}"
 
 
 def finding_of_threshold(runs, series):
@@ -233,19 +233,19 @@ def finding_of_threshold(runs, series):
         return (f"Without an accelerator a render takes {ratios_text(bvh_ratios)} times as long as with bvh, {ratios_text(grid_ratios)} times as "
                 "long as with grid.")
     return (f"{series}: compared with testing all objects, {faster_from(bvh_ratios, BVH)}, {faster_from(grid_ratios, GRID)}. At "
-            f"{bvh_ratios[-1]['objects']} objects `none` takes {text_of(bvh_ratios[-1]['times'])} times as long as bvh and "
+            f"{bvh_ratios[-1]['objects']} objects, testing all objects takes {text_of(bvh_ratios[-1]['times'])} times as long as bvh and "
             f"{text_of(grid_ratios[-1]['times'])} times as long as grid.")
 
 
 def finding_of_faster(runs, method, other):
-    """Sentence on the faster of two methods, over all groups."""
+    """Returns a sentence that counts the groups in which `other` is faster and those in which it is slower than `method`."""
     ratio_list = ratios(runs, method, other)
     if not ratio_list:
-        return f"No scene has a ratio of {method} to {other}."
+        return f"No ratio of {method} to {other}: the two never traced the same number of rays in a scene."
     faster, slower = (sum(holds) for holds in zip(*((e.low_or_mean > 1, e.high_or_mean < 1) for e in (ratio["times"] for ratio in ratio_list))))
     rest = len(ratio_list) - faster - slower
-    return (f"{other} is faster than {method} in {faster} of {len(ratio_list)}, slower in {slower}"
-            f"{f', not significantly different in {rest}' if rest else ''}; time of {method} over {other}: {ratios_text(ratio_list)}.")
+    return (f"{other} is faster than {method} in {faster} of {len(ratio_list)} groups of scenes and slower in {slower}"
+            f"{f'; in {rest} the difference is not significant' if rest else ''}. Time of {method} / time of {other}: {ratios_text(ratio_list)}.")
 
 
 def finding_of_growth(growth, series):
@@ -253,21 +253,21 @@ def finding_of_growth(growth, series):
     exponents = ", ".join(f"{Estimate(row['time'], row['time +-'], None).text(2)} ({row['method']}, "
                           f"{row['from (objects)']} to {row['to (objects)']} objects)" for _, row in series_growth.iterrows())
     tens = ", ".join(f"{10**row['time']:.2f} ({row['method']})" for _, row in series_growth.iterrows())
-    return (f"{series}: the time of a ray grows as the number of objects to the power of {exponents}; with ten times the objects it is "
+    return (f"{series}: the time per ray grows as the number of objects to the power of {exponents}; with ten times the objects it is "
             f"{tens} times as long.")
 
 
 def finding_of_memory(runs):
-    """Sentence on memory and build time of grid and BVH for the largest scenes of a series."""
+    """Returns a sentence on memory and build time of grid and BVH for the largest scenes of a series."""
     made = runs[runs["method"].isin([GRID, BVH])]
     group = made["scene"][made["objects"].idxmax()]
     texts, scene = [], 0
     for method, method_rows in made[made["scene"] == group].groupby("method", sort=False):
         count, build = method_rows["objects"].iloc[0], method_rows["build"].mean()
         scene = 4 * method_rows["scene_words"].mean() / count
-        texts.append(f"{method} takes {4 * method_rows['accel_words'].mean() / count:.1f} bytes an object and {build:.3g} ms to build, the time of "
+        texts.append(f"{method} takes {4 * method_rows['accel_words'].mean() / count:.1f} bytes per object and {build:.3g} ms to build, as long as "
                      f"{build / method_rows['best'].mean():.2g} renders")
-    return f"{group}: {', '.join(texts)}; the scene itself takes {scene:.1f} bytes an object."
+    return f"{group}: {', '.join(texts)}; the scene itself takes {scene:.1f} bytes per object."
 
 
 def findings_of_embree(runs, failures):
@@ -278,7 +278,7 @@ def findings_of_embree(runs, failures):
     others = pairs(runs, EMBREE, BVH).query("not same")
     if len(others):
         names = ", ".join(f"{o['scene']} (seed {o['seed']})" if o["seed"] else o["scene"] for _, o in others.iterrows())
-        findings.append(f"Embree has no ratio in {names}: its number of rays differs by more than one in a thousand.")
+        findings.append(f"No ratio for Embree in {names}: its number of rays differs from raya's by more than one in a thousand.")
     return findings + ([f"Embree was not measured in {'; '.join(failures)}."] if failures else [])
 
 
@@ -289,8 +289,8 @@ def plots_of(rows):
         return Plot(name, title, "objects", label, series_by(series_rows, lines, "objects", column, style=style), "xy")
 
     counted = rows[rows["method"] != EMBREE].assign(line=lambda r: r["series"] + ", " + r["method"])
-    return [plot(f"accel-{series}", f"Time against the number of objects: {series}", "best time of a render (ms)", series_rows,
+    return [plot(f"accel-{series}", f"Time against the number of objects: {series}", "shortest time of a render (ms)", series_rows,
                  "method", "best (ms)") for series, series_rows in rows.groupby("series", sort=False)] + [
-        plot("accel-tests", "Tests a ray against the number of objects", "tests a ray", counted, "line", "tests a ray"),
+        plot("accel-tests", "Tests per ray against the number of objects", "tests per ray", counted, "line", "tests a ray"),
         plot("accel-memory", "Memory of a PE against the number of objects", "scene with grid or BVH (KB)", counted,
              "line", "memory (KB)")]

@@ -3,16 +3,16 @@
 Which offset of the cyclic mapping renders this image fastest, communication included?
 
 - Source: Kohata & Ito 1993, section on the cyclic mapping: offsets 0..sqrt(P) are enough; on n x n PEs p = n^2 equals p = 0.
-- Time of an offset (modelled ms): the busiest PE's cycles in the first pass and in supersampling, the arithmetic of the filter or the
-  comparison, and the rotations that bring the neighbours' pixels by the shortest route, at the SPA's rates. Broadcast and image transfer
-  are excluded, because they take the same time for every offset.
-- Arrays: a PE for each column, 256 PEs and 64 PEs; cyclic fold; sqrt(P) is rounded. PEs have enough memory for the shares that circulate on
-  the ring; the SPA's PEs have enough only for small shares.
-- Size: that of the scene if it is square, a smaller one if the scene has so many objects that rendering would take minutes; --size overrides
-  it. Of equally fast offsets the study names the smallest.
-- {search} choose the offsets; {evaluation} judge them, compared within the same view. So the result holds for the scene and not only for
-  one picture. An offset is recommended if it is faster than p = sqrt(P) in the views that judge; otherwise p = sqrt(P) is recommended.
-- The claim uses the scene families of Fig. 8 instead of one scene, with seeds {claim_search} on to choose and {claim_evaluation} on to judge.
+- Time of an offset (modelled ms, at the SPA's rates): the busiest PE's computing in the first pass and in supersampling, the arithmetic of the
+  filter or of the comparison of neighbours, and the minimum number of rotations that bring the neighbouring pixels. The scene's broadcast and the
+  transfer of the image are excluded, because they take the same time for every offset.
+- Numbers of PEs P: one per image column, 256 and 64. If P is smaller than the number of columns, PE i owns the columns i, i + P, ... of row 0
+  (cyclic fold). sqrt(P) is rounded. All PEs have enough memory for the pixels that rotate on the ring; the SPA's have it only for few pixels per PE.
+- Image size: that of the scene if it is square, smaller if the scene has so many objects that rendering would take minutes; --size overrides it.
+- {search} choose the offset: that with the shortest time over these views, the smallest of equally fast ones. {evaluation} evaluate it; times are
+  compared within the same view. So the result holds for the scene and not only for one picture. The study recommends the chosen offset if the
+  evaluation shows that it is faster than p = sqrt(P), otherwise p = sqrt(P).
+- The claim is tested on the scene families of study fig8: seeds {claim_search} on choose, seeds {claim_evaluation} on evaluate.
 - Output: best-offset-views.csv, best-offset.csv and best-offset-all.csv (every offset). Times are in ms, u is (max load - mean load) / mean
   load, and "takes longer" is in % of the chosen offset's time.
 """
@@ -22,12 +22,12 @@ from raya.lab import Comparison, Page, Plot, Series, Table, below, estimate, eve
 from raya.lab.laboratory import SEEDS, format_for
 from raya.lab.spa import CLOCK, FACTOR, FACTORS, default_size, offset_times
 
-VIEWS, MAX_LOSS = 20, 1  # views of a scene to choose, and as many to judge; bound of the claim root-is-enough, %
+VIEWS, MAX_LOSS = 20, 1  # number of views that choose an offset, and of views that evaluate it; bound of the claim root-is-enough, %
 METHODS = ("none", "filter", "supersample")
 
 
 def total_times(ensemble, pes, antialias):
-    """Returns the modelled ms [picture, offset]."""
+    """Returns an array [picture, offset] of modelled times (ms)."""
     return ensemble.map(lambda costs: offset_times(costs, pes, antialias)["total_ms"])
 
 
@@ -44,14 +44,14 @@ class Choice:
         sums = self.chosen_by.sum(0)
         self.chosen, self.chosen_near = int(sums.argmin()), int(sums[:self.root + 1].argmin())
         self.time = estimate(self.judged_by[:, self.chosen])
-        # The best offset for each factor of the clock.
+        # The best offsets with the clock factors FACTORS, without repetitions.
         self.factors = ", ".join(dict.fromkeys(
             str((self.times["ring_ms"] + f / FACTOR * (total - self.times["ring_ms"])).idxmin()) for f in FACTORS))
 
     method = property(lambda c: "without anti-aliasing" if c.antialias == "none" else f"with --antialias {c.antialias}")
 
     def longer(self, offset, confidence=0.95):
-        """Returns by how many % an offset takes longer than the chosen offset, in the views of judged_by."""
+        """Returns an estimate of the % by which an offset takes longer than the chosen offset, from the views of judged_by."""
         return estimate(100 * (self.judged_by[:, offset] / self.judged_by[:, self.chosen] - 1), None, confidence)
 
     def loss(self, ms):
@@ -84,33 +84,33 @@ def best_offset(lab, scenes):
     return Page({"scenes": scene_settings, "factor": FACTOR, "views": 2 * VIEWS, "rule": MAX_LOSS},
                 [*map(finding_of_best, by_scene), *map(finding_of_views, all_choices), *map(finding_of_choice, all_choices)],
                 [Comparison(f"best p, {c.pes} PEs, {c.antialias}", "", None, int(c.best["offset"]),
-                            f"u of the first pass {c.best['imbalance']:.3f}; sqrt(P), Kohata & Ito's, is p = {c.root}")
+                            f"u of the first pass is {c.best['imbalance']:.3f}; Kohata & Ito's p = sqrt(P) is {c.root}")
                  for c in first],
                 [claim_of_enough(lab)] if not scenes else [], tables_of(all_choices),
                 [plot for number, choices in enumerate(by_scene, 1) for plot in plots_of(choices, number)],
                 clock=CLOCK, placeholders={
-                    "search": f"{VIEWS} views with seeds {seeds_text(lab, 0)}", "evaluation": f"{VIEWS} with seeds {seeds_text(lab, 2)}",
+                    "search": f"{VIEWS} views with seeds {seeds_text(lab, 0)}", "evaluation": f"{VIEWS} other views with seeds {seeds_text(lab, 2)}",
                     "claim_search": seeds_text(lab, 0), "claim_evaluation": seeds_text(lab, 2)})
 
 
 def finding_of_best(choices):
-    """Returns the recommended offset of each anti-aliasing method, on the largest array."""
+    """Returns a sentence with the recommended offset for each anti-aliasing method, on the largest array."""
     first = choices[0]
     texts = []
     for c in (c for c in choices if c.pes == first.pes):
         gain = c.longer(c.root)
         better = c.chosen != c.root and gain.low > 0
         texts.append(f"--offset {c.chosen if better else c.root} {c.method} " + (
-            f"(p = {c.root} takes {gain.text(1)} % longer)" if better else "(no other offset is faster in the views that judge)"))
-    return f"Use {', '.join(texts)}: {first.scene} at {first.size} x {first.size} pixels on {first.pes} PEs."
+            f"(p = {c.root} takes {gain.text(1)} % longer)" if better else "(the evaluation shows no faster one)"))
+    return f"For {first.scene} at {first.size} x {first.size} pixels on {first.pes} PEs use {', '.join(texts)}."
 
 
 def finding_of_views(c):
     picture = int(c.best["offset"])
-    near, root, zero, own = (c.longer(offset).text(1) for offset in (c.chosen_near, c.root, 0, picture))
-    return (f"{c.scene}, {c.pes} PEs, {c.method}: {len(c.chosen_by)} views choose p = {c.chosen}, which "
-            f"takes {c.time.text(1)} ms in {len(c.judged_by)} others. There p = {c.chosen_near}, the best of 0..sqrt(P), takes {near} % longer, "
-            f"p = {c.root} {root} %, p = 0 {zero} %, and p = {picture}, the best for the scene's own picture, {own} %.")
+    near, root, zero, of_picture = (c.longer(offset).text(1) for offset in (c.chosen_near, c.root, 0, picture))
+    return (f"{c.scene}, {c.pes} PEs, {c.method}: {len(c.chosen_by)} views choose p = {c.chosen}, and p = {c.chosen_near} of the offsets "
+            f"0..sqrt(P). In {len(c.judged_by)} other views p = {c.chosen} takes {c.time.text(1)} ms; p = {c.chosen_near} takes {near} % longer, "
+            f"p = sqrt(P) = {c.root} {root} %, p = 0 {zero} %, and p = {picture}, the best for the scene's own view, {of_picture} %.")
 
 
 def finding_of_choice(c):
@@ -120,9 +120,9 @@ def finding_of_choice(c):
             "slower")
     of_root = "" if c.root == c.best["offset"] else f"p = {c.root} takes {c.loss(root):.1f} % longer, "
     ring = 100 * c.best["ring_ms"] / total if total > 0 else 0
-    return (f"{c.scene}, {c.pes} PEs, {c.method}: p = {c.best['offset']:.0f} takes {total:.1f} ms, {ring:.1f} % of it "
-            f"on the ring, u of the first pass {c.best['imbalance']:.3f}; {near}; {of_root}p = 0 takes "
-            f"{c.loss(zero):.1f} % longer; the best offset for factors of 1 to 8: p = {c.factors}.")
+    return (f"{c.scene} in its own view, {c.pes} PEs, {c.method}: the best offset p = {c.best['offset']:.0f} takes {total:.1f} ms, {ring:.1f} % "
+            f"of it on the ring; u of the first pass is {c.best['imbalance']:.3f}; {near}; {of_root}p = 0 takes {c.loss(zero):.1f} % longer. "
+            f"With clock factors of 1 to 8 the best offsets are p = {c.factors}.")
 
 
 def claim_of_enough(lab):
@@ -136,36 +136,36 @@ def claim_of_enough(lab):
             loss = 100 * (judged_by[:, near] / judged_by[:, chosen] - 1)
             tests.append(below(loss, MAX_LOSS, families, 2))
             texts.append(f"{pes} PEs, {method}: p = {near} takes {estimate(loss, families).text(2)} % longer than p = {chosen}")
-    return judged("root-is-enough", every(tests), f"chosen by {search.description}; judged by seeds of their own", "; ".join(texts) + ".")
+    return judged("root-is-enough", every(tests), f"chosen by {search.description}; evaluated with other seeds", "; ".join(texts) + ".")
 
 
 def tables_of(choices):
     views, best, offsets = [], [], []
     for c in choices:
-        head = {"scene": c.scene, "PEs": c.pes, "anti-aliasing": c.antialias}
-        time, near, root, zero = (c.time, c.longer(c.chosen_near), c.longer(c.root), c.longer(0))
+        head, time = {"scene": c.scene, "PEs": c.pes, "anti-aliasing": c.antialias}, c.time
+        near, root, zero = (c.longer(offset) for offset in (c.chosen_near, c.root, 0))
         views.append({**head, "best p": c.chosen, "time (ms)": time.mean, "time, +- (ms)": time.half,
-                      "best p of 0..sqrt(P)": c.chosen_near, "it takes longer (%)": near.mean, "it, +- (%)": near.half,
-                      "p = sqrt(P) takes longer (%)": root.mean, "p = sqrt(P), +- (%)": root.half,
-                      "p = 0 takes longer (%)": zero.mean, "p = 0, +- (%)": zero.half})
+                      "best p of 0..sqrt(P)": c.chosen_near, "best p of 0..sqrt(P) takes longer (%)": near.mean,
+                      "best p of 0..sqrt(P), +- (%)": near.half, "p = sqrt(P) takes longer (%)": root.mean,
+                      "p = sqrt(P), +- (%)": root.half, "p = 0 takes longer (%)": zero.mean, "p = 0, +- (%)": zero.half})
         best.append({"scene": c.scene, "size": c.size, "PEs": c.pes, "anti-aliasing": c.antialias,
                      "best p": int(c.best["offset"]), "best p, factors 1 to 8": c.factors,
-                     "time (ms)": c.best["total_ms"], "of it ring (ms)": c.best["ring_ms"],
-                     "u, first pass": c.best["imbalance"], "best p of 0..sqrt(P)": int(c.best_near["offset"]),
-                     "its time (ms)": c.best_near["total_ms"], "its u": c.best_near["imbalance"],
-                     "p = sqrt(P) (ms)": c.times["total_ms"][c.root], "p = 0 (ms)": c.times["total_ms"][0]})
+                     "time (ms)": c.best["total_ms"], "time on the ring (ms)": c.best["ring_ms"], "u, first pass": c.best["imbalance"],
+                     "best p of 0..sqrt(P)": int(c.best_near["offset"]), "best p of 0..sqrt(P), time (ms)": c.best_near["total_ms"],
+                     "best p of 0..sqrt(P), u": c.best_near["imbalance"], "p = sqrt(P) (ms)": c.times["total_ms"][c.root],
+                     "p = 0 (ms)": c.times["total_ms"][0]})
         t = c.times
         offsets.append(pd.DataFrame({**head, "p": t["offset"], "u, first pass": t["imbalance"],
                                      "first pass (ms)": t["trace_ms"], "neighbours' arithmetic (ms)": t["smooth_ms"],
                                      "supersampling (ms)": t["supersample_ms"], "rotations": t["rotations"],
                                      "ring (ms)": t["ring_ms"], "total (ms)": t["total_ms"]}))
-    return [Table("best-offset-views", "Offsets chosen by half of the views, judged in the others", views),
-            Table("best-offset", "Best offsets, modelled", best),
+    return [Table("best-offset-views", "Offsets chosen by half of the views, evaluated in the other half", views),
+            Table("best-offset", "Best offsets for the scene's own view, modelled", best),
             Table("best-offset-all", "Every offset", pd.concat(offsets, ignore_index=True), on_page=False)]
 
 
 def plots_of(choices, number):
-    """Yields a plot for each number of PEs, with a line for each anti-aliasing method; the best offset is marked."""
+    """Yields a plot for each number of PEs, with a line for each anti-aliasing method and a point at its best offset."""
     for pes in dict.fromkeys(c.pes for c in choices):
         series = []
         for c in (c for c in choices if c.pes == pes):
@@ -173,5 +173,5 @@ def plots_of(choices, number):
                               c.times["total_ms"]),
                        Series(f"its best: p = {c.best['offset']:.0f}", [c.best["offset"]], [c.best["total_ms"]],
                               "points")]
-        yield Plot(f"best-offset-{number}-{pes}pes", f"{c.scene} at {c.size} x {c.size} on {pes} PEs",
+        yield Plot(f"best-offset-{number}-{pes}pes", f"Time against the offset: {c.scene} at {c.size} x {c.size} on {pes} PEs",
                    "offset p (pixels)", "computing and rotations (modelled ms)", series, "y")

@@ -4,13 +4,13 @@ The array of Kohata & Ito (1993) has a ring, and a bus that carries words from P
 of neighbouring pixels over the ring?
 
 - Source: Kohata & Ito 1993, description of the array; times of a rotation from Tables 3 and 4.
-- {scene} at {size} x {size} on 4 to 256 PEs of the SPA, cyclic mapping with p = round(sqrt(P)), filtered and supersampled. The neighbours'
-  pixels come by rotations of the ring, by transfers from PE to PE over the bus, or by a broadcast of each PE (`--exchange`). The renders
-  count all rotations, transfers, broadcasts and words.
-- Transfers: each PE receives the share of every PE at the ring distances of its neighbours; with an offset these are 4 P transfers a side.
-  Broadcasts: P a side for the filter, whose sums have a fixed order; P in total for comparisons.
-- PEs have memory for whole shares, which on fewer than 256 PEs is more than the SPA's. The set-up of the exchange is the same for every
-  method and is included.
+- {scene} at {size} x {size} on 4 to 256 PEs of the SPA, cyclic mapping with p = round(sqrt(P)), filtered and supersampled. The neighbouring
+  pixels come by rotations of the ring, by transfers from PE to PE over the bus, or by broadcasts from one PE after another (`--exchange`).
+  The renders count all rotations, transfers, broadcasts and words. A PE's share is the pixels that it owns.
+- Transfers: for each of the four sides, every PE receives the shares of all PEs that own neighbours of its pixels: P transfers per side if
+  P divides the number of columns. Broadcasts: P per side for the filter, which adds the sides in a fixed order; P in total for supersampling.
+- The modelled PEs have enough memory for whole shares. On fewer than 256 PEs this is more memory than that of the SPA's PEs. The set-up of the
+  exchange takes the same time with every method and is included.
 - Output: bus.csv has a row for each anti-aliasing method and number of PEs: counts, and modelled times in ms. "words alone" excludes
   synchronisation.
 """
@@ -45,7 +45,7 @@ def rows_of(lab, scene, size, antialias):
 
 
 def ring_is_faster_from(rows, bus_ms):
-    """Part of a sentence: the number of PEs from which on the ring takes less time than the faster of the two bus methods."""
+    """Returns part of a sentence: from how many PEs on the ring takes less time than bus_ms, the time of the faster bus method (ms)."""
     pes = tail_where(rows["P"], rows["ring (ms)"] < bus_ms)
     return f"from {pes.iloc[0]} PEs on" if len(pes) else f"for no number of PEs up to {rows['P'].iloc[-1]}"
 
@@ -54,10 +54,10 @@ def finding_of_ring(rows):
     best = rows[["bus (ms)", "broadcasts, time (ms)"]].min(1)
     words = rows[["bus, words alone (ms)", "broadcasts, words alone (ms)"]].min(1)
     last = rows.iloc[-1]
-    return (f"{last['anti-aliasing']}: the ring is fastest {ring_is_faster_from(rows, best)}; {ring_is_faster_from(rows, words)} if the "
-            f"bus takes only the time of its words. On {last['P']} PEs the ring takes {last['ring (ms)']:.1f} ms for "
+    return (f"{last['anti-aliasing']}: the ring is fastest {ring_is_faster_from(rows, best)}, and {ring_is_faster_from(rows, words)} if bus "
+            f"transfers need no synchronisation. On {last['P']} PEs the ring takes {last['ring (ms)']:.1f} ms for "
             f"{last['rotations']} rotations, the bus {last['bus (ms)']:.1f} ms for {last['transfers']} transfers or "
-            f"{last['broadcasts, time (ms)']:.1f} ms for {last['broadcasts']} broadcasts: at best "
+            f"{last['broadcasts, time (ms)']:.1f} ms for {last['broadcasts']} broadcasts. The faster bus method takes "
             f"{best.iloc[-1] / last['ring (ms)']:.1f} times as long, {words.iloc[-1] / last['ring (ms)']:.1f} times without synchronisation.")
 
 
@@ -66,7 +66,7 @@ def plot_of(rows):
     columns = {"ring": "ring (ms)", bus: "bus (ms)", broadcast: "broadcasts, time (ms)",
                f"{bus}, words alone": "bus, words alone (ms)", f"{broadcast}, words alone": "broadcasts, words alone (ms)"}
     return Plot(f"bus-{method}", f"Time of the exchange against the number of PEs, {method}", "PEs",
-                "exchange (modelled ms)", [Series(label, rows["P"], rows[c]) for label, c in columns.items()], "xy")
+                "time of the exchange (modelled ms)", [Series(label, rows["P"], rows[c]) for label, c in columns.items()], "xy")
 
 
 @study("bus", one_scene=True)
@@ -76,15 +76,15 @@ def bus(lab, scenes):
     rows = pd.concat(by_method, ignore_index=True)
     return Page({"scene": scene.name, "size": size, "pes": by_method[0]["P"].tolist(), "format": format_for(scene)},
                 [*map(finding_of_ring, by_method),
-                 f"In {rows['same'].sum()} of {len(rows)} cases the three methods give the same image, bit for bit.",
-                 "The reason is the number of words. The bus carries all pixels once for each side, or once in total, however many PEs "
-                 "there are. On the ring P links carry words at once: the words of a rotation fall as 1 / P, and the number of rotations "
-                 "grows only as sqrt(P)."],
-                tables=[Table("bus", "The exchange of neighbours by each method", rows.drop(columns="same"))],
+                 "The P links of the ring carry words at the same time. Up to one PE per column, the words per link in a rotation fall as "
+                 "1 / P, and the number of rotations grows only as sqrt(P). The bus carries all pixels once for each side, or once in "
+                 "total, however many PEs there are.",
+                 f"In {rows['same'].sum()} of {len(rows)} cases the three methods give the same image, bit for bit."],
+                tables=[Table("bus", "The exchange of neighbouring pixels by each method", rows.drop(columns="same"))],
                 plots=[*map(plot_of, by_method)],
-                news=[f"On {rows['P'].iloc[-1]} PEs the exchange of neighbours takes at least {rows[['bus / ring', 'broadcasts / ring']].iloc[-1].min():.0f} times "
-                      "as long over the bus as over the ring."],
+                news=[f"On {rows['P'].iloc[-1]} PEs the exchange of neighbouring pixels over the bus takes at least "
+                      f"{rows[['bus / ring', 'broadcasts / ring']].iloc[-1].min():.0f} times as long as over the ring."],
                 clock="modelled. A rotation takes the time of its words at the printed 6 Mword/s plus 0.1845 ms of synchronisation, which follows "
                 "from Tables 3 and 4 [D]. No time is printed for a transfer from PE to PE: we assume the same rate and synchronisation, one "
-                "transfer after another; \"words alone\" is the minimum, without synchronisation. These times contain no computing, so the "
-                "clock's factor does not apply.")
+                "transfer after another. \"words alone\" is a lower bound, without synchronisation. The factor by which the clock model "
+                "scales computing times does not apply, because these times contain no computing.")

@@ -1,16 +1,16 @@
 """Scenes like the paper's
 
-What are the figures of Tables 2 to 4 for scenes with their objects in the middle, as uneven as that of Fig. 6?
+What are the figures of Tables 2 to 4 for scenes that have their objects in the middle and a load imbalance like that of the scene of Fig. 6?
 
 - Source: Kohata & Ito 1993, abstract and Tables 2, 3 and 4.
-- {ensemble}, at {size} x {size} on {pes} PEs of the SPA, a PE for each column: seven spheres above a floor, one light.
-- The generator's parameters were searched for, with other seeds, so that the means of u(0), of the pixels recomputed and of the cycles a
-  pixel are those of the paper (see scenes/README.md). The first table shows how far the means with these seeds agree.
-- The paper's scene is the most uneven of several, u(0) = 1.58. The *matched* scenes are those whose u(0) lies within {match} % of it. The
-  match uses neither u(16) nor supersampling. The times of a scene are scaled so that one PE computes for the printed 64,800 ms.
-- 283, 653, 662 and 302 ms follow from u(0), from the speed-up of 229 and from the filter's times, to which the clock is fitted. They are
-  not independent results.
-- Output: cluster.csv has a row for each scene: u at p = 0 and 16, speed-up, pixels recomputed (%), budget cycles a pixel, scaled times (ms) of
+- {ensemble}, at {size} x {size} on {pes} PEs of the SPA, one PE per column: seven spheres above a floor, one light.
+- We fitted the parameters of the scene generator, with other seeds, so that three means come close to the paper's: u(0), the fraction of
+  recomputed pixels, and the cycles per pixel (see scenes/README.md). The first table has these means for the seeds of this study.
+- Of the paper's scenes, that of Fig. 6 is the most unbalanced, with u(0) = 1.58. The *matched* scenes are those with a u(0) within {match} % of this.
+  The match uses neither u(16) nor supersampling. The times of each scene are scaled so that one PE computes for the 64,800 ms of Table 2.
+- The paper's 653 ms follow from u(0), its 283 ms from the speed-up of 229, its 662 and 302 ms from these and the filter's times, to which the
+  clock is fitted. So these four times are not independent results.
+- Output: cluster.csv has a row for each scene: u at p = 0 and 16, speed-up, recomputed pixels (%), modelled cycles per pixel, scaled times (ms) of
   supersampling without the first pass.
 """
 import numpy as np
@@ -20,18 +20,18 @@ from raya.lab import Comparison, Page, Plot, Series, Table, estimate, estimates,
 from raya.lab.families import CROWDED
 from raya.lab.spa import CLOCK, FACTOR, offset_times, spa_ms
 
-MATCH = 0.1  # largest relative difference of a matched scene's u(0) from the paper's
+MATCH = 0.1  # maximum relative difference between a matched scene's u(0) and the paper's
 SPEEDUP_BOUND, SUPERSAMPLING_BOUND = 0.1, 0.2  # bounds of the claims speedup-229, supersampling-p0 and supersampling-p16
-# Figures for which the generator's parameters were searched, and other figures: (figure, unit, column, paper's, is derived).
-SEARCHED = [("u(0)", "", "u(0)", papers.IMBALANCE_0), ("pixels recomputed", "%", "recomputed (%)",
-            50 * (papers.RECOMPUTED_MIN + papers.RECOMPUTED_MAX)), ("1 PE: compute", "ms", "1 PE: compute (ms)", papers.ONE_PE_COMPUTE_MS)]
-NOT_SEARCHED = [("u(16)", "", "u(16)", papers.IMBALANCE_16, True), ("speed-up, p = 16", "", "speed-up", papers.SPEEDUP_16, False),
-                ("supersampling, p = 0", "ms", "supersampling, p = 0 (ms)", papers.SUPERSAMPLE_0_MS, False),
-                ("supersampling, p = 16", "ms", "supersampling, p = 16 (ms)", papers.SUPERSAMPLE_16_MS, False)]
+# Figures to which the generator's parameters were fitted: (figure, unit, column, paper's value). Other figures: also, is the value derived?
+FITTED = [("u(0)", "", "u(0)", papers.IMBALANCE_0), ("pixels recomputed", "%", "recomputed (%)",
+          50 * (papers.RECOMPUTED_MIN + papers.RECOMPUTED_MAX)), ("1 PE: compute", "ms", "1 PE: compute (ms)", papers.ONE_PE_COMPUTE_MS)]
+NOT_FITTED = [("u(16)", "", "u(16)", papers.IMBALANCE_16, True), ("speed-up, p = 16", "", "speed-up", papers.SPEEDUP_16, False),
+              ("supersampling, p = 0", "ms", "supersampling, p = 0 (ms)", papers.SUPERSAMPLE_0_MS, False),
+              ("supersampling, p = 16", "ms", "supersampling, p = 16 (ms)", papers.SUPERSAMPLE_16_MS, False)]
 
 
 def scaled_times(costs, size, antialias):
-    """Returns offset_times() of a scene, with the computing times of both passes scaled so that one PE computes for the printed 64,800 ms."""
+    """Returns offset_times() of a scene, with the computing times of both passes scaled so that one PE computes for the 64,800 ms of Table 2."""
     times = offset_times(costs, size, antialias)
     scale = papers.ONE_PE_COMPUTE_MS / (FACTOR * spa_ms(int(costs.trace.sum())))
     passes = ["trace_ms", "supersample_ms"]
@@ -65,35 +65,35 @@ def matched_times(lab, antialias):
 
 
 def series_of_matched(label, times, columns):
-    """Returns the series of a plot: mean and interval, over matched scenes, of the sum of columns, for p = 0 .. 16."""
+    """Returns a plot's series: the sum of the given columns for p = 0 .. 16, as mean and interval over the matched scenes."""
     of_offset = estimates([one[columns].sum(axis=1)[:17] for one in times])
     return Series(label, range(17), [e.mean for e in of_offset], half_widths=[e.half for e in of_offset])
 
 
 @study("cluster")
 def cluster(lab, scenes):
-    size, own = lab.size(256), not scenes
+    size, uses_default_scenes = lab.size(256), not scenes
     ensemble = lab.ensemble(scenes, size, "supersample", views=2 * lab.views, families=CROWDED, part=1)
     rows = pd.DataFrame([row_of(costs, size) for costs in ensemble.pictures])
     rows["matched"] = np.where(matched_scenes(ensemble, size), "yes", "no")
-    matched, in_paper = rows[rows["matched"] == "yes"], own and size == papers.SIZE
-    about = f"{ensemble.description}; the {len(matched)} with a u(0) within {100 * MATCH:.0f} % of {papers.IMBALANCE_0}"
+    matched, in_paper = rows[rows["matched"] == "yes"], uses_default_scenes and size == papers.SIZE
+    about = f"{ensemble.description}; of these, the {len(matched)} with a u(0) within {100 * MATCH:.0f} % of {papers.IMBALANCE_0}"
 
     def comparison(what, unit, column, paper, derived, scene_rows, remark):
         mean = estimate(scene_rows[column])
-        return Comparison(what, unit, paper if in_paper else None, mean.mean, f"{remark}; {range_text(scene_rows[column])} of single scenes",
+        return Comparison(what, unit, paper if in_paper else None, mean.mean, f"{remark}; {range_text(scene_rows[column])} for single scenes",
                           derived, mean.half)
 
-    searched = [comparison(what + ", all scenes", unit, column, paper, True, rows, "searched for, with other seeds")
-                for what, unit, column, paper in SEARCHED]
-    free = [comparison(what + ", matched scenes", unit, column, paper, derived, matched, "not searched for")
-            for what, unit, column, paper, derived in NOT_SEARCHED] if len(matched) > 1 else []
+    fitted = [comparison(what + ", all scenes", unit, column, paper, True, rows, "fitted, with other seeds")
+              for what, unit, column, paper in FITTED]
+    not_fitted = [comparison(what + ", matched scenes", unit, column, paper, derived, matched, "not fitted")
+                  for what, unit, column, paper, derived in NOT_FITTED] if len(matched) > 1 else []
     marks = [Series("Kohata & Ito, from their tables", [papers.IMBALANCE_0], [papers.IMBALANCE_16], "paper")] * in_paper
     return Page({"scenes": len(rows), "matched": len(matched), "size": size, "pes": size, "factor": FACTOR},
-                findings_of(rows, matched), searched + free,
+                findings_of(rows, matched), fitted + not_fitted,
                 claims_of(matched, about) if in_paper and len(matched) > 2 else [],
                 [Table("cluster", "Each scene", rows, on_page=False)],
-                [Plot("cluster", "Imbalance of each scene, column split and cyclic mapping", "u(0)", "u(16)",
+                [Plot("cluster", "Load imbalance of each scene: cyclic mapping against column split", "u(0)", "u(16)",
                       [Series("scenes", rows["u(0)"], rows["u(16)"], "points"),
                        Series("matched scenes", matched["u(0)"], matched["u(16)"], "points")] + marks)],
                 clock=CLOCK,
@@ -102,18 +102,18 @@ def cluster(lab, scenes):
 
 def findings_of(rows, matched):
     means = ", ".join(f"{what} {estimate(rows[column]).text(2 if paper < 100 else 0)} {unit}".rstrip() + f" instead of {paper:g}"
-                      for what, unit, column, paper in SEARCHED)
-    findings = [f"With these seeds the means differ from those searched for: {means}."]
+                      for what, unit, column, paper in FITTED)
+    findings = [f"With the seeds of this study the fitted means are not exactly the paper's: {means}."]
     if len(matched) > 1:
-        findings.insert(0, f"Over {len(matched)} matched scenes u(16), which the match does not use, is {estimate(matched['u(16)']).text()}; "
-                        f"u(16) of one more scene lies in {prediction_text(matched['u(16)'])} with 95 %. The paper's is {papers.IMBALANCE_16}.")
+        findings.insert(0, f"The mean u(16) over {len(matched)} matched scenes is {estimate(matched['u(16)']).text()}; the match does not use it. "
+                        f"A further scene has one in {prediction_text(matched['u(16)'])} with 95 % probability; the paper has {papers.IMBALANCE_16}.")
     return findings
 
 
 def claims_of(matched, about):
     def claim(key, paper, column, bound):
         values = matched[column]
-        return judged(key, next_value_within(paper, values, bound, 0), about, f"Ours is {estimate(values).text(0)} in the mean. "
+        return judged(key, next_value_within(paper, values, bound, 0), about, f"Our mean is {estimate(values).text(0)}. "
                       f"{100 * (values <= paper).mean():.0f} % of the scenes are at or below {paper}.")
 
     return [claim("speedup-229", papers.SPEEDUP_16, "speed-up", SPEEDUP_BOUND),

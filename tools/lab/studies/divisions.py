@@ -2,12 +2,12 @@
 
 Into how many voxels should one machine divide space, for a given number of objects?
 
-- Source: Yoshitani & Yamazaki, about 1995, Fig. 3 and conclusion.
-- One PE of grande in fp32, {size} x {size} pixels, primary and shadow rays; every ray traverses the grid.
+- Source: Yoshitani & Yamazaki, about 1995, Fig. 3 and conclusion. Their number of divisions is the number of voxels.
+- One PE of raya's machine grande in fp32, {size} x {size} pixels, primary and shadow rays. Every ray traverses a grid of A x B x C voxels.
 - {kind}
-- A ray tests an object again in each voxel that contains it: raya has no mailboxing.
-- Output: divisions.csv has a row for each scene and number of divisions. copies: entries in the voxels' object lists, not counting the first
-  entry of each object; steps: voxels that rays enter; modelled time in s, measured time in ms.
+- A ray that enters several voxels with the same object tests the object in each of them: raya has no mailboxing.
+- Output: divisions.csv has a row for each scene and number of divisions. copies: number of entries in the voxels' object lists, minus one per
+  object; steps: number of voxels that rays enter; modelled time in s, measured time in ms.
 """
 import numpy as np
 import raya
@@ -18,7 +18,7 @@ from raya.lab.voxels import near_cube, powers_of_two, run_cases, run_in_one_pe
 DIVISIONS = powers_of_two(8192)
 COLUMNS = ("scene", "divisions", "A x B x C", "copies", "rays", "tests", "steps", "tests a ray", "steps a ray",
            "modelled (s)", "measured (ms)", "measured, median (ms)", "objects", "voxels of an object")
-DIFFERENCE_RATIO = 1.02  # ratio above which two figures count as different
+DIFFERENCE_RATIO = 1.02  # ratio of two figures above which they count as different
 # {subject: (title of the plot, label of its y axis, column of the table, name of its minimum)}
 SUBJECTS = {"modelled": ("Modelled time against divisions", "modelled time of a T805 (s)", "modelled (s)",
                          "minimum of the modelled time"),
@@ -40,10 +40,10 @@ def divisions(lab, scenes):
     largest_scene = by_scene[-1]
     if from_paper:
         falls = {name: fall_of(largest_scene, name) for name in SUBJECTS}
-        findings.insert(0, "1024 objects, 32 divisions compared with 1024: Yoshitani & Yamazaki take "
-                        f"{papers.DIVISIONS_FALL:.1f} times as long; our modelled time is {falls['modelled']:.1f} times and our "
-                        f"measured time {falls['measured']:.1f} times as long. Our tests are {falls['tests']:.1f} times as many; "
-                        "theirs fall to \"about 1/5\".")
+        findings.insert(0, "1024 objects with 32 divisions, compared with 1024 divisions: the time of Yoshitani & Yamazaki is "
+                        f"{papers.DIVISIONS_FALL:.1f} times as long, our modelled time {falls['modelled']:.1f} times, our "
+                        f"measured time {falls['measured']:.1f} times. We count {falls['tests']:.1f} times as many tests; "
+                        "theirs fall to \"about 1/5\" from 32 to 1024 divisions.")
     shown = rows.drop(columns=["cut", "objects", "voxels of an object", "run"])
     return Page({"size": size, "bounces": 0, "format": "fp32", "scenes": settings}, findings,
                 comparisons_of(by_scene, from_paper), claims_of(lab, size, by_scene) if from_paper else [],
@@ -51,12 +51,12 @@ def divisions(lab, scenes):
                 [Plot(f"divisions-{name}", title, "divisions", label, series_by(rows, "scene", "divisions", column),
                       "xy") for name, (title, label, column, _) in SUBJECTS.items()],
                 clock="two kinds, on separate axes. Modelled: the counted events at their cost on a T805 at 25 MHz, 40 ns a cycle "
-                "(data sheet of the IMS T805, SGS-Thomson 1996), with the making of packets, without messages. Measured: tracing on "
+                "(data sheet of the IMS T805, SGS-Thomson 1996), including the creation of packets, without messages. Measured: tracing on "
                 "this device, minimum and median of five samples after a warm-up; a sample is the mean of as many renders as take "
                 "20 ms.", compared_with=papers.TP,
-                placeholders={"kind": "64 to 1024 matt spheres, one in each of as many voxels of a cube. Our grid divides the "
-                              "bounding box of the spheres, which is a little smaller than that cube, so some spheres straddle its planes."
-                              if from_paper else "The scenes of the command line. A x B x C is as near to a cube as powers of two "
+                placeholders={"kind": "64 to 1024 matt spheres, one in each of 64 to 1024 equal cells of a cube. The grid divides the "
+                              "bounding box of the spheres, which is a little smaller than the cube, so some spheres straddle voxels."
+                              if from_paper else "The scenes of the command line. A, B and C are as nearly equal as powers of two "
                               "allow, whatever the shape of the bounding box."})
 
 
@@ -75,7 +75,7 @@ def ratio_to_minimum(scene_rows, row, name):
 
 
 def fall_of(scene_rows, name):
-    """Returns the figure at 32 divisions divided by the figure at 1024."""
+    """Returns the figure at 32 divisions divided by the figure at 1024 divisions."""
     figures = scene_rows.set_index("divisions")[SUBJECTS[name][2]]
     return figures[papers.FEW_DIVISIONS] / figures[papers.MANY_DIVISIONS]
 
@@ -83,7 +83,7 @@ def fall_of(scene_rows, name):
 def comparisons_of(by_scene, from_paper):
     comparisons = []
     if from_paper:
-        comparisons = [Comparison(f"32 over 1024 divisions, 1024 objects: {name}", "", paper,
+        comparisons = [Comparison(f"{name}, 32 divisions / 1024 divisions, 1024 objects", "", paper,
                                   fall_of(by_scene[-1], name.split()[0]), remark, name != "tests")
                        for name, paper, remark in (("modelled time", papers.DIVISIONS_FALL, "a T805's"),
                                                    ("measured time", papers.DIVISIONS_FALL, "this device's"),
@@ -101,21 +101,21 @@ def finding_of_optimum(name, by_scene):
     best = [row_of_minimum(scene_rows, name) for scene_rows in by_scene]
     equal = sum(b["divisions"] == b["objects"] for b in best)
     last = sum(b["divisions"] == scene_rows["divisions"].iloc[-1] for b, scene_rows in zip(best, by_scene))
-    more = f"; for {last} it is the largest number tried, so the optimum may be higher" if last else ""
+    more = f"; for {last} it is the largest number tried, so the minimum may lie beyond" if last else ""
     where = ", ".join(f"{b['divisions']} for {b['scene']}" for b in best)
-    return (f"{SUBJECTS[name][3].capitalize()}, number of divisions: {where}. It equals the number of objects for {equal} of "
+    return (f"The {SUBJECTS[name][3]} lies at these numbers of divisions: {where}. This is the number of objects for {equal} of "
             f"{len(best)} scenes{more}.")
 
 
 def finding_of_loss(by_scene):
     tried = [(scene_rows, row) for scene_rows in by_scene for row in [row_at_object_count(scene_rows)] if row is not None]
     if not tried:
-        return "No scene here was divided into as many voxels as it has objects."
+        return "No scene was divided into as many voxels as it has objects."
     times = ", ".join(f"{ratio_to_minimum(scene_rows, row, 'modelled'):.2f} ({row['scene']})" for scene_rows, row in tried)
     tests = ", ".join(f"{ratio_to_minimum(scene_rows, row, 'tests'):.2f}" for scene_rows, row in tried)
     voxels = ", ".join(f"{row['voxels of an object']:.2f}" for _, row in tried)
-    return (f"With divisions = objects the modelled time is {times} times its minimum and the tests are {tests} times their minimum; an "
-            f"object then lies in {voxels} voxels.")
+    return (f"With divisions = objects the modelled time is {times} times its minimum, and the number of tests {tests} times its minimum. "
+            f"An object then lies in {voxels} voxels on average.")
 
 
 def finding_of_rise(by_scene):
@@ -125,19 +125,19 @@ def finding_of_rise(by_scene):
 
 
 def finding_of_parts(runs):
-    """Returns fractions of the modelled time that object tests and grid traversal take, by number of divisions."""
+    """Returns a sentence on the percentages of the modelled time that object tests and grid traversal take."""
     at = [run for run in runs if run.voxels in (papers.FEW_DIVISIONS, papers.MANY_DIVISIONS)] + [runs[-1]]
 
     def shares(events):
         return ", ".join(f"{100 * raya.t805_ms({e: run.events[e] for e in events}) / raya.t805_ms(run.events):.0f}"
                          for run in at)
 
-    return (f"{runs[0].scene}: at {', '.join(str(run.voxels) for run in at)} divisions, tests take {shares(TESTS)} % "
-            f"of the modelled time and grid traversal {shares(('walks', 'steps'))} %; at the largest number of divisions an object "
-            f"lies in {runs[-1].voxels_of_object:.1f} voxels.")
+    return (f"{runs[0].scene}: at {', '.join(str(run.voxels) for run in at)} divisions, object tests take {shares(TESTS)} % "
+            f"of the modelled time and grid traversal takes {shares(('walks', 'steps'))} %. At the largest number of divisions an object "
+            f"lies in {runs[-1].voxels_of_object:.1f} voxels on average.")
 
 
-RADII, VIEWS = (0.5, 1.0, 1.5, 2.0), 6  # layouts of the claim tests-to-a-fifth: radii / those of the even scene, random views
+RADII, VIEWS = (0.5, 1.0, 1.5, 2.0), 6  # layouts of the claim tests-to-a-fifth: radii relative to the even scene; random views of each
 FIFTH = 4, 6  # bounds of the claim tests-to-a-fifth
 
 
@@ -149,7 +149,7 @@ def with_radii(scene, factor):
 
 
 def falls_of_layouts(lab, size):
-    """Returns tests at 32 divisions / tests at 1024, for 1024 even spheres of several radii from several views."""
+    """Returns tests at 32 divisions / tests at 1024 divisions, for 1024 evenly spread spheres of several radii from several views."""
     even, falls = raya.generate.uniform(1024, near_cube(1024)), []
     for i, factor in enumerate(RADII):
         for seed in range(lab.seed + i * VIEWS, lab.seed + (i + 1) * VIEWS):
@@ -172,13 +172,13 @@ def claims_of(lab, size, by_scene):
     texts = ", ".join(f"{fall:.1f} ({scene_rows['scene'].iloc[0]})" for fall, scene_rows in zip(falls, by_scene))
     layouts = falls_of_layouts(lab, size)
     radii = [factor for factor in RADII for _ in range(VIEWS)]
-    about = f"1024 even spheres, {len(RADII)} radii, {VIEWS} views of each, seeds {lab.seed}..{lab.seed + len(RADII) * VIEWS - 1}"
+    about = f"1024 evenly spread spheres, {len(RADII)} radii, {VIEWS} views of each, seeds {lab.seed}..{lab.seed + len(RADII) * VIEWS - 1}"
     return [judged("time-falls-then-rises", counted(all(map(falls_then_rises, by_scene))), "",
                    f"{finding_of_optimum('modelled', by_scene)} {finding_of_rise(by_scene)}"),
             judged("more-objects-gain-more", counted((np.diff(falls) > 0).all()), "",
                    f"From one division to the minimum, the modelled time falls by a factor of {texts}."),
             judged("tests-to-a-fifth", within(layouts, *FIFTH, radii, digits=1), about,
-                   f"From 32 to 1024 divisions the tests fall by a factor of {estimate(layouts, radii).text(1)}, {range_text(layouts, 1)} of single "
+                   f"From 32 to 1024 divisions the tests fall by a factor of {estimate(layouts, radii).text(1)}, {range_text(layouts, 1)} for single "
                    "layouts."),
             judged("tests-fewest-at-objects", counted(is_minimum_at_object_count("tests")), "",
-                   f"{finding_of_optimum('tests', by_scene)} {finding_of_loss(by_scene)} Up to 2 % above the minimum counts as the minimum.")]
+                   f"{finding_of_optimum('tests', by_scene)} {finding_of_loss(by_scene)} Up to 2 % above the minimum is taken as the minimum.")]

@@ -1,14 +1,14 @@
 """Number formats against the double-precision reference
 
-How much does an image in a reduced format differ from the exact one, and what does the format cost?
+How much does an image in a reduced format differ from the exact one, and how much time does the format take?
 
 - Source: none of the papers; `spa22` is the number format of the SPA (Kohata & Ito 1993).
-- {size} x {size} pixels, rays through pixel centres, {bounces} bounces, machine {machine} with {pes} PEs at offset
-  {offset}. Each image is compared with the double-precision reference on values clamped to 0..1.
-- Formats: `eXmY` has X exponent bits and Y fraction bits and rounds to nearest; with a `t` it truncates. `e6m15` is `spa22`.
-- Times are measured on {device}, {lanes} lanes: the minimum of {samples} renders of each format, in turn.
-- Output: formats-overview.csv has a row for each format, formats.csv one for each scene and format. psnr_db: PSNR in dB, peak 1;
-  largest_error: of a channel; pixels_over, share_over: number and fraction of pixels with a channel that is off by more than 1/255.
+- {size} x {size} pixels, rays through pixel centres, {bounces} bounces, raya's machine {machine} with {pes} PEs at offset {offset}. Each image is
+  compared with that of raya's double-precision reference renderer, after clamping of both to 0..1.
+- Formats: `eXmY` has X exponent bits and Y fraction bits and rounds to nearest; `eXmYt` truncates. `e6m15` is `spa22`.
+- Times are measured on {device}, {lanes} rays per work-item: the minimum over {samples} renders with each format, in turn.
+- Output: formats-overview.csv has a row for each format, formats.csv one for each scene and format. psnr_db: PSNR in dB, peak 1; largest_error:
+  over all colour channels; pixels_over, share_over: number and fraction of pixels with a channel whose error exceeds 1/255.
 """
 import re
 
@@ -18,19 +18,19 @@ import raya
 from raya.lab import Page, Plot, Table, series_by, study
 
 REDUCED = [name + cut for name in "e8m21 e8m18 e8m15 e7m15 e6m15 e6m14 e6m13".split() for cut in ("", "t")]
-STEP, SAMPLES = 1 / 255, 5  # STEP: one step of an 8-bit image, the smallest visible difference
+STEP, SAMPLES = 1 / 255, 5  # STEP: one step of an 8-bit channel, the smallest visible difference
 GRANDE = next(m for m in raya.machines() if m["name"] == "grande")
 
 
 def bits_of(form):
-    """(exponent bits, fraction bits, rounding)"""
+    """Returns (exponent bits, fraction bits, rounding)."""
     exponent, fraction, cut = re.fullmatch(r"e(\d+)m(\d+)(t?)", "e8m23" if form == "fp32" else form).groups()
     return int(exponent), int(fraction), "truncate" if cut else "nearest"
 
 
 def difference(expected, image):
-    """Returns PSNR (dB, peak 1), largest error, and number and fraction of the pixels with a channel that is off by more than STEP. Values are
-    clamped to 0..1; the error of a value that is not finite is infinite."""
+    """Returns PSNR (dB, peak 1), largest error of a channel, and number and fraction of the pixels with a channel whose error exceeds STEP. Values
+    are clamped to 0..1. The error of a value that is not finite is infinite."""
     finite = np.isfinite(expected) & np.isfinite(image)
     off = np.where(finite, np.abs(np.clip(expected, 0, 1) - np.clip(image.astype(float), 0, 1)), np.inf)
     with np.errstate(divide="ignore"):
@@ -71,9 +71,9 @@ def formats(lab, scenes):
     nearest = rows[(rows["rounding"] == "nearest") & (rows["fraction_bits"] < 23)]
     return Page({"size": size, "machine": "grande", "pes": size, "offset": 16 % size, "bounces": GRANDE["bounces"],
                  "samples": SAMPLES, "lanes": lanes[0], "device": lab.session.device["name"]}, findings_of(rows),
-                tables=[Table("formats-overview", "All scenes", overview),
+                tables=[Table("formats-overview", "Each format, over all scenes", overview),
                         Table("formats", "Each scene and format", rows, on_page=False)],
-                plots=[Plot("formats", "PSNR against fraction bits, rounding to nearest", "fraction bits", "PSNR (dB)",
+                plots=[Plot("formats", "PSNR against the number of fraction bits, rounding to nearest", "fraction bits", "PSNR (dB)",
                             series_by(nearest.sort_values("fraction_bits", kind="stable"), "scene", "fraction_bits",
                                       "psnr_db", style="points"))])
 
@@ -92,8 +92,8 @@ def findings_of(rows):
     changes = [f"From {a} to {b} the PSNR changes by {spread(psnr[b] - psnr[a])}." for a, b in
                (("e6m13", "e6m15"), ("e8m15", "e8m21"), ("e6m15", "e8m15"))]
     return [f"spa22 (e6m15) has a PSNR of {text(spa, 'psnr_db')} dB, fp32 has {text(fp32, 'psnr_db')} dB; "
-            f"{text(spa, 'share_over', 100, 2)} % of spa22's pixels and {text(fp32, 'share_over', 100, 2)} % of fp32's are off by more "
-            f"than 1/255; spa22 takes {text(spa, 'measured_ratio_to_fp32', 1, 2)} "
+            f"{text(spa, 'share_over', 100, 2)} % of spa22's pixels and {text(fp32, 'share_over', 100, 2)} % of fp32's have an error above "
+            f"1/255; spa22 takes {text(spa, 'measured_ratio_to_fp32', 1, 2)} "
             "times fp32's kernel time (measured).",
             f"Rounding to nearest has a higher PSNR than truncation in {(gains > 0).sum()} of {len(gains)} pairs of the same "
             f"format and scene: {spread(gains)}.", *changes]

@@ -1,17 +1,17 @@
-"""Tests and steps a ray in uniform grids, compared with Havran & Sixta 1999
+"""Tests and steps per ray in uniform grids, compared with Havran & Sixta 1999
 
 Does raya's grid need as many tests and steps as the grid of Havran & Sixta on the same scenes?
 
 - Source: Havran & Sixta 1999, uniform grids with 3D-DDA; scenes balls and lattice of SPD (Haines 1987).
-- One PE of grande in fp32, {size} x {size} rays through pixel corners{spd}, tree depth {depth} with the eye ray as 1, as SPD prescribes.
-  The grid divides the bounding box of the whole scene.
-- Rays: every eye, reflected, refracted and shadow ray, whether it enters the bounding box or not. Tests: of any ray with spheres, polygons and
-  cylinders. Steps: voxels that rays enter, including the first one. Walks: rays that enter the grid's bounding box.
+- One PE of raya's machine grande in fp32, {size} x {size} rays through pixel corners{spd}. Ray trees have depth {depth}, counting the eye ray, as SPD
+  prescribes. The grid divides the bounding box of the whole scene.
+- Rays: all eye, reflected, refracted and shadow rays, also those that miss the bounding box. Tests: of any ray with spheres, polygons and cylinders.
+  Steps: voxels that rays enter, including the first one of each ray. Walks: rays that enter the bounding box.
 - Possible differences: raya has no mailboxing, so a ray tests an object in each voxel that contains it; a shadow ray ends at the first
-  object found that blocks the light; objects are registered with a margin for rounding. We do not know what Havran & Sixta do in
+  object found that blocks the light; objects are registered with a margin for rounding errors. We do not know what Havran & Sixta do in
   these cases, nor whether they count the first voxel.
-- Output: havran.csv has a row for each scene and grid: entries of objects beyond their first (copies), counts of rays, tests and steps,
-  and the measured time of a render (ms).
+- Output: havran.csv has a row for each scene and grid: entries of objects in voxel lists beyond the first one (copies), counts of rays, tests and
+  steps, and the measured time of a render (ms).
 """
 import math
 
@@ -20,7 +20,7 @@ import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, papers, series_by, study
 from raya.lab.voxels import run_cases, run_in_one_pe
 
-BOUNCES, SPD_SIZE = 4, 513  # the eye ray is depth 1 of 5
+BOUNCES, SPD_SIZE = 4, 513  # BOUNCES: SPD's depth of 5, without the eye ray
 COLUMNS = ("scene", "A x B x C", "copies", "tests", "steps", "measured (ms)")
 
 
@@ -51,8 +51,8 @@ def havran(lab, scenes):
                  *(finding_of_finer(a, b) for (_, a), (_, b) in zip(rows.iterrows(), rows[1:].iterrows())
                    if a["scene"] == b["scene"])],
                 [c for _, row in rows.iterrows() for c in comparisons_of(row)],
-                tables=[Table("havran", "Counts", table)],
-                plots=[Plot("havran", "Tests against steps a ray", "steps a ray", "tests a ray",
+                tables=[Table("havran", "Counts for each scene and grid", table)],
+                plots=[Plot("havran", "Tests per ray against steps per ray", "steps per ray", "tests per ray",
                             series_by(rows, "scene", "steps", "tests", style="points") + published, "xy")],
                 compared_with=papers.GRID,
                 placeholders={"spd": "" if size == SPD_SIZE else " (SPD: 513 x 513)", "depth": BOUNCES + 1})
@@ -66,17 +66,17 @@ def row_of(run, grid):
 
 def comparisons_of(row):
     name = f"{row['scene']} {row['sides']}"
-    yield Comparison(f"{name}: tests a ray", "", row["their tests"], row["tests"])
-    yield Comparison(f"{name}: steps a ray", "", row["their steps"], row["steps"],
+    yield Comparison(f"{name}: tests per ray", "", row["their tests"], row["tests"])
+    yield Comparison(f"{name}: steps per ray", "", row["their steps"], row["steps"],
                      f"{row['beyond']:.2f} without the first voxel of each walk")
 
 
 def finding_of(known, what):
     if not len(known):
-        return f"{what.capitalize()} a ray: no figures are published for these grids."
+        return f"{what.capitalize()} per ray: Havran & Sixta published no figures for these grids."
     ratios = ", ".join(f"{row[what] / row[f'their {what}']:.2f} ({row['scene']} {row['sides']})"
                        for _, row in known.iterrows())
-    return f"{what.capitalize()} a ray are {ratios} times those of Havran & Sixta."
+    return f"{what.capitalize()} per ray are {ratios} times those of Havran & Sixta."
 
 
 def finding_of_finer(coarse, fine):

@@ -3,15 +3,15 @@
 Into how many groups that share the screen should the nodes be divided, and which numbers of groups fit in memory?
 
 - Source: Yoshitani & Yamazaki, about 1995, mention the combination (Harada et al. 1995, their reference [1]) and do not try it.
-- {nodes} nodes in G groups. Each group is a 3-D torus of {nodes} / G nodes, holds the whole scene and renders the pixels p with p mod G =
-  g at {size} x {size}, where p counts row by row: as in a cyclic mapping, each row is shifted by {size} mod G relative to the row above.
-  fp32. All nodes of a group make primary rays, and are charged for those that they make and discard.
-- Each group divides the scene into the same voxels, laid out cyclically on its nodes, so that the work is the same for every G. G = 1
+- {nodes} nodes in G groups, fp32. Each group is a 3-D torus of {nodes} / G nodes and holds the whole scene. Of {size} x {size} pixels, numbered row
+  by row, group g renders those with number mod G = g; so each row is shifted by {size} mod G relative to the row above, as in a cyclic mapping.
+  Every node of a group creates primary rays; the time model includes those that it then discards because they belong to other nodes.
+- Each group divides the scene into the same voxels and assigns them cyclically to its nodes, so that the work is the same for every G. G = 1
   divides only space; G = {nodes} divides only the screen.
-- The machine's time is that of its slowest group. Speed-up is relative to one node that has all pixels and the same voxels. The transfer
-  of pixels from the groups' roots to the host is not modelled.
-- Memory of the fullest node (bytes): its part of the scene; this part with the shortest queue and mailboxes that a hit can need; this part
-  with the queue and mailboxes of this study.
+- The machine's time is that of its slowest group. Speed-up is relative to one node that has all pixels and the same voxels. The transfer of
+  pixels to the host from the roots of the groups, the nodes connected to it, is not modelled.
+- Memory of the node that needs most (bytes): for its part of the scene; for this part with the shortest queue and mailboxes with which the node can
+  process every hit; for this part with the queue and mailboxes of this study.
 - Output: hybrid.csv (modelled times in ms, speed-ups, counts) and hybrid-memory.csv have a row for each scene, grid and number of groups.
 """
 import numpy as np
@@ -20,8 +20,8 @@ import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, series_by, study
 from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers_of_two, run_on_torus, sides_text
 
-NODES, SIDES = 64, (4, 8)  # SIDES: voxels along each axis of the grid of a group: as in the paper, and a finer grid
-MEMORIES = {"32 KB": 32 * 1024, "4 MB": 4 * 1024 * 1024}  # of a node: that of a PE of the SPA; that of a transputer board
+NODES, SIDES = 64, (4, 8)  # SIDES: voxels along each axis of the grid of a group: as in the paper; a finer grid
+MEMORIES = {"32 KB": 32 * 1024, "4 MB": 4 * 1024 * 1024}  # bytes of a node: as a PE of the SPA; as a transputer board
 
 
 def row_of(lab, scene, size, sides, groups):
@@ -36,25 +36,25 @@ def row_of(lab, scene, size, sides, groups):
             "hops a packet": sum(run.hops for run in runs) / max(1, sum(run.packets for run in runs)),
             "supersteps": max(run.supersteps for run in runs),
             "tests a ray": sum(run.tests for run in runs) / max(1, sum(run.rays for run in runs)),
-            "rays discarded": sum(run.discarded for run in runs), "its part of the scene (bytes)": memory["scene"],
-            "with the shortest buffers (bytes)": memory["shortest"], "with the study's (bytes)": memory["used"],
+            "rays discarded": sum(run.discarded for run in runs), "part of the scene (bytes)": memory["scene"],
+            "scene and shortest buffers (bytes)": memory["shortest"], "scene and this study's buffers (bytes)": memory["used"],
             "work": sum(run.work_ms for run in runs)}
 
 
 def rows_of(lab, scene, size, sides):
     """Returns a table with a row for each number of groups: 1, 2, 4, ..."""
     rows = pd.DataFrame([row_of(lab, scene, size, sides, groups) for groups in powers_of_two(NODES)])
-    # With one node per group no node sends messages or discards rays, so the sum of work is that of one node that renders all pixels.
+    # In groups of one node no node sends messages or discards rays, so the sum of work is that of one node that renders all pixels.
     for bound in ("overlapped", "stepwise"):
         rows[f"speed-up, {bound}"] = rows["work"].iloc[-1] / rows[f"{bound} (ms)"]
     for name, size in MEMORIES.items():
-        rows[f"fits {name}"] = np.where(rows["with the shortest buffers (bytes)"] <= size, "yes", "no")
+        rows[f"fits {name}"] = np.where(rows["scene and shortest buffers (bytes)"] <= size, "yes", "no")
     return rows
 
 
 @study("hybrid")
 def hybrid(lab, scenes):
-    size = lab.size(72)  # 64 + 8: with 64 groups each row is shifted by 8, the square root of their number, the best offset
+    size = lab.size(72)  # 64 + 8: with 64 groups each row is shifted by 8, the square root of 64, the best offset
     chosen_scenes = scenes or [even_scene(8320), raya.example("centre"), balls_scene(3)]
     every = [rows_of(lab, scene, size, sides) for scene in chosen_scenes for sides in SIDES]
     rows = pd.concat(every, ignore_index=True)
@@ -63,21 +63,21 @@ def hybrid(lab, scenes):
     times = rows[head + ["nodes a group", "overlapped (ms)", "stepwise (ms)", "speed-up, overlapped",
                          "speed-up, stepwise", "u over all nodes", "most messages (ms)", "hops a packet", "supersteps",
                          "tests a ray", "rays discarded"]]
-    memory = rows[head + ["its part of the scene (bytes)", "with the shortest buffers (bytes)",
-                          "with the study's (bytes)", "fits 32 KB", "fits 4 MB"]]
+    memory = rows[head + ["part of the scene (bytes)", "scene and shortest buffers (bytes)",
+                          "scene and this study's buffers (bytes)", "fits 32 KB", "fits 4 MB"]]
     return Page({"scenes": [scene.name for scene in chosen_scenes], "size": size, "nodes": NODES, "voxels": list(SIDES),
                  "links": "torus3d", "format": "fp32", "bounces": BOUNCES}, findings_of(every),
                 [Comparison(f"best G, {one['scene'][0]}, {one['voxels'][0]} voxels", "groups", None, best,
-                            "modelled, overlapped, without a memory limit") for one, best in zip(every, best_groups)],
+                            "shortest overlapped time, modelled without a memory limit") for one, best in zip(every, best_groups)],
                 tables=[Table("hybrid", "Time of the whole machine", times),
-                        Table("hybrid-memory", "Memory of the fullest node", memory)], plots=plots_of(rows),
-                news=[f"Screen and space division combined, as by Harada et al. (1995): {NODES} nodes with unlimited memory are fastest in "
-                      f"{min(best_groups)} to {max(best_groups)} groups, of which each holds the whole scene."],
+                        Table("hybrid-memory", "Memory of the node that needs most", memory)], plots=plots_of(rows),
+                news=[f"Screen and space division combined, as by Harada et al. (1995): {NODES} nodes with unlimited memory are fastest if they form "
+                      f"{min(best_groups)} to {max(best_groups)} groups that each hold the whole scene."],
                 clock=CLOCK)
 
 
 def size_text(size):
-    """'1.6 KB'; rounded up, because it is a requirement."""
+    """Returns, for example, '1.6 KB'; rounded up, because it is a requirement."""
     for unit, scale in (("GB", 1 << 30), ("MB", 1 << 20), ("KB", 1 << 10)):
         if size >= scale:
             return f"{np.ceil(10 * size / scale) / 10:.1f} {unit}"
@@ -89,7 +89,7 @@ def findings_of(every):
         return "; ".join(f"{r['scene'][0]}{with_voxels.format(r['voxels'][0])}: {text(r)}" for r in every)
 
     def balance(r):
-        return "{:.2f} to {:.2f}".format(*r["u over all nodes"].iloc[[0, -1]])
+        return "{:.2f} and {:.2f}".format(*r["u over all nodes"].iloc[[0, -1]])
 
     def best(bound):
         def text(r):
@@ -102,19 +102,19 @@ def findings_of(every):
         def text(r):
             fit = r[r[f"fits {name}"] == "yes"]
             if not len(fit):
-                return f"no G (one group needs {size_text(r['with the shortest buffers (bytes)'][0])} a node)"
+                return f"no G (one group needs {size_text(r['scene and shortest buffers (bytes)'][0])} per node)"
             if len(fit) == len(r):
-                return "any G"
+                return "every G"
             i = fit["overlapped (ms)"].idxmin()
-            return (f"G = {', '.join(map(str, fit['groups']))}, the best of them {r['groups'][i]}, speed-up "
+            return (f"G = {', '.join(map(str, fit['groups']))}; the best of these is {r['groups'][i]} with a speed-up of "
                     f"{r['speed-up, overlapped'][i]:.1f}")
         return text
 
-    return [f"The best number of groups on {NODES} nodes without a memory limit, overlapped: "
+    return [f"The number of groups of {NODES} nodes with the shortest overlapped time, without a memory limit: "
             f"{for_each_scene(best('overlapped'), ' with {} voxels')}.",
-            f"The best number of groups without a memory limit, stepwise: {for_each_scene(best('stepwise'))}.",
-            *(f"Numbers of groups that fit nodes of {name}, with the shortest buffers that work: {for_each_scene(memory(name))}."
-              for name in MEMORIES), f"u over all nodes, from one group to a group for each node: {for_each_scene(balance)}."]
+            f"The number of groups with the shortest stepwise time, without a memory limit: {for_each_scene(best('stepwise'))}.",
+            *(f"Numbers of groups that fit in nodes of {name}, with the shortest buffers: {for_each_scene(memory(name))}."
+              for name in MEMORIES), f"Imbalance u over all nodes, with one group and with {NODES} groups: {for_each_scene(balance)}."]
 
 
 def plots_of(rows):
@@ -126,6 +126,6 @@ def plots_of(rows):
     limits = [Series(name, [1, NODES], [size, size]) for name, size in MEMORIES.items()]
     return [*(plot(name, f"Speed-up against the number of groups, {bound}", "speed-up, modelled", f"speed-up, {bound}")
               for name, bound in (("hybrid", "overlapped"), ("hybrid-stepwise", "stepwise"))),
-            plot("hybrid-balance", "Imbalance over the nodes of all groups", "u", "u over all nodes"),
-            plot("hybrid-memory", "The fullest node, with the shortest buffers", "bytes",
-                 "with the shortest buffers (bytes)", "xy", limits)]
+            plot("hybrid-balance", "Load imbalance over the nodes of all groups", "u = (max load - mean load) / mean load", "u over all nodes"),
+            plot("hybrid-memory", "Memory of the node that needs most, with the shortest buffers", "memory (bytes)",
+                 "scene and shortest buffers (bytes)", "xy", limits)]

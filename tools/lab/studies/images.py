@@ -3,14 +3,14 @@
 Is the cyclic mapping good for every image, or only for the one that Kohata & Ito analyse?
 
 - Source: Kohata & Ito 1993, section on the experiments.
-- Each scene on {pes} PEs of the SPA, column split and p = sqrt(P) = {offset}; first pass.
-- If the image is wider than the array, the fold is cyclic: PE i has the slots i, i + P, ...
-- Efficiency = mean load / largest load of computing, without communication; it needs no clock. Kohata & Ito had several images of 6 to 30
-  objects. Their scenes are not known; ours have {fewest} to {most} objects.
-- {ensemble}; {finer} of them also at twice the size.
-- The correlation of neighbours is that of the cost of a pixel and of its right neighbour, over all pixels of a picture.
-- Another problem: {windows} windows of the Mandelbrot set, {pes} x {pes} points, with the iterations of a point (at most {iterations}) as its
-  cost. This cost does not come from the engine. Windows: centres and widths at random (seed {seed}), on the set's boundary.
+- The first pass of each scene on {pes} PEs of the SPA, with the column split (p = 0) and with the cyclic mapping (p = sqrt(P) = {offset}).
+- If the image has more columns than there are PEs, PE i owns the columns i, i + P, ... of row 0 (cyclic fold).
+- Efficiency is mean load / maximum load of computing, without communication, so it does not depend on a clock model. Kohata & Ito had several
+  images of 6 to 30 objects. Their scenes are not known; ours have {fewest} to {most} objects.
+- Ensemble: {ensemble}; {finer} of them also at twice the size.
+- The correlation of neighbours is that between the cost of a pixel and the cost of its right neighbour, over all pixels of a picture.
+- Another problem: {windows} windows of the Mandelbrot set, {pes} x {pes} points. The cost of a point is its number of iterations, at most
+  {iterations}, computed without raya's kernels. Each window has a random width and a random centre on the set's boundary (seed {seed}).
 - Output: images.csv has a row for each image, images-groups.csv one for each group of images. u = (max load - mean load) / mean load; columns
   +- are half widths of 95 % intervals.
 """
@@ -19,7 +19,7 @@ import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, above, estimate, every, judged, papers, proportion, study, with_paper
 
-FINER_VIEWS, WINDOWS, ITERATIONS = 108, 24, 1000  # pictures at twice the size; windows of the Mandelbrot set and their maximum iterations
+FINER_VIEWS, WINDOWS, ITERATIONS = 108, 24, 1000  # numbers of pictures at twice the size and of Mandelbrot windows; maximum iterations of a point
 ALIKE, STRONGLY, HIGH, SHARE = 0.8, 2, 0.8, 0.95  # bounds of neighbours-alike; columns-vary; cyclic-is-high; cyclic-is-high and gain-for-all
 
 
@@ -57,7 +57,7 @@ def mandelbrot(side, seed):
 
 
 def correlation(image):
-    """Returns the correlation of the cost of a pixel and of its right neighbour; 1 for equal costs."""
+    """Returns the correlation between the cost of a pixel and the cost of its right neighbour; 1 if all costs are equal."""
     left, right = image[:, :-1].ravel().astype(float), image[:, 1:].ravel().astype(float)
     return float(np.corrcoef(left, right)[0, 1]) if left.std() and right.std() else 1.0
 
@@ -80,7 +80,7 @@ def images(lab, scenes):
                 comparisons_of(rows, split_column, cyclic_column, pes),
                 claims_of(ensemble, finer, windows, pes, p) if not scenes else [],
                 [table_of_groups(groups, split_column, cyclic_column),
-                 Table("images", "Imbalance and efficiency of each image", rows)],
+                 Table("images", "Load imbalance and efficiency of each image", rows)],
                 plots_of(rows, groups, split_column, cyclic_column, pes, p),
                 [f"The cyclic mapping also balances another problem: over {WINDOWS} windows of the Mandelbrot set its mean efficiency is "
                  f"{groups['Mandelbrot windows'][cyclic_column].mean():.2f}, that of the column split {groups['Mandelbrot windows'][split_column].mean():.2f}."], compared_with=papers.SPA,
@@ -102,7 +102,7 @@ def claims_of(ensemble, finer, windows, pes, p):
                    f"u({p}) is lower than u(0) in {gains[0].sum()} of {len(gains[0])} pictures and, at twice the size, in {gains[1].sum()} of "
                    f"{len(gains[1])}."),
             judged("neighbours-alike", above(alike, ALIKE, families), about,
-                   f"The correlation is {estimate(alike, families).text()}, the lowest one {alike.min():.2f}."),
+                   f"The mean correlation is {estimate(alike, families).text()}, the lowest one {alike.min():.2f}."),
             judged("columns-vary", above(deviation[:, 0] - STRONGLY * deviation[:, 1], 0, families), about,
                    f"The mean absolute deviation of the efficiency is {deviation[:, 0].mean():.3f} for the column split and "
                    f"{deviation[:, 1].mean():.3f} for the cyclic mapping."),
@@ -110,7 +110,7 @@ def claims_of(ensemble, finer, windows, pes, p):
                    f"{high.sum()} of {len(high)} pictures have an efficiency of {HIGH} or more; the lowest is {efficiency[worst, 1]:.3f}, "
                    f"{ensemble.pictures[worst].label}."),
             judged("other-problems", above(windows[:, 0] - windows[:, 1], 0), f"{len(windows)} windows of the Mandelbrot set",
-                   f"u falls by {estimate(windows[:, 0] - windows[:, 1]).text()} from p = 0 to p = {p}, to {estimate(windows[:, 1]).text()}.")]
+                   f"The mean u falls by {estimate(windows[:, 0] - windows[:, 1]).text()} from p = 0 to {p}, to {estimate(windows[:, 1]).text()}.")]
 
 
 def table_of_groups(groups, split_column, cyclic_column):
@@ -120,19 +120,19 @@ def table_of_groups(groups, split_column, cyclic_column):
         table[name], table[f"{name}, +-"] = [m.mean for m in means], [m.half for m in means]
         for which, extreme in (("least", min), ("largest", max)):
             table[f"{name}, {which}"] = [extreme(rows[column]) for rows in groups.values()]
-    return Table("images-groups", "Mean efficiencies, with intervals of 95 %", table)
+    return Table("images-groups", "Mean efficiency of each group of images, with 95 % intervals", table)
 
 
 def findings_of(groups, rows, split_column, cyclic_column, p):
-    means = "; ".join(f"{estimate(g[split_column]).text()} and {estimate(g[cyclic_column]).text()} of {len(g)} {label}"
+    means = "; ".join(f"{estimate(g[split_column]).text()} and {estimate(g[cyclic_column]).text()} for {label} ({len(g)} images)"
                       for label, g in groups.items())
     worst = rows.loc[rows[cyclic_column].idxmin()]
     worse = (rows[split_column] > rows[cyclic_column]).sum()
     size = "{0} x {0}".format(worst["side (pixels)"])
     rest = (f"The column split is better for {worse} of {len(rows)} images." if worse else
             f"The cyclic mapping is at least as good as the column split on all {len(rows)} images.")
-    return [f"Mean efficiency of p = 0 and of the cyclic mapping: {means}.",
-            f"On the scenes' own pictures the efficiency is {rows[split_column].min():.3f} to {rows[split_column].max():.3f} with "
+    return [f"Mean efficiency of the column split and of the cyclic mapping: {means}.",
+            f"In the scenes' own views the efficiency is {rows[split_column].min():.3f} to {rows[split_column].max():.3f} with "
             f"the column split and {rows[cyclic_column].min():.3f} to {rows[cyclic_column].max():.3f} with p = {p}.",
             f"The cyclic mapping's lowest efficiency is {worst[cyclic_column]:.3f}, for {worst['scene']} at {size}; there the column split "
             f"has {worst[split_column]:.3f}. {rest}"]
@@ -142,12 +142,12 @@ def comparisons_of(rows, split_column, cyclic_column, pes):
     first = rows.iloc[0]
     same = pes == papers.PES and first["scene"] == "centre" and first["side (pixels)"] == papers.SIZE
     name = "{0} at {1} x {1}".format(first["scene"], first["side (pixels)"])
-    source = "of their most unbalanced image" if same else ""
+    source = "Kohata & Ito: their most unbalanced image" if same else ""
     return [*with_paper(same, [Comparison(f"{name}, p = 0", "", papers.EFFICIENCY_0, first[split_column], source, True),
                                Comparison(f"{name}, cyclic", "", papers.EFFICIENCY_16, first[cyclic_column], source, True)]),
-            Comparison("lowest of all, p = 0", "", None, rows[split_column].min(), "Kohata & Ito: varies strongly"),
+            Comparison("lowest of all, p = 0", "", None, rows[split_column].min(), "Kohata & Ito: differs strongly between images"),
             Comparison("highest of all, p = 0", "", None, rows[split_column].max()),
-            Comparison("lowest of all, cyclic", "", None, rows[cyclic_column].min(), "Kohata & Ito: high for all"),
+            Comparison("lowest of all, cyclic", "", None, rows[cyclic_column].min(), "Kohata & Ito: high for all images"),
             Comparison("highest of all, cyclic", "", None, rows[cyclic_column].max())]
 
 
@@ -158,10 +158,10 @@ def plots_of(rows, groups, split_column, cyclic_column, pes, p):
               for offset, column in ((p, cyclic_column), (0, split_column))
               for side, image_rows in rows.groupby("side (pixels)", sort=False)]
     if pes == papers.PES and rows["scene"].iloc[0] == "centre":
-        series.append(Series("Kohata & Ito, their worst image", [1, 1], [papers.EFFICIENCY_0, papers.EFFICIENCY_16],
+        series.append(Series("Kohata & Ito, their most unbalanced image", [1, 1], [papers.EFFICIENCY_0, papers.EFFICIENCY_16],
                              "paper"))
     distributions = [Series(f"{name}, {label}", 100 * np.arange(1, len(image_rows) + 1) / len(image_rows), np.sort(image_rows[column]), "steps")
                      for label, image_rows in groups.items() if not label.startswith("scenes") for name, column in (("cyclic", cyclic_column), ("p = 0", split_column))]
-    return [Plot("images", "Efficiency over the scenes", "scene", "efficiency", series, x_names=names),
-            Plot("images-groups", "Distribution of the efficiency over the pictures", "pictures in ascending order of efficiency (%)",
+    return [Plot("images", "Efficiency of each scene", "scene", "efficiency", series, x_names=names),
+            Plot("images-groups", "Distribution of the efficiency over the pictures", "pictures with at most this efficiency (%)",
                  "efficiency", distributions)]

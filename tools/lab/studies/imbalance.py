@@ -1,4 +1,4 @@
-"""Figs 8 and 13 of Kohata & Ito 1993: the imbalance u of each offset, in one picture and in many, and the lattice of each offset."""
+"""Figs 8 and 13 of Kohata & Ito 1993: the load imbalance u at each offset, of one picture and of many pictures."""
 import numpy as np
 import pandas as pd
 import raya
@@ -7,31 +7,31 @@ from raya.lab import (Comparison, Page, Plot, Series, Table, above, bonferroni_c
 from raya.lab.mappings import shortest_square
 
 U_AND_PICTURES = """
-- u = (max load - mean load) / mean load, from one cost image. The load of a PE is the sum of its pixels' modelled cycles. u needs no
-  clock.
-- {ensemble}. The camera of a view keeps its distance; its direction is uniform on the sphere between 5 and 75 degrees above its target.
-- Offsets are compared within the same pictures. A mean is that of the families' means; its interval contains the variation within
-  the families, and the table of the families the variation between them."""
+- The load of a PE is the sum of the modelled cycles of its pixels. The load imbalance u = (max load - mean load) / mean load needs no clock rate.
+- Ensemble: {ensemble}. In all families but cluster, whose camera is fixed, the camera keeps its distance and looks at its target from a random
+  direction, 5 to 75 degrees above it.
+- All offsets are applied to the same pictures. A mean is the mean of the families' means. Its 95 % interval contains the variation within the
+  families; the table of the families shows the variation between them."""
 
-PROSE_8 = """Fig. 8: imbalance against the offset
+PROSE_8 = """Fig. 8: load imbalance against the offset
 
-Which offset of the cyclic mapping spreads the load best?
+Which offset p of the cyclic mapping spreads the load best?
 
-- Source: Kohata & Ito 1993, Fig. 8; u(0) and u(16) are derived from Table 3.
-- {size} x {size} pixels on {pes} PEs of the SPA, a PE for each column; first pass. The picture of the plots is {scene}.""" + U_AND_PICTURES + """
-- Output: fig8.csv has a row for each offset p: u of the picture; mean u of the ensemble, +- the half width of its 95 % interval; least and
-  largest u of the ensemble; shortest vector of the lattice (pixels). fig8-near.csv has the offsets 0..n, n = sqrt(P)."""
+- Source: Kohata & Ito 1993, Fig. 8. We derived the paper's u(0) and u(16) from the times in its Tables 2 and 3.
+- {size} x {size} pixels on {pes} PEs of the SPA, one PE per column; first pass. The single picture is scene {scene}.""" + U_AND_PICTURES + """
+- Output: fig8.csv has a row for each offset p: u of the single picture; mean u of the ensemble and half the width of its interval (+-); least and
+  largest u of the ensemble; shortest distance of two pixels of one PE. fig8-near.csv has only the offsets 0..n, n = sqrt(P) for P PEs."""
 
-PROSE_13 = """Fig. 13: imbalance against the offset in supersampling
+PROSE_13 = """Fig. 13: load imbalance against the offset in supersampling
 
-Does the offset that suits the first pass suit supersampling as well?
+Does the offset that balances the first pass best also balance supersampling?
 
 - Source: Kohata & Ito 1993, Fig. 13.
-- {size} x {size} pixels on {pes} PEs of the SPA, a PE for each column; supersampling, without the first pass. The picture of the plots is
-  {scene}.""" + U_AND_PICTURES + """
+- {size} x {size} pixels on {pes} PEs of the SPA, one PE per column. The loads are those of supersampling, without the first pass. The
+  single picture is scene {scene}.""" + U_AND_PICTURES + """
 - Output: fig13.csv and fig13-near.csv, with the columns of fig8.csv."""
 
-GOOD_FRACTION, UNEVEN = 0.9, 0.5  # bounds of the claims good-at-8 and contours-uneven
+GOOD_FRACTION, UNEVEN = 0.9, 0.5  # good-at-8: minimum fraction of the best fall of u; contours-uneven: minimum mean u(0)
 
 
 def page_of(name, lab, scenes, first_pass):
@@ -53,8 +53,8 @@ def page_of(name, lab, scenes, first_pass):
                 findings_of(u, picture_u, ensemble.families, means, n),
                 comparisons_of(rows, picture_u, n, in_paper),
                 claims_of(picture_u, ensemble, n, first_pass) if not scenes else [],
-                [Table(f"{name}-near", f"Offsets 0..{n}: the picture's u and that of {len(picture_u)} pictures", near),
-                 Table(name, "Imbalance for each offset", rows, on_page=False),
+                [Table(f"{name}-near", f"Load imbalance u at the offsets 0..{n}: {scene.name}, and {len(picture_u)} pictures", near),
+                 Table(name, "Load imbalance u at each offset", rows, on_page=False),
                  table_of_families(name, picture_u, ensemble.families, n)],
                 plots_of(name, scene.name, phase, rows, near, len(picture_u), in_paper),
                 placeholders={"ensemble": ensemble.description}, compared_with=papers.SPA)
@@ -65,11 +65,11 @@ def table_of_families(name, picture_u, families, n):
     rows = [{"family": family, "pictures": families.count(family),
              **{f"u({p})": picture_u[np.array(families) == family, p].mean() for p in (0, n // 2, 3 * n // 4, n)},
              f"best of 0..{n}": int(picture_u[np.array(families) == family, :n + 1].mean(0).argmin())} for family in names]
-    return Table(f"{name}-families", "Mean u of each family, and the offset with the lowest mean", rows)
+    return Table(f"{name}-families", "Mean u of each family at four offsets, and the offset with the lowest mean u", rows)
 
 
 def against_n(picture_u, families, n, confidence=0.95):
-    """Returns estimates of u(p) - u(n) for p = 0..n - 1, in the same picture."""
+    """Returns an estimate of u(p) - u(n) for each p = 0..n - 1. Each difference is taken within the same picture."""
     return [estimate(picture_u[:, p] - picture_u[:, n], families, confidence) for p in range(n)]
 
 
@@ -80,19 +80,19 @@ def best_sentence(picture_u, families, n):
     lowest = int(means.argmin())
     plateau = [p for p in range(n + 1) if p not in worse]
     gap = estimate(picture_u[:, lowest] - picture_u[:, n], families)
-    return (f"The lowest mean u of 0..{n} is that of p = {lowest}; it differs from that of p = {n} by {gap.text(4)}. With all {n} differences "
-            f"together at 95 %, {len(worse)} offsets are worse than p = {n} and {len(better)} better; p = "
-            f"{', '.join(map(str, plateau))} cannot be distinguished from it or are better. p = {n} is the best of 0..{n} in "
+    return (f"Of the offsets 0..{n}, p = {lowest} has the lowest mean u; this mean minus that of p = {n} is {gap.text(4)}. With 95 % confidence "
+            f"in all {n} differences together, {len(worse)} offsets have a higher mean u than p = {n}, and {len(better)} a lower one. The mean u "
+            f"is not significantly higher than that of p = {n} for p = {', '.join(map(str, plateau))}. p = {n} has the lowest u of 0..{n} in "
             f"{(picture_u[:, n] <= picture_u[:, :n + 1].min(1)).sum()} of {len(picture_u)} pictures.")
 
 
 def claims_of(picture_u, ensemble, n, first_pass):
     families, about = ensemble.families, ensemble.description
     gain = picture_u[:, 0] - picture_u[:, n]
-    text = f"u falls by {estimate(gain, families).text()} from p = 0 to p = {n} in the same picture."
+    text = f"From p = 0 to p = {n}, u of the same picture falls by {estimate(gain, families).text()} in the mean."
     if not first_pass:
-        uneven = picture_u[:, 0]
-        return [judged("contours-uneven", above(uneven, UNEVEN, families), about, f"Mean u(0) is {estimate(uneven, families).text()}."),
+        u_0 = picture_u[:, 0]
+        return [judged("contours-uneven", above(u_0, UNEVEN, families), about, f"The mean of u(0) is {estimate(u_0, families).text()}."),
                 judged("supersampling-balances", above(gain, 0, families), about, text)]
     worse = every(above(picture_u[:, p] - picture_u[:, n], 0, families) for p in range(n))
     best = picture_u[:, :n + 1].min(1)
@@ -101,32 +101,32 @@ def claims_of(picture_u, ensemble, n, first_pass):
     return [judged("cyclic-reduces", above(gain, 0, families), about, text),
             judged("best-is-n", worse, about, best_sentence(picture_u, families, n)),
             judged("good-at-8", above(half - GOOD_FRACTION * gains, 0, families), about,
-                   f"From p = 0 u falls by {estimate(half, families).text()} with p = {n // 2}, and by {estimate(gains, families).text()} with the "
-                   f"best offset of 0..{n}.")]
+                   f"Compared with p = 0, the mean u is lower by {estimate(half, families).text()} with p = {n // 2}, and by "
+                   f"{estimate(gains, families).text()} with the best offset of 0..{n} for each picture.")]
 
 
 def findings_of(u, picture_u, families, means, n):
     half, best = 8 % len(u), 16 % len(u)  # the offsets p = 8 and p = 16 of the paper
-    return [f"Over {len(picture_u)} pictures u is {means[0].text()} at p = 0, {means[half].text()} at p = 8 and "
+    return [f"The mean u of {len(picture_u)} pictures is {means[0].text()} at p = 0, {means[half].text()} at p = 8 and "
             f"{means[best].text()} at p = 16.",
             best_sentence(picture_u, families, n),
-            f"In the picture u is {u[0]:.3f} at p = 0, {u[half]:.3f} at p = 8 and {u[best]:.3f} at p = 16. The best of the "
-            f"offsets 0..{n} is p = {u[:n + 1].argmin()}, u = {u[:n + 1].min():.3f}; the best of all {len(u)} is p = "
-            f"{u.argmin()}, u = {u.min():.3f}. {(u < u[best]).sum()} offsets are better than p = 16."]
+            f"In the single picture, u is {u[0]:.3f} at p = 0, {u[half]:.3f} at p = 8 and {u[best]:.3f} at p = 16. The best of the "
+            f"offsets 0..{n} is p = {u[:n + 1].argmin()} with u = {u[:n + 1].min():.3f}; the best of all {len(u)} offsets is p = "
+            f"{u.argmin()} with u = {u.min():.3f}. {(u < u[best]).sum()} offsets have a lower u than p = 16."]
 
 
 def comparisons_of(rows, picture_u, n, in_paper):
-    printed = {0: (papers.IMBALANCE_0, "our scene is calibrated on it: see scenes/README.md"),
-               8: (None, 'the paper: "already good"'), 16: (papers.IMBALANCE_16, papers.IMBALANCE_16_ROUNDING)}
+    printed = {0: (papers.IMBALANCE_0, "our scene is calibrated to this value: see scenes/README.md"),
+               8: (None, 'the paper calls p = 8 "already good"'), 16: (papers.IMBALANCE_16, papers.IMBALANCE_16_ROUNDING)}
     comparisons = []
     for p, (figure, remark) in printed.items():
-        row, single = rows.iloc[p % len(rows)], picture_u[:, p % len(rows)]
-        comparisons += [Comparison(f"u({p}) of the picture", "", figure if in_paper else None, row["u"], remark if in_paper else "", derived=True),
-                        Comparison(f"u({p}), mean of the ensemble", "", None, row["mean u"], f"{range_text(single)} of single pictures",
+        row, p_u = rows.iloc[p % len(rows)], picture_u[:, p % len(rows)]
+        comparisons += [Comparison(f"u({p}) of the single picture", "", figure if in_paper else None, row["u"], remark * in_paper, derived=True),
+                        Comparison(f"u({p}), mean of the ensemble", "", None, row["mean u"], f"range over the pictures: {range_text(p_u)}",
                                    half_width=row["+-"])]
     for offset_rows, paper in ((rows[:n + 1], 16), (rows, None)):
-        what = f"best p of 0..{n}" if paper else f"best p of all {len(rows)}"
-        for column, more in (("u", ", picture"), ("mean u", ", mean of the ensemble")):
+        what = f"p with the lowest u, of 0..{n}" if paper else f"p with the lowest u, of all {len(rows)}"
+        for column, more in (("u", ", single picture"), ("mean u", ", mean of the ensemble")):
             best = offset_rows[column].idxmin()
             comparisons.append(Comparison(what + more, "", paper if in_paper else None, int(best), f"u = {offset_rows[column][best]:.3f}"))
     return comparisons
@@ -134,15 +134,15 @@ def comparisons_of(rows, picture_u, n, in_paper):
 
 def plots_of(name, scene, phase, rows, near, pictures, in_paper):
     mean, few = f"mean of {pictures} pictures", rows[rows["p"] % 4 == 0]
-    paper = [Series("Kohata & Ito, from their tables", [0, 16], [papers.IMBALANCE_0, papers.IMBALANCE_16], "paper")] * in_paper
-    return [Plot(name, f"Imbalance against the offset, {phase}", "offset p (pixels)", "u",
+    paper = [Series("Kohata & Ito, derived from their tables", [0, 16], [papers.IMBALANCE_0, papers.IMBALANCE_16], "paper")] * in_paper
+    return [Plot(name, f"Load imbalance against the offset, {phase}", "offset p (pixels)", "load imbalance u",
                  [Series(mean, near["p"], near["mean u"], half_widths=near["+-"]),
                   Series(f"{scene}, one picture", near["p"], near["u"]),
-                  Series("least of the pictures", near["p"], near["least u"]),
-                  Series("largest of the pictures", near["p"], near["largest u"])] + paper),
-            Plot(f"{name}-all", f"Imbalance against every offset, {phase}", "offset p (pixels)", "u",
+                  Series("lowest u of a picture", near["p"], near["least u"]),
+                  Series("highest u of a picture", near["p"], near["largest u"])] + paper),
+            Plot(f"{name}-all", f"Load imbalance against every offset, {phase}", "offset p (pixels)", "load imbalance u",
                  [Series(mean, rows["p"], rows["mean u"]),
-                  Series("its interval, every fourth", few["p"], few["mean u"], "points", few["+-"]),
+                  Series("95 % interval of the mean, every fourth p", few["p"], few["mean u"], "points", few["+-"]),
                   Series(f"{scene}, one picture", rows["p"], rows["u"])] + paper, log="y")]
 
 

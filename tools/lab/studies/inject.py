@@ -1,17 +1,17 @@
-"""Primary rays from the root or from all nodes
+"""Primary rays made by the root or by all nodes
 
-From how many nodes on is the root the bottleneck?
+From which number of nodes upwards is the root the bottleneck?
 
-- Source: Yoshitani & Yamazaki, about 1995: the root makes and sends all primary rays.
-- {scene} at {size} x {size} on 1 to {nodes} nodes of a 3-D torus, doubling, one voxel a node, fp32.
-- Method root: the root makes all primary rays, one after another, and sends each to the node where it enters the bounding box, as in
-  Yoshitani & Yamazaki. Method all: every node makes the rays that enter at its voxel, and is charged for those that it makes and discards.
-  With both methods ray packets have 16 words, and each term of a ray is a return.
-- The root's time is the larger of its processor's time (computing and messages) and its busiest link's. With both methods the contributions
-  to pixels return to the root.
-- A single node has the whole scene in one voxel and is its own root. A speed-up above the number of nodes is therefore due to the grid.
-- Output: inject.csv has a row for each number of nodes and method: supersteps, modelled times (ms), the root's share (%), bytes over the
-  busiest link, and counts.
+- Source: Yoshitani & Yamazaki, about 1995: the root (the node that is connected to the host) makes and sends all primary rays.
+- Scene {scene}, {size} x {size} pixels, on 3-D tori of 1, 2, 4, ... {nodes} nodes with one voxel per node, in fp32.
+- Method root, as in Yoshitani & Yamazaki: the root makes all primary rays, one after another, and sends each to the node where it enters the
+  scene's bounding box. Method all: every node makes the rays that enter at its voxel. A node also makes rays that enter elsewhere; it discards
+  them, but the model charges their time. In both methods a ray packet has 16 words, and each contribution of a ray to its pixel is a packet (a
+  return).
+- The root's time is that of its processor (computing and messages) or of its busiest link, whichever is longer. It receives all returns.
+- A single node is its own root and has the whole scene in one voxel. More nodes have a finer grid, so speed-ups can exceed the number of nodes.
+- Output: inject.csv has a row for each number of nodes and method: supersteps, modelled times (ms), the root's time in % of the overlapped time,
+  bytes over the busiest link, and numbers of packets, rays and hops.
 """
 from raya.lab import Page, Plot, Series, Table, series_by, study, tail_where
 from raya.lab.voxels import BOUNCES, CLOCK, even_scene, near_cube, powers_of_two, run_cases, run_on_torus
@@ -31,46 +31,46 @@ def inject(lab, scenes):
     root, all_nodes = (rows[rows["inject"] == method].reset_index() for method in ("root", "all"))
     return Page({"scene": scene.name, "size": size, "nodes": MAX_NODES, "links": "torus3d", "format": "fp32",
                  "bounces": BOUNCES}, findings_of(root, all_nodes),
-                tables=[Table("inject", "Primary rays from the root and from all nodes",
+                tables=[Table("inject", "Time and work with primary rays made by the root and by all nodes",
                               rows.drop(columns=["primary", "run"]))],
-                plots=[Plot("inject", "Time against the number of nodes", "nodes", "modelled time (ms)",
+                plots=[Plot("inject", "Time against the number of nodes", "number of nodes", "modelled time (ms)",
                             [Series(f"{method_rows['inject'][0]}, {bound}", method_rows["nodes"], method_rows[f"{bound} (ms)"])
                              for method_rows in (root, all_nodes) for bound in ("overlapped", "stepwise")], "xy"),
-                       Plot("inject-root", "The root's share of the time", "nodes", "root / overlapped (%)",
+                       Plot("inject-root", "Time of the root in % of the overlapped time", "number of nodes", "root / overlapped (%)",
                             series_by(rows, "inject", "nodes", "root / overlapped (%)"), "x"),
-                       Plot("inject-supersteps", "Supersteps", "nodes", "supersteps",
+                       Plot("inject-supersteps", "Supersteps of a render", "number of nodes", "supersteps",
                             series_by(rows, "inject", "nodes", "supersteps"), "xy")],
-                news=[f"The root is the bottleneck {bound_text(root)} if it makes all primary rays, and {bound_text(all_nodes)} if all nodes make them."], clock=CLOCK)
+                news=[f"The root is the bottleneck {bound_text(root)} if it makes all primary rays, and {bound_text(all_nodes)} if all nodes do."], clock=CLOCK)
 
 
 def bound_text(rows):
-    """Part of a sentence: the number of nodes (at least two) from which on the root is always the bottleneck."""
+    """Part of a sentence: the smallest number of nodes (at least two) such that the root is the bottleneck for this and all larger numbers."""
     nodes = tail_where(rows["nodes"][1:], rows["root / overlapped (%)"][1:] >= 100)
-    return f"from {nodes.iloc[0]} nodes on" if len(nodes) else "for no number of nodes"
+    return f"from {nodes.iloc[0]} nodes upwards" if len(nodes) else "for no number of nodes"
 
 
 def finding_of_difference(root, all_nodes):
     ratio = root["overlapped (ms)"] / all_nodes["overlapped (ms)"]
-    last = f"with {all_nodes['nodes'].iloc[-1]} nodes injection by the root takes {ratio.iloc[-1]:.2f} times as long"
+    last = f"on {all_nodes['nodes'].iloc[-1]} nodes the time with method root is {ratio.iloc[-1]:.2f} times that with method all"
     different = ratio[ratio > DIFFERENCE_RATIO]
     if not len(different):
-        return f"The two methods never differ by more than 10 %: {last}."
-    return (f"The two methods first differ by more than 10 % on {all_nodes['nodes'][different.index[0]]} nodes, where injection by the root "
-            f"takes {different.iloc[0]:.2f} times as long; {last}.")
+        return f"Overlapped, method root never takes more than 1.1 times as long as method all: {last}."
+    return (f"Overlapped, method root first takes more than 1.1 times as long as method all on {all_nodes['nodes'][different.index[0]]} nodes: "
+            f"{different.iloc[0]:.2f} times; {last}.")
 
 
 def findings_of(root, all_nodes):
     a, b = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (root, all_nodes))
     one, last, all_last = all_nodes["overlapped (ms)"][0], root.iloc[-1], all_nodes.iloc[-1]
-    return [f"The root is the bottleneck of the machine, overlapped: {bound_text(root)} if it makes all primary rays, "
-            f"{bound_text(all_nodes)} if all nodes do.",
-            f"The fastest machine with injection by the root takes {a['overlapped (ms)']:.0f} ms, with {a['nodes']} nodes, "
-            f"{one / a['overlapped (ms)']:.1f} times as fast as one node; with injection by all nodes "
-            f"{b['overlapped (ms)']:.0f} ms, with {b['nodes']} nodes, {one / b['overlapped (ms)']:.1f} times.",
+    return [f"The root determines the overlapped time {bound_text(root)} if it makes all primary rays, and {bound_text(all_nodes)} if all nodes "
+            "make them.",
+            f"With method root the fastest machine has {a['nodes']} nodes: it takes {a['overlapped (ms)']:.0f} ms overlapped and is "
+            f"{one / a['overlapped (ms)']:.1f} times as fast as one node. With method all the fastest machine has {b['nodes']} nodes: it takes "
+            f"{b['overlapped (ms)']:.0f} ms and is {one / b['overlapped (ms)']:.1f} times as fast as one node.",
             finding_of_difference(root, all_nodes),
-            f"{all_last['nodes']} nodes that make their own primary rays make "
-            f"{1 + all_last['rays discarded'] / all_last['primary']:.1f} for each that they keep, and are charged for all of them: "
-            "the other rays that they make enter at other voxels.",
-            f"Stepwise, injection by the root takes {last['stepwise (ms)'] / all_last['stepwise (ms)']:.2f} times as long on "
-            f"{last['nodes']} nodes, in {last['supersteps']} supersteps instead of {all_last['supersteps']}, because the root makes "
-            "at most as many rays at a time as an eighth of its queue holds."]
+            f"With method all, {all_last['nodes']} nodes make "
+            f"{1 + all_last['rays discarded'] / all_last['primary']:.1f} primary rays for each that they keep. They discard the others, which "
+            "enter at other nodes' voxels, and are charged for all.",
+            f"On {last['nodes']} nodes, method root takes {last['stepwise (ms)'] / all_last['stepwise (ms)']:.2f} times as long as method all, "
+            f"stepwise. It has {last['supersteps']} supersteps instead of {all_last['supersteps']}, because the root stops making rays "
+            "in a superstep when an eighth of its queue is full."]

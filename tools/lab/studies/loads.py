@@ -11,14 +11,14 @@ PROSE = """{figure}
 {question}
 
 - Source: Kohata & Ito 1993, {place}.
-- {size} x {size} pixels on {pes} PEs of the SPA, a PE for each column; {phase}. The picture of the plots is {scene}.
-- The load of a PE is the sum of the modelled cycles that the kernels counted for its pixels, divided by the mean load of all PEs. It
-  needs no clock.
-- {ensemble}: scenes with their objects in the middle, as that of Fig. 6.
-- Output: {name}.csv has a row for each PE: loads with p = 0 and p = 16 (cycles), mean load of the ensemble and +- the half width of its 95 %
-  interval (1: the mean load of all PEs)."""
+- {size} x {size} pixels on {pes} PEs of the SPA, one PE per column; {phase}. The single picture is scene {scene}.
+- The load of a PE is the sum of the modelled cycles that the kernels counted for its pixels. Plots show each load divided by the mean load of
+  all PEs; this ratio does not depend on a clock rate.
+- Ensemble: {ensemble}. By default its scenes have their objects in the middle, like that of Fig. 6.
+- Output: {name}.csv has a row for each PE: its loads in the single picture with p = 0 and p = 16 (cycles); its load / mean load of all PEs,
+  as mean of the ensemble, with half the width of the 95 % interval (+-)."""
 
-FLAT_LIMIT = 0.1  # bound of the claim no-hump, as a fraction of the mean load
+FLAT_LIMIT = 0.1  # claim no-hump: maximum difference of the loads in the middle and at the sides, as a fraction of the mean load
 
 
 def relative_loads(image, offset):
@@ -39,10 +39,10 @@ def page_of(name, lab, scenes, first_pass):
     antialias, image_of = ("none", lambda costs: costs.trace) if first_pass else ("supersample", lambda costs: costs.supersample)
     offsets, picture = (0, 16 % size), image_of(lab.costs(scene, size, antialias))
     ensemble = lab.ensemble(scenes, size, antialias, families=CROWDED)
-    own = [relative_loads(picture, p) for p in offsets]
+    scene_loads = [relative_loads(picture, p) for p in offsets]
     picture_loads = [ensemble.map(lambda costs, p=p: relative_loads(image_of(costs), p)) for p in offsets]  # [picture, PE]
     u = ensemble.map(lambda costs: raya.imbalances(image_of(costs), size, offsets)).T  # [offset, picture]
-    own_u = raya.imbalances(picture, size, offsets)
+    scene_u = raya.imbalances(picture, size, offsets)
     rows = pd.DataFrame({"PE": range(size), "p = 0 (cycles)": raya.loads(picture, offset=0),
                          "p = 16 (cycles)": raya.loads(picture, offset=offsets[1])})
     for label, some in zip(("p = 0", "p = 16"), picture_loads):
@@ -50,49 +50,49 @@ def page_of(name, lab, scenes, first_pass):
         rows[f"{label}, mean of the ensemble"], rows[f"{label}, +-"] = [m.mean for m in means], [m.half for m in means]
     place, phase = ("Fig. 7", "first pass") if first_pass else ("Fig. 12", "supersampling without the first pass")
     return Page({"scene": scene.name, "size": size, "pes": size, "pictures": len(u[0]), "offsets": list(offsets)},
-                findings_of(own, own_u, u),
-                comparisons_of(own_u, u, first_pass and papers.is_papers(scene.name, size)),
+                findings_of(scene_loads, scene_u, u),
+                comparisons_of(scene_u, u, first_pass and papers.is_papers(scene.name, size)),
                 claims_of(picture_loads, ensemble.description) if first_pass and not scenes else [],
-                [Table(name, "Load of each PE", rows, on_page=False)],
-                plots_of(name, scene.name, phase, rows, own, len(u[0])),
-                ["Kohata & Ito show one image. Many pictures separate the effect of the mapping from that of the picture."],
+                [Table(name, "Load of each PE with p = 0 and p = 16", rows, on_page=False)],
+                plots_of(name, scene.name, phase, rows, scene_loads, len(u[0])),
+                ["Kohata & Ito show the loads of one image. The means of many pictures show the effect of the mapping, whatever the picture."],
                 compared_with=papers.SPA,
                 placeholders={"figure": f"{place}: load of each PE{'' if first_pass else ' in supersampling'}", "phase": phase, "place": place,
                               "name": name, "ensemble": ensemble.description,
-                              "question": "How is the work of one image spread over the PEs, by columns and by the cyclic mapping?"
-                              if first_pass else "Is the extra work of supersampling spread as evenly as the first pass?"})
+                              "question": "How do the column split (p = 0) and the cyclic mapping (p = 16) spread the work of an image over the PEs?"
+                              if first_pass else "Is the work of supersampling spread over the PEs as evenly as that of the first pass?"})
 
 
-def findings_of(own, own_u, u):
-    (middle, sides), mean_u = middle_and_sides(own[0]), [estimate(offset_u) for offset_u in u]
-    return [f"Over {len(u[0])} pictures u is {mean_u[0].text()} with columns ({range_text(u[0])}) and {mean_u[1].text()} "
-            f"with p = 16 ({range_text(u[1])}).",
-            f"In the picture the PEs of the middle quarter carry {middle:.2f} times the mean load with columns and "
-            f"those of the quarter at the sides {sides:.2f} times; with p = 16 the lightest PE carries "
-            f"{own[1].min():.2f} times and the heaviest {1 + own_u[1]:.2f} times the mean."]
+def findings_of(scene_loads, scene_u, u):
+    (middle, sides), mean_u = middle_and_sides(scene_loads[0]), [estimate(offset_u) for offset_u in u]
+    return [f"The mean load imbalance u of {len(u[0])} pictures is {mean_u[0].text()} with p = 0 (range {range_text(u[0])}) and "
+            f"{mean_u[1].text()} with p = 16 (range {range_text(u[1])}).",
+            f"In the single picture with p = 0, the PEs of the middle quarter have {middle:.2f} times the mean load, and the first "
+            f"and last eighth of the PEs {sides:.2f} times. With p = 16 the lowest load of a PE is "
+            f"{scene_loads[1].min():.2f} times the mean load and the highest {1 + scene_u[1]:.2f} times."]
 
 
-def comparisons_of(own_u, u, in_paper):
+def comparisons_of(scene_u, u, in_paper):
     figures = papers.IMBALANCE_0, papers.IMBALANCE_16
-    remarks = ("our scene is calibrated on it: see scenes/README.md", papers.IMBALANCE_16_ROUNDING) if in_paper else ("", "")
-    own = [Comparison(f"u({p}) of the picture", "", *some, True) for p, *some in zip((0, 16), figures, own_u, remarks)]
-    return with_paper(in_paper, own) + [Comparison(f"u({p}), mean of the ensemble", "", None, mean.mean, "", False, mean.half)
+    remarks = ("our scene is calibrated to this value: see scenes/README.md", papers.IMBALANCE_16_ROUNDING) if in_paper else ("", "")
+    of_scene = [Comparison(f"u({p}) of the single picture", "", *some, True) for p, *some in zip((0, 16), figures, scene_u, remarks)]
+    return with_paper(in_paper, of_scene) + [Comparison(f"u({p}), mean of the ensemble", "", None, mean.mean, "", False, mean.half)
                                         for p, mean in zip((0, 16), map(estimate, u))]
 
 
 def claims_of(picture_loads, about):
     columns, cyclic = (np.subtract(*middle_and_sides(offset_loads)) for offset_loads in picture_loads)
-    text = "The load of a PE in the middle quarter exceeds that of a PE in the quarter at the sides by {} of the mean load."
-    return [judged("hump", above(columns, 0, digits=2), about, text.format(estimate(columns).text(2))),
-            judged("no-hump", within(cyclic, -FLAT_LIMIT, FLAT_LIMIT, digits=2), about, text.format(estimate(cyclic).text(2)))]
+    text = "With p = {}, the mean load of the PEs in the middle quarter minus that of the first and last eighth is {} of the mean load of all PEs."
+    return [judged("hump", above(columns, 0, digits=2), about, text.format(0, estimate(columns).text(2))),
+            judged("no-hump", within(cyclic, -FLAT_LIMIT, FLAT_LIMIT, digits=2), about, text.format(16, estimate(cyclic).text(2)))]
 
 
-def plots_of(name, scene, phase, rows, own, pictures):
+def plots_of(name, scene, phase, rows, scene_loads, pictures):
     plotted_rows = rows[rows["PE"] % max(len(rows) // 64, 1) == 0]
-    labels, mean_line = ("p = 0, column split", "p = 16, cyclic mapping"), Series("mean", [0, len(rows) - 1], [1, 1])
-    return [Plot(name, f"Load of each PE, {scene}, {phase}", "PE", "load / mean load",
-                 [Series(label, rows["PE"], one) for label, one in zip(labels, own)] + [mean_line]),
-            Plot(f"{name}-views", f"Load of each PE, {phase}, mean of {pictures} pictures", "PE", "load / mean load",
+    labels, mean_line = ("p = 0, column split", "p = 16, cyclic mapping"), Series("mean load", [0, len(rows) - 1], [1, 1])
+    return [Plot(name, f"Load of each PE, {scene}, {phase}", "number of the PE", "load / mean load",
+                 [Series(label, rows["PE"], one) for label, one in zip(labels, scene_loads)] + [mean_line]),
+            Plot(f"{name}-views", f"Load of each PE, {phase}, mean of {pictures} pictures", "number of the PE", "load / mean load",
                  [Series(label, plotted_rows["PE"], plotted_rows[f"{p}, mean of the ensemble"], half_widths=plotted_rows[f"{p}, +-"])
                   for label, p in zip(labels, ("p = 0", "p = 16"))] + [mean_line])]
 

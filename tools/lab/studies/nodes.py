@@ -1,34 +1,35 @@
-"""The torus machine from one node to {nodes}
+"""The torus machine with 1 to {nodes} nodes
 
-How many transputers pay, and what is their bottleneck?
+Up to how many transputers does the render become faster, and what is the bottleneck?
 
-- Source: Yoshitani & Yamazaki, about 1995, who had 64 nodes and print no speed-up.
-- {size} x {size} pixels on 1, 2, 4, ... nodes, as near to a cube as powers of two allow; fp32. All nodes make primary rays and are
-  charged for those that they make and discard; ray packets have 16 words, each term of a ray is a return; queues hold {queue} packets.
-- Two divisions of the scene: one voxel a node, as in Yoshitani & Yamazaki; and {voxels} voxels on any number of nodes, laid out
-  cyclically. With {voxels} voxels all machines do the same work, so the speed-up is due only to the nodes. With one voxel a node it is also due to
-  the finer grid.
-- The processors at both ends of a message spend time on it; u and tests are of computing, without messages.
-- 2-D: slabs of nodes next to each other, four links a node, as a T805 has; 3-D: six links a node.
-- A series ends before supersteps times nodes exceed {launches}: rays that have to visit all voxels, such as those from far away on a
-  plane, cause very many supersteps.
-- Asynchronous: simulated packet by packet without supersteps, on at most {max_async} nodes.
-- Output: nodes.csv has a row for each scene, division, kind of torus and number of nodes: modelled times (ms), speed-up, u, counts, and the
-  bottleneck (column "waits for").
+- Source: Yoshitani & Yamazaki, about 1995. They had 64 nodes and print no speed-up.
+- {size} x {size} pixels on tori of 1, 2, 4, ... nodes, as near to a cube as powers of two allow; fp32. Each node makes the primary rays
+  that enter at its voxels. The model also charges the rays that it makes and discards because they enter elsewhere. A ray packet has 16
+  words, each contribution of a ray to its pixel is a packet (a return), and a node's queue holds {queue} packets.
+- The scene is divided in two ways: into one voxel per node, as in Yoshitani & Yamazaki; and into {voxels} voxels, which are dealt
+  cyclically to any number of nodes. With {voxels} voxels all machines do the same work, so the speed-up is due to the nodes alone. With
+  one voxel per node it is also due to the finer grid.
+- A message takes time on the processors at both of its ends. The load imbalance u is that of computing, without this time for messages.
+- A 3-D torus has six links per node. A 2-D torus has four, as a T805 has; it places the layers of the 3-D torus next to each other.
+- A series ends if the supersteps of its last machine times the nodes of the next one exceed {launches}. Rays that visit all voxels, such
+  as those that start far away on a plane, need very many supersteps.
+- Asynchronous times are those of a discrete-event simulation of each packet, without supersteps, on at most {max_async} nodes.
+- Output: nodes.csv has a row for each scene, division, kind of torus and number of nodes: modelled times (ms), speed-up, u, counts, and
+  the bottleneck (column "waits for").
 """
 import pandas as pd
 from raya.lab import Comparison, Page, Plot, Series, Table, study
 from raya.lab.voxels import BOUNCES, CLOCK, balls_scene, even_scene, near_cube, powers_of_two, run_on_torus, sides_text
 
-QUEUE = 256  # short enough for the memory of 4096 nodes, long enough for the project's scenes
+QUEUE = 256  # packets; short enough for the device memory of 4096 nodes, long enough for the scenes of this study
 MAX_NODES, SIDES, MAX_NODE_SUPERSTEPS = 4096, 16, 1 << 22
-MAX_ASYNC = 512  # largest number of nodes that is simulated without supersteps
+MAX_ASYNC = 512  # maximum number of nodes for the discrete-event simulation
 VOXELS = sides_text((SIDES,) * 3)
 COLUMNS = ("u", "hops a packet", "supersteps", "busiest link (bytes)", "tests a ray", "steps a ray", "rays discarded")
 
 
 def series_of(lab, scene, size, fixed, links, known):
-    """Returns a table of tori of one kind, with 1, 2, 4, ... nodes. fixed: VOXELS on each, else one voxel a node. known: {settings: Run}, a cache."""
+    """Returns a table of renders on 1, 2, 4, ... nodes. fixed: each torus has VOXELS, else one voxel per node. known: {settings: Run}, a cache."""
     rows, one = [], None
     for nodes in powers_of_two(MAX_NODES):
         if rows and rows[-1]["supersteps"] * nodes > MAX_NODE_SUPERSTEPS:
@@ -68,7 +69,7 @@ def nodes(lab, scenes):
         by_scene.append((three, two, fixed))
         for one in (three, fixed):
             best = one.loc[one["overlapped (ms)"].idxmin()]
-            comparisons.append(Comparison(f"{best['scene']}, {best['voxels']}: best speed-up", "", None,
+            comparisons.append(Comparison(f"best speed-up, {best['scene']}, voxels: {best['voxels']}", "", None,
                                           best["speed-up, overlapped"], f"modelled, overlapped, {best['nodes']} nodes; "
                                           "Yoshitani & Yamazaki print no speed-up"))
         findings += [*findings_of_speedup(three, fixed), finding_of_links(three, two),
@@ -78,23 +79,22 @@ def nodes(lab, scenes):
     rows = pd.concat(sum(by_scene, ()), ignore_index=True).drop(columns=["run", "balance"])
     return Page({"scenes": [scene.name for scene in chosen_scenes], "size": size, "nodes": MAX_NODES,
                  "voxels": VOXELS, "queue": QUEUE, "format": "fp32", "bounces": BOUNCES}, findings, comparisons,
-                tables=[Table("nodes", "Every machine", rows)], plots=plots_of(by_scene),
-                news=[f"With {VOXELS} voxels on every machine, {best_fixed['nodes']} transputers are at most {best_fixed['speed-up, overlapped']:.0f} times as "
-                      f"fast as one; {best_fixed['waits for']} limits them."], clock=CLOCK,
+                tables=[Table("nodes", "Time and work on each torus", rows)], plots=plots_of(by_scene),
+                news=[f"With {VOXELS} voxels, the best overlapped speed-up is {best_fixed['speed-up, overlapped']:.0f}, with {best_fixed['nodes']} "
+                      f"transputers; their bottleneck is {best_fixed['waits for']}."], clock=CLOCK,
                 placeholders={"launches": MAX_NODE_SUPERSTEPS, "max_async": MAX_ASYNC})
 
 
 def findings_of_speedup(one, fixed):
-    (best, own), first = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (fixed, one)), one.iloc[0]
+    (best, fastest), first = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (fixed, one)), one.iloc[0]
     half = fixed["nodes"][(fixed["efficiency, overlapped"] >= 0.5).cummin()].iloc[-1]
-    return [f"{best['scene']}, {best['voxels']} voxels on every machine: {best['nodes']} nodes are fastest, "
-            f"{best['speed-up, overlapped']:.1f} times as fast as one (overlapped; stepwise "
-            f"{best['speed-up, stepwise']:.1f} times); their bottleneck is {best['waits for']}. The efficiency is at least 50 % up to "
-            f"{half} nodes.",
-            f"{first['scene']}, one voxel a node: {own['nodes']} nodes are {own['speed-up, overlapped']:.0f} times as fast as one. But "
-            f"a single node has no grid, and makes {first['tests a ray'] / max(1e-9, own['tests a ray']):.1f} times as many tests a ray, "
-            f"{first['tests a ray']:.1f} compared with {own['tests a ray']:.1f}. One node with {best['voxels']} voxels is already "
-            f"{first['overlapped (ms)'] / fixed['overlapped (ms)'][0]:.0f} times as fast."]
+    return [f"{best['scene']}, {best['voxels']} voxels on every machine: the fastest machine has {best['nodes']} nodes. It is "
+            f"{best['speed-up, overlapped']:.1f} times as fast as one node overlapped, and {best['speed-up, stepwise']:.1f} times stepwise. "
+            f"Its bottleneck is {best['waits for']}. The overlapped efficiency is at least 50 % up to {half} nodes.",
+            f"{first['scene']}, one voxel per node: {fastest['nodes']} nodes are {fastest['speed-up, overlapped']:.0f} times as fast as one. But "
+            f"one node has no grid and makes {first['tests a ray'] / max(1e-9, fastest['tests a ray']):.1f} times as many tests per ray: "
+            f"{first['tests a ray']:.1f} instead of {fastest['tests a ray']:.1f}. With {best['voxels']} voxels, one node is already "
+            f"{first['overlapped (ms)'] / fixed['overlapped (ms)'][0]:.0f} times as fast as with one voxel."]
 
 
 def finding_of_links(three, two):
@@ -102,10 +102,10 @@ def finding_of_links(three, two):
     ratios = two["overlapped (ms)"][:count] / three["overlapped (ms)"][:count]
     a, b = three.iloc[count - 1], two.iloc[count - 1]
     bytes_ratio = b["busiest link (bytes)"] / max(1, a["busiest link (bytes)"])
-    return (f"{a['scene']}, 2-D compared with 3-D torus with {a['nodes']} nodes: {b['hops a packet']:.2f} hops a packet instead of "
-            f"{a['hops a packet']:.2f}, {b['supersteps']} supersteps instead of {a['supersteps']}, {bytes_ratio:.2f} times "
-            f"the bytes over the busiest link; overlapped it takes {ratios.iloc[-1]:.2f} times as long, over all numbers "
-            f"of nodes {ratios.min():.2f} to {ratios.max():.2f} times.")
+    return (f"{a['scene']}, 2-D torus compared with 3-D torus, {a['nodes']} nodes: {b['hops a packet']:.2f} hops per packet instead of "
+            f"{a['hops a packet']:.2f}, {b['supersteps']} supersteps instead of {a['supersteps']}, and {bytes_ratio:.2f} times "
+            f"the bytes over the busiest link. The overlapped time is {ratios.iloc[-1]:.2f} times as long. Over all numbers of nodes "
+            f"this ratio lies between {ratios.min():.2f} and {ratios.max():.2f}.")
 
 
 def findings_of_balance(one, fixed):
@@ -115,28 +115,28 @@ def findings_of_balance(one, fixed):
     def text(rows):
         most = rows.loc[rows["rays discarded"].idxmax()]
         discarded = most["rays discarded"] / most["run"].events["primary"]
-        how = "a voxel each" if most["voxels"] == "one a node" else f"{most['voxels']} voxels laid out cyclically"
-        return f"{1 + discarded:.1f} with {how} ({most['nodes']} nodes)"
+        how = "one voxel per node" if most["voxels"] == "one a node" else f"{most['voxels']} voxels"
+        return f"{1 + discarded:.1f} with {how} (on {most['nodes']} nodes)"
 
-    return [f"{a['scene']}, balance: u of {a['nodes']} nodes is {a['u']:.2f} with a voxel each and {b['u']:.2f} with "
-            f"{b['voxels']} voxels laid out cyclically, {SIDES**3 // b['nodes']} a node; of {last['nodes']} nodes "
-            f"{last['u']:.2f}.",
-            f"{a['scene']}: nodes that make their own primary rays make up to {text(one)} or "
-            f"{text(fixed)} for each that they keep; discarded rays are charged."]
+    return [f"{a['scene']}, load imbalance: with one voxel per node, u of {a['nodes']} nodes is {a['u']:.2f}. With {b['voxels']} voxels dealt "
+            f"cyclically, u is {b['u']:.2f} on {b['nodes']} nodes ({SIDES**3 // b['nodes']} voxels per node) and {last['u']:.2f} on "
+            f"{last['nodes']} nodes.",
+            f"{a['scene']}: for each primary ray that the nodes keep, they make up to {text(one)} and up to "
+            f"{text(fixed)}. The model charges all of these rays."]
 
 
 def plots_of(by_scene):
     plots, hops, balance = [], [], []
     for number, (three, two, fixed) in enumerate(by_scene, 1):
         scene, voxels = three["scene"][0], fixed["voxels"][0]
-        both = (fixed, voxels), (three, "a voxel a node")
+        both = (fixed, voxels), (three, "one voxel per node")
         series = [Series(f"{label}, {bound}", rows["nodes"], rows[f"speed-up, {bound}"])
                   for rows, label in both for bound in ("overlapped", "stepwise")]
-        plots.append(Plot(f"nodes-speedup-{number}", f"Speed-up of {scene}, 3-D torus", "nodes", "speed-up, modelled",
+        plots.append(Plot(f"nodes-speedup-{number}", f"Speed-up of {scene}, 3-D torus", "number of nodes", "modelled speed-up",
                           series + [Series("linear", fixed["nodes"], fixed["nodes"])], "xy"))
         hops += [Series(f"{scene}, {rows['links'][0]}", rows["nodes"], rows["hops a packet"]) for rows in (three, two)]
         balance += [Series(f"{scene}, {label}", rows["nodes"], rows["balance"])
                     for rows, label in both[::-1]]
     return plots + [
-        Plot("nodes-hops", "Hops of a packet, a voxel a node", "nodes", "hops a packet", hops, "x"),
-        Plot("nodes-balance", "Balance of computing, 3-D torus", "nodes", "mean load / largest load", balance, "xy")]
+        Plot("nodes-hops", "Hops of a packet, one voxel per node", "number of nodes", "mean hops of a packet", hops, "x"),
+        Plot("nodes-balance", "Balance of computing, 3-D torus", "number of nodes", "mean load / largest load", balance, "xy")]

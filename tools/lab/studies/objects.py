@@ -1,33 +1,32 @@
 """Fig. 4 of Yoshitani & Yamazaki: time against the number of objects, on 64 transputers
 
-Are random objects slower than even ones, are their copies the reason, and why does time grow less than the number of objects?
+Do random objects take longer than even ones, are straddling objects the reason, and why does time grow less than the number of objects?
 
 - Source: Yoshitani & Yamazaki, about 1995, Fig. 4 and Table 1.
-- 64 nodes, 4 x 4 x 4, on an 8 x 8 torus with four links a node, one voxel each; {size} x {size} pixels, primary and shadow rays only,
-  one light, matt spheres.
-- Protocol of Yoshitani & Yamazaki: the root makes all primary rays and sends each to the voxel where it enters. A ray packet has the
-  {words} words of the scalars in their Table 1. This is the minimum, because data for the search and of the object are added. A ray causes
-  one return of 6 words, from the node where its shadow ray ends.
-- Protocol of raya: every node makes the primary rays that enter at its voxel, and is charged for those that it makes and discards. A ray packet
-  has 16 words. Each term of a ray (ambient light, a light or the background) is a return of 8 words.
-- The model moves the returns of a ray separately, so that the image is the same; under the protocol of Yoshitani & Yamazaki they are
-  charged as one message. Shading is charged to the node where the ray hits.
-- {variants} variants of each scene, with the radii of a uniform scene times {radii} (at most {largest} of a voxel's side), each from a random
-  view. Ratios compare the scenes of a variant.
-- Even: every voxel holds the same number of spheres, at random places within it.
-- Random: the even scene's spheres, with their radii, surfaces, light and view, at random centres in the cube; spheres that stick out are
-  moved into the cube.
-- Random, none across voxels: the random spheres, moved until each lies within the voxel of its centre. Each voxel still has its number
-  of spheres, but no sphere is in two voxels. This separates the effect of copies from that of unequal numbers.
-- In all three kinds the outermost spheres touch the sides of one cube, so that all scenes have the same voxels. Registration has a margin
-  for rounding errors; the column "copies without margin" counts the voxels that the spheres' surfaces meet exactly.
-- The claims use the asynchronous machine, because the paper describes it. It is simulated packet by packet: a node has two tasks, links transfer
-  while nodes compute, and buffers are finite. Overlapped (nothing waits) and stepwise (everything waits) are shown as bounds.
-- The depth of primary rays is counted without lights. The growth of time is analysed from the fewest to the most objects, overlapped:
-  objects over time is a product of four ratios, see the table.
-- Output: objects.csv (modelled times in ms and counts), objects-ratios.csv, objects-growth.csv, objects-primary.csv, objects-words.csv and
-  objects-sweep.csv (random over even by radius and by the processors' clock).
-  Columns +- are half widths of 95 % intervals.
+- 64 nodes as an 8 x 8 torus, four links per node; one of 4 x 4 x 4 voxels per node. {size} x {size} pixels, primary and shadow rays only, one light,
+  matt spheres.
+- Protocol of Yoshitani & Yamazaki: the root makes all primary rays and sends each to the voxel where it enters. A ray packet has the {words} words
+  of the scalars in their Table 1. This is a minimum, because a packet also carries data of the voxel search and of the object. For each ray, the
+  node where its shadow ray ends sends one return of 6 words to the root.
+- Protocol of raya: every node makes the primary rays that enter at its voxel, and is charged also for those that it makes and discards. A ray
+  packet has 16 words. Each contribution of a ray (ambient light, a light or the background) is a return of 8 words.
+- raya moves the contributions separately under both protocols, so that the image is the same. Under the protocol of Yoshitani & Yamazaki the time
+  model charges those of a ray as one message. Shading is charged to the node where the ray hits.
+- Each scene has {variants} variants with different random places and views. A variant has the radii of a generated even scene times one of {radii},
+  at most {largest} of a voxel's side. Ratios of two scenes are taken within the same variant.
+- Even: every voxel holds the same number of spheres, at random places within the voxel.
+- Random: the even scene's spheres, with their radii, surfaces, light and view, at random centres; each is moved until it is inside the cube.
+- Random, none across voxels: each sphere of the random scene is moved until it lies within the voxel of its centre. The voxels keep their numbers
+  of spheres, but no sphere straddles voxels. This separates the effect of copies from that of unequal numbers.
+- In all scenes the outermost spheres touch the sides of one cube, so the voxels are the same. raya registers a sphere in each voxel that it may
+  meet, with a margin for rounding errors. Copies are all registrations but the first. "copies without margin" counts only voxels that the surface
+  meets exactly.
+- The claims use the times of a discrete-event simulation of the asynchronous machine, which the paper describes: a node has two tasks, links
+  transfer while nodes compute, and buffers are finite. Overlapped (nothing waits) and stepwise (everything waits) times are shown as bounds.
+- The depth of primary rays, the number of voxels that they visit, is counted in renders without lights. The growth of the overlapped time is
+  analysed from the fewest to the most objects: growth of objects / growth of time is a product of four factors (table of growth).
+- Output: objects.csv (modelled times in ms and counts), objects-ratios.csv, objects-growth.csv, objects-primary.csv, objects-words.csv, and
+  objects-sweep.csv (random / even time by radius and processor clock). Columns +- are half widths of 95 % intervals.
 """
 import numpy as np
 import pandas as pd
@@ -35,13 +34,13 @@ import raya
 from raya.lab import Page, Plot, Series, Table, above, estimate, every, judged, papers, range_text, series_by, study
 from raya.lab.voxels import CLOCK, even_scene, run_on_torus
 
-COUNTS, OTHER_WORDS, SIDES = (64, 192, 256, 512, 1024, 8320), (32, 48), 4  # numbers of objects; words a ray; voxels along each axis
-RADII, VARIANTS, MAX_RADIUS = (0.5, 1, 2), 9, 0.45  # factors of the radii; variants of a scene; largest radius / voxel side
-CLOCKS = {"20 MHz": 50.0, "25 MHz": 40.0, "30 MHz": 1e3 / 30}  # {clock of the processors: ns a cycle}; links keep their rates
+COUNTS, OTHER_WORDS, SIDES = (64, 192, 256, 512, 1024, 8320), (32, 48), 4  # numbers of objects; words of a ray packet; voxels along each axis
+RADII, VARIANTS, MAX_RADIUS = (0.5, 1, 2), 9, 0.45  # factors of the radii; variants of a scene; maximum of radius / voxel side
+CLOCKS = {"20 MHz": 50.0, "25 MHz": 40.0, "30 MHz": 1e3 / 30}  # {clock of the processors: ns per cycle}; links keep their rates
 EVEN, RANDOM, WITHIN = "even", "random", "random, none across voxels"
 PAPER, RAYA = "Yoshitani & Yamazaki", "raya"
 PROTOCOLS = {PAPER: {"inject": "root", "packet_words": papers.RAY_WORDS, "returns": "rays"}, RAYA: {}}
-LINEAR_LIMIT, HALF = 1.25, 0.5  # bounds of the claims not-linear and front-voxels
+LINEAR_LIMIT, HALF = 1.25, 0.5  # not-linear: minimum of objects / time; front-voxels: minimum fraction of its logarithm
 TIMES = ("overlapped", "stepwise", "asynchronous")
 
 
@@ -50,9 +49,9 @@ def render(lab, scene, size, **options):
 
 
 def even_variant(count, seed):
-    """Returns an even scene: its spheres have the radii of even_scene() times a factor, and random places within their voxels."""
+    """Returns an even scene. Its spheres have the radii of even_scene() times a factor of RADII, and random places within their voxels."""
     rng, lines = np.random.default_rng(seed), []
-    side = 2 / SIDES  # of a voxel: the cube is [-1, 1]^3
+    side = 2 / SIDES  # side of a voxel; the cube is [-1, 1]^3
     for line in even_scene(count).nff.splitlines():
         if line.startswith("s "):
             *centre, radius = map(float, line.split()[1:])
@@ -65,7 +64,7 @@ def even_variant(count, seed):
 
 
 def scenes_of(count):
-    """{kind: scenes}: for each variant an even scene, a random scene, and the same with its spheres moved within their voxels."""
+    """Returns {kind: [scene of each variant]}: even scenes, random scenes, and random scenes with spheres moved into the voxels of their centres."""
     even = [even_variant(count, seed) for seed in range(1, VARIANTS + 1)]
     random = [one.scattered(seed) for seed, one in enumerate(even, 1)]
     return {EVEN: [one.touching_walls() for one in even], RANDOM: [one.touching_walls() for one in random],
@@ -73,7 +72,7 @@ def scenes_of(count):
 
 
 def copies_without_margin(scene):
-    """Returns the number of pairs of a sphere and a voxel that its surface meets, minus the number of spheres."""
+    """Returns the number of pairs (sphere, voxel that its surface meets), minus the number of spheres."""
     spheres = np.array([list(map(float, line.split()[1:])) for line in scene.nff.splitlines() if line.startswith("s ")])
     centres, radii = spheres[:, None, :3], spheres[:, None, 3]
     low, high = (centres[:, 0] - radii).min(0), (centres[:, 0] + radii).max(0)
@@ -85,8 +84,8 @@ def copies_without_margin(scene):
 
 
 def depth_of(lab, scene, size):
-    """Returns three figures of the primary rays: the fraction that hits an object; of the rays that enter the box of the voxels, the fraction that
-    ends in the first voxel and the mean number of visited voxels."""
+    """Returns three figures: the fraction of primary rays that hit an object; and, of the primary rays that enter the scene's box, the fraction that
+    end in their first voxel and the mean number of voxels that they visit."""
     run = render(lab, scene.without_lights(), size, packets=True)
     packets = run.result.packets
     primary = packets[packets["kind"] == raya.PACKET_KINDS.index("primary")]
@@ -124,25 +123,26 @@ def objects(lab, scenes):
     growth = [(kind, protocol, growth_of(runs[COUNTS[0], kind, protocol], runs[COUNTS[-1], kind, protocol]))
               for protocol in PROTOCOLS for kind in (EVEN, RANDOM)]
     depths, words, sweep = pd.DataFrame(depths), pd.DataFrame(words), sweep_of(runs, clocks)
-    more = ["The scenes of the command line are not used: the study generates its own, like those of Yoshitani & Yamazaki."
+    more = ["This study ignores the scenes of the command line: it generates scenes like those of Yoshitani & Yamazaki."
             ] if scenes else []
     return Page({"nodes": "4x4x4", "voxels": "4x4x4", "links": "torus2d", "size": size, "bounces": 0, "format": "fp32",
                  "words": papers.RAY_WORDS, "variants": VARIANTS, "objects": list(COUNTS)},
                 findings_of(runs, rows, ratios, growth, depths, words) + [finding_of_sweep(sweep)] + more,
                 claims=claims_of(runs, ratios, growth),
                 tables=[*tables_of(rows, ratios, growth, depths, words),
-                        Table("objects-sweep", "Random over even, asynchronous, protocol of Yoshitani & Yamazaki", sweep)], plots=plots_of(rows, ratios, depths),
-                news=[f"Copies explain why random objects are slower: they take {range_text([e.mean for e in select(ratios, RANDOM, RAYA)['asynchronous']])} "
-                      "times as long as even ones if all nodes make primary rays, but "
-                      f"{range_text([e.mean for e in select(ratios, WITHIN, RAYA)['asynchronous']])} times if none straddles voxels."],
+                        Table("objects-sweep", "Time of random / time of even, asynchronous, protocol of Yoshitani & Yamazaki", sweep)],
+                plots=plots_of(rows, ratios, depths),
+                news=[f"Random objects take {range_text([e.mean for e in select(ratios, RANDOM, RAYA)['asynchronous']])} times as long as even ones "
+                      "(asynchronous; all nodes make primary rays). If none of the random objects straddles voxels, they take "
+                      f"{range_text([e.mean for e in select(ratios, WITHIN, RAYA)['asynchronous']])} times as long."],
                 clock=CLOCK, placeholders={"radii": ", ".join(map(str, RADII)), "largest": MAX_RADIUS})
 
 
 def sweep_of(runs, clocks):
-    """Table of random over even: for each factor of the radii, at 25 MHz, and for each clock, over all variants. half: of a 95 % interval."""
+    """Returns a table of time of random / time of even objects: for each factor of the radii at 25 MHz, and for each clock over all variants."""
     rows = []
     for count, by_clock in clocks.items():
-        ratio = by_clock["25 MHz"]  # [variant]: the first one has seed 1
+        ratio = by_clock["25 MHz"]  # [variant]; seeds start at 1
         groups = {f"radii x {factor}": [value for seed, value in enumerate(ratio, 1) if RADII[seed % len(RADII)] == factor]
                   for factor in RADII} | by_clock
         rows += [{"objects": count, "variants": name, "random / even": estimate(values).mean, "+-": estimate(values).half}
@@ -152,8 +152,8 @@ def sweep_of(runs, clocks):
 
 def finding_of_sweep(sweep):
     low, high = (sweep.loc[pick] for pick in (sweep["random / even"].idxmin(), sweep["random / even"].idxmax()))
-    return (f"Over radii and clocks random over even, asynchronous, lies between {low['random / even']:.2f} ({low['objects']} objects, "
-            f"{low['variants']}) and {high['random / even']:.2f} ({high['objects']} objects, {high['variants']}).")
+    return (f"For all radii and clocks, time of random / time of even objects (asynchronous) is {low['random / even']:.2f} ({low['objects']} "
+            f"objects, {low['variants']}) to {high['random / even']:.2f} ({high['objects']} objects, {high['variants']}).")
 
 
 def row_of(key, runs, exact):
@@ -169,14 +169,14 @@ def row_of(key, runs, exact):
 
 
 def ratio_of(runs, count, kind, protocol):
-    """Returns the ratios of the times of random scenes to the time of the even scene with as many objects."""
+    """Returns estimates of (time of a scene of this kind) / (time of the even scene of the same variant), for each of TIMES."""
     pairs = list(zip(runs[count, kind, protocol], runs[count, EVEN, protocol]))
     return {"objects": count, "kind": kind, "protocol": protocol,
             **{time: estimate([getattr(run, f"{time}_ms") / getattr(even, f"{time}_ms") for run, even in pairs]) for time in TIMES}}
 
 
 def growth_of(first, last):
-    """Returns objects / time of each scene as a product of four factors."""
+    """Returns growth of objects / growth of time and its four factors, for each variant. first, last: Runs with the fewest and most objects."""
     def one(a, b):
         steps, tests = b.events["steps"] / a.events["steps"], b.tests / a.tests
         work, time, count = b.work_ms / a.work_ms, b.overlapped_ms / a.overlapped_ms, COUNTS[-1] / COUNTS[0]
@@ -195,7 +195,7 @@ def texts_of(time_ratios, time):
 
 
 def claims_of(runs, ratios, growth):
-    """Judges random scenes by asynchronous times, because the paper's machine is asynchronous. The reasons also have the two bounds."""
+    """Judges by asynchronous times whether random scenes are slower, because the paper's machine is asynchronous. The reason has the bounds, too."""
     random_ratios, about = select(ratios, RANDOM, PAPER), f"{VARIANTS} variants of each scene"
     slower = [above([run.asynchronous_ms / even.asynchronous_ms
                      for run, even in zip(runs[count, RANDOM, PAPER], runs[count, EVEN, PAPER])], 1) for count in COUNTS]
@@ -204,59 +204,59 @@ def claims_of(runs, ratios, growth):
     log_fractions = [np.log(rows["fewer voxels a ray"]) / np.log(rows["objects / time"]) for rows in (even, random)]
     log_excess = [np.log(rows["fewer voxels a ray"]) - HALF * np.log(rows["objects / time"]) for rows in (even, random)]
     return [judged("random-is-slower", every(slower), about,
-                   f"Random over even, asynchronous (number of objects in brackets): {texts_of(random_ratios, 'asynchronous')}. "
+                   f"Time of random / time of even objects, asynchronous (number of objects in brackets): {texts_of(random_ratios, 'asynchronous')}. "
                    f"Bounds: overlapped {texts_of(random_ratios, 'overlapped')}; stepwise {texts_of(random_ratios, 'stepwise')}."),
             judged("not-linear", every(linear), about,
-                   f"{even['objects'][0]:.0f} times the objects take {estimate(even['time']).text(2)} times the time for even objects and "
-                   f"{estimate(random['time']).text(2)} times for random ones."),
+                   f"{even['objects'][0]:.0f} times as many objects take {estimate(even['time']).text(2)} times as long if they are even, and "
+                   f"{estimate(random['time']).text(2)} times as long if they are random (overlapped)."),
             judged("front-voxels", every(above(rows) for rows in log_excess), about,
-                   f"Rays end earlier: fewer voxels a ray explain a factor of {even['fewer voxels a ray'].mean():.2f} of "
-                   f"{even['objects / time'].mean():.2f} for even objects and {random['fewer voxels a ray'].mean():.2f} of "
-                   f"{random['objects / time'].mean():.2f} for random ones, which is {100 * log_fractions[0].mean():.0f} % and "
-                   f"{100 * log_fractions[1].mean():.0f} % by logarithms.")]
+                   f"Growth of objects / growth of time is {even['objects / time'].mean():.2f} for even and {random['objects / time'].mean():.2f} "
+                   f"for random objects. Its factor for rays that visit fewer voxels is {even['fewer voxels a ray'].mean():.2f} and "
+                   f"{random['fewer voxels a ray'].mean():.2f}, which is {100 * log_fractions[0].mean():.0f} % and "
+                   f"{100 * log_fractions[1].mean():.0f} % of the logarithm.")]
 
 
 def findings_of(runs, rows, ratios, growth, depths, words):
     random = select(rows, RANDOM, RAYA)
     first, last = random.iloc[0], random.iloc[-1]
-    copies = (f"Effect of copies: a random object is registered {1 + first['copies'] / first['objects']:.2f} times if there are "
-              f"{first['objects']} objects and {1 + last['copies'] / last['objects']:.2f} times if there are {last['objects']}. Moved "
-              f"until none straddles voxels, random objects take {texts_of(select(ratios, WITHIN, RAYA), 'overlapped')} times as long as "
-              "even ones if all nodes make primary rays; this remainder is due to unequal numbers of objects in the voxels.")
+    copies = (f"Straddling objects: a random object is registered in {1 + first['copies'] / first['objects']:.2f} voxels in the mean with "
+              f"{first['objects']} objects, and in {1 + last['copies'] / last['objects']:.2f} voxels with {last['objects']}. If none straddles "
+              f"voxels, random objects take {texts_of(select(ratios, WITHIN, RAYA), 'overlapped')} times as long as even ones (overlapped, "
+              "raya's protocol, number of objects in brackets), because the voxels have unequal numbers of objects.")
     a, b = (depths[depths["kind"] == EVEN].iloc[i] for i in (0, -1))
     (va, vb), end = (one["voxels a ray in the box"] for one in (a, b)), "end in the first voxel (% of those in the box)"
     theirs, ours = runs[COUNTS[0], EVEN, PAPER][0], runs[COUNTS[0], EVEN, RAYA][0]
     even = select(rows, EVEN, PAPER).set_index("objects")
-    longer = words["overlapped (ms)"].values / even["overlapped (ms)"][words["objects"]].values
-    more = ", ".join(f"{w['words a ray']:.0f} words take {times:.2f} times as long ({w['objects']:.0f} objects)"
-                     for times, (_, w) in zip(longer, words.iterrows()))
+    times_longer = words["overlapped (ms)"].values / even["overlapped (ms)"][words["objects"]].values
+    more = ", ".join(f"with {w['words a ray']:.0f} words {times:.2f} times ({w['objects']:.0f} objects)"
+                     for times, (_, w) in zip(times_longer, words.iterrows()))
     return [*findings_of_protocol(rows, ratios, PAPER), *findings_of_protocol(rows, ratios, RAYA), copies,
             *(finding_of_growth(*one) for one in growth),
-            f"A primary ray in the box visits {va:.2f} voxels among {a['objects']} even objects and {vb:.2f} voxels among {b['objects']}, "
-            f"{va / vb:.2f} times fewer; {a[end]:.0f} % and {b[end]:.0f} % of the rays end in the first one.",
-            f"{theirs.events['primary']} primary rays cause {theirs.returns} returns under the protocol of {PAPER} and "
-            f"{ours.returns} under raya's, where each term is a return; under raya's protocol all nodes together discard "
-            f"{ours.discarded} primary rays ({COUNTS[0]} even objects).",
-            f"Larger ray packets than the {papers.RAY_WORDS} words of Table 1, overlapped: {more}."]
+            f"A primary ray in the scene's box visits {va:.2f} voxels in the mean with {a['objects']} even objects and {vb:.2f} with "
+            f"{b['objects']}, a ratio of {va / vb:.2f}. {a[end]:.0f} % and {b[end]:.0f} % of these rays end in their first voxel.",
+            f"With {COUNTS[0]} even objects, {theirs.events['primary']} primary rays cause {theirs.returns} returns under the protocol of {PAPER} "
+            f"and {ours.returns} under raya's, where each contribution is a return. Under raya's protocol all nodes together discard "
+            f"{ours.discarded} primary rays.",
+            f"Overlapped time with larger ray packets, compared with the {papers.RAY_WORDS} words of Table 1: {more}."]
 
 
 def findings_of_protocol(rows, ratios, protocol):
     random_ratios, even = select(ratios, RANDOM, protocol), select(rows, EVEN, protocol)
-    yield (f"Protocol of {protocol}: random over even is {texts_of(random_ratios, 'asynchronous')} asynchronous, "
+    yield (f"Protocol of {protocol}: time of random / time of even objects is {texts_of(random_ratios, 'asynchronous')} asynchronous, "
            f"{texts_of(random_ratios, 'overlapped')} overlapped, {texts_of(random_ratios, 'stepwise')} stepwise (number of objects in brackets).")
     bound = even[even["the root alone (ms)"] >= even["overlapped (ms)"]]
     ms = bound["the root alone (ms)"]
     yield (f"Protocol of {protocol}: the root is not the bottleneck in any even scene." if not len(bound) else
-           f"Protocol of {protocol}: with {', '.join(map(str, bound['objects']))} even objects the root is the bottleneck, with "
-           f"{ms.min():.0f} to {ms.max():.0f} ms; there the time depends on making rays and receiving returns, not on the objects.")
+           f"Protocol of {protocol}: with {', '.join(map(str, bound['objects']))} even objects the root is the bottleneck and takes "
+           f"{ms.min():.0f} to {ms.max():.0f} ms. This time is spent on making rays and receiving returns, not on the objects.")
 
 
 def finding_of_growth(kind, protocol, rows):
     mean = rows.mean()
-    return (f"Protocol of {protocol}, {kind}: {mean['objects']:.0f} times the objects take "
-            f"{estimate(rows['time']).text(2)} times the time, {estimate(rows['objects / time']).text(2)} times less "
-            f"than in proportion. This ratio is the product of {mean['fewer voxels a ray']:.2f} because rays visit fewer voxels, "
-            f"{mean['tests a voxel grow less']:.2f} because a voxel's tests grow less than the objects, {mean['fixed costs']:.2f} for "
+    return (f"Protocol of {protocol}, {kind}: {mean['objects']:.0f} times as many objects take {estimate(rows['time']).text(2)} times as long "
+            f"(overlapped). Growth of objects / growth of time is {estimate(rows['objects / time']).text(2)}. "
+            f"Its factors are {mean['fewer voxels a ray']:.2f} because rays visit fewer voxels, "
+            f"{mean['tests a voxel grow less']:.2f} because the tests in a voxel grow less than the objects, {mean['fixed costs']:.2f} for "
             f"costs that do not depend on objects, and {mean.iloc[-1]:.2f} for the busiest node or link.")
 
 
@@ -267,10 +267,10 @@ def tables_of(rows, ratios, growth, depths, words):
     factors = pd.DataFrame([{"kind": kind, "protocol": protocol, **growth_rows.mean()} for kind, protocol, growth_rows in growth])
     factors.insert(5, "+-", [estimate(growth_rows["objects / time"]).half for *_, growth_rows in growth])
     return [Table("objects", "Time and work for each number of objects", rows),
-            Table("objects-ratios", "Random over even", spread),
-            Table("objects-growth", "Growth of time and objects: objects / time as a product", factors),
-            Table("objects-primary", "Depth of primary rays", depths.drop(columns="half")),
-            Table("objects-words", "Larger ray packets, protocol of Yoshitani & Yamazaki, even scenes", words)]
+            Table("objects-ratios", "Time of random / time of even objects", spread),
+            Table("objects-growth", "Growth from the fewest to the most objects: objects / time as a product of four factors", factors),
+            Table("objects-primary", "Voxels that primary rays visit", depths.drop(columns="half")),
+            Table("objects-words", "Times with larger ray packets, protocol of Yoshitani & Yamazaki, even scenes", words)]
 
 
 def plots_of(rows, ratios, depths):
@@ -279,9 +279,9 @@ def plots_of(rows, ratios, depths):
         even = select(rows, EVEN, protocol)
         series = [Series(kind, kind_rows["objects"], kind_rows[column], half_widths=kind_rows[f"{time} +- (ms)"])
                   for kind in (EVEN, RANDOM, WITHIN) for kind_rows in [select(rows, kind, protocol)]]
-        linear = Series("linear, from the fewest even objects", even["objects"],
+        linear = Series("proportional to the number of even objects", even["objects"],
                         even[column][0] * even["objects"] / even["objects"][0])
-        return Plot(name, title, "objects", "modelled time (ms)", series + [linear], "xy")
+        return Plot(name, title, "number of objects", "modelled time (ms)", series + [linear], "xy")
 
     title = "Time under the protocol of Yoshitani & Yamazaki"
     cases = [(kind, protocol) for protocol in PROTOCOLS for kind in (RANDOM, WITHIN)]
@@ -292,6 +292,6 @@ def plots_of(rows, ratios, depths):
             times("objects", f"{title}, overlapped", PAPER, "overlapped"),
             times("objects-stepwise", f"{title}, stepwise", PAPER, "stepwise"),
             times("objects-raya", "Time under raya's protocol, overlapped", RAYA, "overlapped"),
-            Plot("objects-ratios", "Random over even, asynchronous", "objects (each series is shifted by 6 %)", "time of random / time of even", ratio, "x"),
-            Plot("objects-depth", "Depth of primary rays", "objects", "voxels a ray in the box",
+            Plot("objects-ratios", "Random and even objects, asynchronous", "objects (series shifted by 6 %)", "random / even time", ratio, "x"),
+            Plot("objects-depth", "Voxels that primary rays visit", "number of objects", "voxels per ray in the box",
                  series_by(depths, "kind", "objects", "voxels a ray in the box", "half"), "x")]

@@ -1,32 +1,30 @@
 """Renders on 1 to {ranks} ranks
 
-How many MPI ranks pay, and from how many on does communication take more time than tracing?
+Up to how many MPI ranks does a render become faster, and from which number upwards does communication take at least half of the time?
 
-- Source: none of the papers; the study measures this host and extrapolates by a model.
-- Ring: {scene} at {size} x {size} with the 3 x 3 filter; a PE for each column, or for each rank if there are more ranks than columns;
-  p = 16, with more ranks than columns round(sqrt(P)). Torus: {torus_scene} at {torus_size} x {torus_size} on 8 x 8 x 8 nodes, a voxel
-  each, queues of 1024 packets.
-- A rank has one core of this machine's CPU, or a device of its own if the device is not a CPU. One rank is measured: the time of its
-  device for tracing, its time for all other kernels, and the rest of the render, which is the host's part of rank 0.
-- Ring on R ranks: tracing / R times (1 + u) of the ranks' segments, by the pixels' modelled cycles; the other kernels / R; each rotation
-  takes alpha + beta for the block of one PE; rank 0 receives the pixels and loads of all ranks one after another; the scene is broadcast
-  in log2 R rounds. alpha is the time of a message (s), beta the time of a byte (s).
-- Torus on R ranks: a rank has a brick, a cuboid of nodes, as in `raya render`. In each superstep tracing takes the time of the rank with the
-  most modelled cycles. The other kernels take time in proportion to the nodes of the largest brick. Faces take alpha for each message and
-  beta for each byte that the busiest rank sends or receives, whichever is more. Every rank receives the status of all nodes in log2 R rounds.
-  Supersteps, cycles and words of links are counted in one render.
-- More than 512 ranks have a torus with a node for each, which is extrapolated: the supersteps grow with its side, a node's cycles in a
-  superstep shrink with its voxel and its words with a face of the voxel, and the host of rank 0 processes more nodes.
-- The model excludes the cost of device commands beyond those of one rank, collisions of messages, and waiting for a rank that is late
-  for another reason.
-- Networks: fitted to a ping-pong of `raya ping`; two that are assumed; and one from the command line (`--network`). Measured:
-  `mpirun -n R raya render`, up to {turns} of each in turn after a warm-up, none after {enough} s, one thread a rank. The model is
+- Source: none of the papers. The study measures this host and extrapolates with a model.
+- Ring: {scene} at {size} x {size} with the 3 x 3 filter, one PE per column. The offset is p = 16. If there are more ranks than columns, there is one
+  PE per rank and p = round(sqrt(P)). Torus: {torus_scene} at {torus_size} x {torus_size} on 8 x 8 x 8 nodes, one voxel per node, queues of 1024
+  packets.
+- Each rank has one core of this machine's CPU, or its own device if the device is not a CPU. Three times of a render on one rank are measured:
+  tracing on the device, all other kernels, and the rest, which is the work of the host program on rank 0.
+- Ring on R ranks: tracing takes (measured time / R) (1 + u), where u is the load imbalance of the ranks by modelled cycles. The other kernels take
+  measured time / R. Each rotation takes alpha + beta times the bytes of one PE's block. Rank 0 receives the pixels and loads of the ranks one after
+  another. The scene is broadcast in log2 R rounds. alpha is the time per message (s), beta the time per byte (s).
+- Torus on R ranks: each rank simulates a brick, a cuboid of nodes. In each superstep tracing takes the time of the rank with the most modelled
+  cycles. The other kernels take time in proportion to the nodes of the largest brick. The exchange takes alpha per message and beta per byte of the
+  rank that sends or receives most. All ranks receive the status of all nodes in log2 R rounds. One render counts supersteps, cycles and words over
+  links.
+- For more than 512 ranks the model assumes a torus with one node per rank. Supersteps and messages grow with its side, the cycles of a node shrink
+  with the volume of its voxel, and its bytes with a face of the voxel. The host program on rank 0 processes more nodes.
+- The model excludes device commands beyond those of one rank, collisions of messages, and waiting for a rank that is late for another reason.
+- Networks: one fitted to the ping-pong of `raya ping`, two assumed, and one from the command line (`--network`). Measured times: `mpirun -n R raya
+  render`, one thread per rank, for all R in turn after a warm-up, up to {turns} times each; no further render starts after {enough} s. The model is
   compared with the minimum.
-- Scaling is measured the same way. Strong: the same picture on more ranks. Weak: pixels in proportion to ranks on the ring; objects,
-  spread evenly, in proportion to ranks on the torus. Efficiency is the work (modelled cycles) of a core in a second, by the minimum,
-  relative to one rank.
-- Output: ranks.csv (half and fastest numbers of ranks), ranks-here.csv (predicted and measured, ms), ranks-scaling.csv, ranks-networks.csv
-  (alpha in us, beta in ns a byte), ranks-messages.csv (us), ranks-all.csv (parts of the predicted time, ms).
+- Scaling is measured in the same way. Strong: the same picture on more ranks. Weak: pixels (ring) or evenly spread objects (torus) in proportion to
+  the ranks. Efficiency is the modelled cycles per second and core, by the minimum time, relative to one rank.
+- Output: ranks.csv (number of ranks at which communication takes half of the time, and fastest number), ranks-here.csv (predicted and measured, ms),
+  ranks-scaling.csv, ranks-networks.csv (alpha in us, beta in ns per byte), ranks-messages.csv (us), ranks-all.csv (parts of predicted times, ms).
 """
 import json
 import os
@@ -41,12 +39,12 @@ from raya.lab.programs import missing_mpirun, render_on_ranks, run_on_ranks
 from raya.lab.rank_model import PARTS, RingModel, TorusModel
 from raya.lab.voxels import even_scene, powers_of_two
 
-TURNS, SAMPLING_S, WEAK_SAMPLING_S = 3, 5, 2  # maximum number of turns; seconds of a series after which no further turn starts
+TURNS, SAMPLING_S, WEAK_SAMPLING_S = 3, 5, 2  # maximum renders of a case; seconds of renders of a case after which it gets no further render
 MAX_OTHER_LOAD = 0.05  # fraction of the processor time used by other programs, above which measurements count as unreliable
 
 
 def measurable_ranks():
-    """Returns ({number of ranks to measure: number of cores that these ranks have together}, result of `raya ping`)."""
+    """Returns ({number of ranks to measure: number of cores that these ranks have together}, report of `raya ping` on two ranks)."""
     available_cores, ping = {1: 1}, None
     for ranks in powers_of_two(min(max(2 * os.cpu_count(), 4), 16))[1:]:
         result = json.loads(run_on_ranks(ranks, ["ping"]))
@@ -59,7 +57,7 @@ def measurable_ranks():
 
 
 def parts_of(machine, report):
-    """Returns {part: measured seconds} of a render on one rank: tracing; the other kernels and commands; the rest of the render, on the host."""
+    """Returns {part: measured seconds} of a render on one rank: trace; rest (all other device commands); host (the rest of the render)."""
     commands = report["measured"]["commands"]
     device = 1e-9 * sum(c["total_ns"] for c in commands)
     trace = 1e-9 * sum(c["total_ns"] for c in commands if c["label"] == machine.label)
@@ -84,7 +82,7 @@ def measure(arguments_by_ranks, device, sampling_s=SAMPLING_S):
 
 
 def scaling_of(machine, scaling, trials, available_cores):
-    """Yields rows of measured efficiency: modelled cycles per second and core, relative to one rank."""
+    """Yields rows with the measured efficiency: modelled cycles per second and core, relative to one rank."""
     def rate(ranks):
         seconds, report = trials[ranks]
         return sum(report["load"]["per_pe"]) / min(seconds) / cores_of(report, ranks, available_cores)
@@ -147,22 +145,22 @@ def ranks(lab, scenes):
                             c["predicted / measured"], c["remark"])
                  for _, c in checks[checks["ranks"] > 1].iterrows()],
                 tables=tables_of(rows, checks, scaling, summary, networks, ping), plots=[*plots_of(rows, checks)],
-                clock="measured on this host where stated; all other times are predicted from the measured seconds of one rank. The measured time "
-                "of a render starts when its kernels are built and the scene has been broadcast; the predicted total includes the broadcast.")
+                clock="measured on this host where stated; all other times are predicted from the measured times of one rank. The measured time of "
+                "a render starts after its kernels are built and the scene is broadcast. Predicted total times include the broadcast.")
 
 
 def networks_of(ping, given):
     """Returns {name: ((alpha in s, beta in s/byte), source)}"""
     fitted = ping["alpha_s"], ping["beta_s_per_byte"]
     networks = {"this host": (fitted, f"fitted to the ping-pong, {ping['library']}"),
-                "10 GbE": ((30e-6, 0.8e-9), "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us, about what TCP takes"),
-                "InfiniBand HDR": ((1e-6, 0.04e-9), "assumed: 200 Gbit/s of a 4x port; 1 us, an adapter's 0.6 us and "
-                                   "what MPI adds")}
+                "10 GbE": ((30e-6, 0.8e-9), "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us per message, about that of TCP"),
+                "InfiniBand HDR": ((1e-6, 0.04e-9), "assumed: 200 Gbit/s of a 4x port; 1 us per message: 0.6 us of the "
+                                   "adapter, and MPI")}
     return {**networks, "given": (given, "--network")} if given else networks
 
 
 def rows_of(machine, one_rank, networks):
-    """Yields rows of predictions from the seconds of one rank, for each network and number of ranks."""
+    """Yields a row with the predicted times for each network and number of ranks. one_rank: measured seconds of one rank, by part."""
     one_s = sum(machine.predict(0, one_rank, (0, 0), 1).values())
     for name, (network, _) in networks.items():
         for i, count in enumerate(machine.ranks):
@@ -174,7 +172,7 @@ def rows_of(machine, one_rank, networks):
 
 
 def checks_of(machine, one_rank, trial, network, available_cores):
-    """Yields rows of predicted and measured times, for the numbers of ranks that were measured."""
+    """Yields a row with predicted and measured times for each number of ranks that was measured."""
     for i, (count, (seconds, _)) in enumerate(trial.items()):
         cores = cores_of(trial[1][1], count, available_cores)
         parts = machine.predict(i, one_rank, network, cores)
@@ -182,7 +180,7 @@ def checks_of(machine, one_rank, trial, network, available_cores):
         yield {"machine": machine.name, "ranks": count, "cores": cores, "predicted (ms)": predicted,
                "measured, best (ms)": 1e3 * min(seconds), "median (ms)": 1e3 * float(np.median(seconds)),
                "largest (ms)": 1e3 * max(seconds), "predicted / measured": predicted / min(seconds) / 1e3,
-               "remark": "ranks share cores" if cores < count else "the model is based on it" if count == 1 else ""}
+               "remark": "ranks share cores" if cores < count else "the model uses this measurement" if count == 1 else ""}
 
 
 def summary_of(key, network_rows):
@@ -200,7 +198,7 @@ def findings_of_model(summary, checks):
                            f"({r['network']})" for _, r in group.iterrows())
         fastest = ", ".join(f"{r['fastest (ranks)']} ({r['network']}, {r['speed-up']:.3g} times as fast as one)"
                             for _, r in group.iterrows())
-        findings.append(f"{machine}: communication takes half of the time on {halves}. The fastest numbers of ranks are {fastest}.")
+        findings.append(f"{machine}: communication first takes at least half of the time on {halves}. The fastest numbers of ranks are {fastest}.")
 
     def text(group):
         ratio = group["predicted / measured"]
@@ -208,8 +206,8 @@ def findings_of_model(summary, checks):
 
     shared = more["cores"] < more["ranks"]
     return findings + [
-        f"On the numbers of ranks that this host can run, the prediction is {text(more[~shared])} times the measured time if each rank "
-        f"has a core, and {text(more[shared])} times if ranks share cores; measured: the minimum of up to {TURNS} renders each."]
+        f"On this host, predicted / measured time is {text(more[~shared])} for numbers of ranks with a core for each rank, and "
+        f"{text(more[shared])} for those at which ranks share cores. The measured time is the minimum of up to {TURNS} renders."]
 
 
 def findings_of_measures(scaling, other_load, ping):
@@ -219,39 +217,39 @@ def findings_of_measures(scaling, other_load, ping):
              for (machine, name), group in scaling.groupby(["machine", "scaling"], sort=False)]
     others = f"During the measurements other programs used {100 * other_load:.1f} % of this host's processor time."
     if other_load > MAX_OTHER_LOAD:
-        others += " Ranks waited for each other, and times of several ranks are unreliable. Repeat this study when the host is idle."
+        others += " Ranks had to wait for each other, so the times of several ranks are unreliable. Repeat this study when the host is idle."
     first, last = ping["messages"][0], ping["messages"][-1]
-    return [f"Measured efficiency relative to one rank on one core: {'; '.join(kinds)}.", others,
-            f"By the fit, a message between two ranks on this host ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us and "
-            f"{1e9 * ping['beta_s_per_byte']:.3f} ns a byte. Measured: one byte takes {1e6 * first['seconds']:.2f} us, and 4 MB are "
-            f"sent at {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s."]
+    return [f"Measured efficiency relative to one rank (on the given number of ranks): {'; '.join(kinds)}.", others,
+            f"Fitted: a message between two ranks on this host ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us plus "
+            f"{1e9 * ping['beta_s_per_byte']:.3f} ns per byte. Measured: a message of one byte takes {1e6 * first['seconds']:.2f} us; one of 4 MB "
+            f"has a rate of {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s."]
 
 
 def tables_of(rows, checks, scaling, summary, networks, ping):
     alpha, beta = ping["alpha_s"], ping["beta_s_per_byte"]
-    return [Table("ranks", "Numbers of ranks at which communication takes half of the time, and the fastest", summary),
-            Table("ranks-here", "Predicted and measured on one core a rank", checks),
-            Table("ranks-scaling", "Strong and weak scaling, measured here", scaling),
-            Table("ranks-networks", "Networks", [
+    return [Table("ranks", "Number of ranks at which communication takes half of the time, and fastest number of ranks", summary),
+            Table("ranks-here", "Predicted and measured times on this host", checks),
+            Table("ranks-scaling", "Strong and weak scaling, measured on this host", scaling),
+            Table("ranks-networks", "Networks of the model", [
                 {"network": name, "alpha (us)": 1e6 * a, "beta (ns a byte)": 1e9 * b, "source": source}
                 for name, ((a, b), source) in networks.items()]),
-            Table("ranks-messages", "Messages between two ranks here", [
+            Table("ranks-messages", "Times of messages between two ranks on this host", [
                 {"bytes": m["bytes"], "measured (us)": 1e6 * m["seconds"],
                  "fitted (us)": 1e6 * (alpha + beta * m["bytes"])} for m in ping["messages"]]),
-            Table("ranks-all", "Parts of the time on each number of ranks", rows, on_page=False)]
+            Table("ranks-all", "Parts of the predicted time on each number of ranks", rows, on_page=False)]
 
 
 def plots_of(rows, checks):
     for machine in ("ring", "torus"):
         machine_rows = rows[rows["machine"] == machine]
         measured = checks[checks["machine"] == machine]
-        yield Plot(f"ranks-{machine}-networks", f"{machine}: time against ranks, by network", "ranks", "time (ms)",
+        yield Plot(f"ranks-{machine}-networks", f"{machine}: time of a render, by network", "number of ranks", "time (ms)",
                    series_by(machine_rows, "network", "ranks", "time (ms)") +
-                   [Series("measured", measured["ranks"], measured["measured, best (ms)"], "points")], "xy")
+                   [Series("measured, this host", measured["ranks"], measured["measured, best (ms)"], "points")], "xy")
         on_10_gbe = machine_rows[machine_rows["network"] == "10 GbE"]
-        labels = {"compute": "compute", "host": "host", "exchange": "exchange",
-                  "collect": "pixels to rank 0" if machine == "ring" else "status to all", "broadcast": "scene"}
+        labels = {"compute": "kernels", "host": "host program", "exchange": "exchange",
+                  "collect": "pixels to rank 0" if machine == "ring" else "status to all ranks", "broadcast": "broadcast of the scene"}
         parts = [Series(label, *zip(*[(r, ms) for r, ms in zip(on_10_gbe["ranks"], on_10_gbe[f"{part} (ms)"]) if ms > 0]))
                  for part, label in labels.items()]
-        yield Plot(f"ranks-{machine}", f"{machine} on ranks, by 10 GbE", "ranks", "time (ms)",
+        yield Plot(f"ranks-{machine}", f"{machine}: parts of the time with 10 GbE", "number of ranks", "predicted time (ms)",
                    [Series("total", on_10_gbe["ranks"], on_10_gbe["time (ms)"]), *parts], "xy")

@@ -1,17 +1,18 @@
-"""From 16 PEs to one for each pixel
+"""From 16 PEs to one PE per pixel
 
-Up to how many PEs do static mappings scale, and is a two-dimensional mapping necessary for more PEs than columns?
+Up to how many PEs do static mappings scale, and is a two-dimensional mapping necessary if there are more PEs than columns?
 
 - Source: Kohata & Ito 1993, conclusions.
-- {scene} at {size} x {size} on {fewest} to {most} PEs of the SPA, in powers of two, without supersampling.
-- If there are more PEs than columns, several PEs share a slot: they take its rows in turn (cyclic fold) or in runs (block fold).
-- The offset "p = sqrt(P) or W / sqrt(P)", for an image of W columns, is sqrt(P) if P <= W. If P > W, the rows of a PE are P / W apart, and
-  p = W / sqrt(P) shifts its pixel by sqrt(P) columns from one of its rows to the next. All offsets are rounded.
-- {ensemble}; the first table and most plots are of {scene}.
-- Upper bound of the speed-up: all cycles / max(mean load, highest cost of a pixel). A mapping "keeps up" if it has at least
-  {close} % of the 2-D mapping's efficiency.
-- Output: scale.csv and scale-views.csv have a row for each number of PEs P and a column with the efficiency (mean load / largest load) of each
-  mapping; scale-half.csv has the largest P with an efficiency of at least 50 %.
+- Scene {scene}, {size} x {size} pixels, on {fewest} to {most} PEs of the SPA (powers of two); first pass.
+- If P, the number of PEs, is greater than W, the number of columns, P / W PEs share each slot of the cyclic mapping. They own its rows in
+  turn (cyclic fold) or in runs (block fold).
+- The offset "p = sqrt(P) or W / sqrt(P)" is sqrt(P) if P <= W. If P > W, the rows of a PE are P / W apart, and p = W / sqrt(P) shifts its
+  pixel by sqrt(P) columns from one of its rows to the next. All offsets are rounded.
+- Ensemble: {ensemble}. The first table and most plots show {scene} only.
+- Upper bound of the speed-up: sum of all costs / max(mean load, highest cost of a pixel). A mapping "keeps up" with the 2-D mapping if
+  its efficiency is at least {close} % of that of the 2-D mapping.
+- Output: scale.csv and scale-views.csv have a row for each number of PEs P and a column with the efficiency (mean load / largest load) of
+  each mapping; scale-half.csv has the largest P up to which the efficiency is at least 50 %.
 """
 import numpy as np
 import pandas as pd
@@ -19,7 +20,7 @@ import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, below, estimate, estimates, every, first_scene, judged, papers, study
 from raya.lab.mappings import squarest_grid
 
-HALF_EFFICIENCY, KEEPS_UP, VIEWS = 0.5, 0.9, 18  # KEEPS_UP: bound of the claim beyond-a-side, a fraction of the 2-D mapping's efficiency
+HALF_EFFICIENCY, KEEPS_UP, VIEWS = 0.5, 0.9, 18  # KEEPS_UP: minimum of efficiency / efficiency of the 2-D mapping
 GRID = "2-D, A x B PEs"
 FIXED, ROOT, ADAPTED = "p = 16", "p = sqrt(P)", "p = sqrt(P) or W / sqrt(P)"
 # Offsets, rounded to integers. If P > W, consecutive rows of a PE are P / W rows apart. With p = W / sqrt(P), the PE's pixel in its next
@@ -63,7 +64,7 @@ def scale(lab, scenes):
     means = means_of(view_tables, ensemble.families)
     return Page({"scene": scene.name, "size": side, "pes": rows["P"].tolist(), "offset": 16 % side, "seed": 1,
                  "views": len(view_tables)},
-                [f"Numbers of PEs up to which the efficiency is at least 50 %: {'; '.join(texts)}; upper limit of all mappings that give "
+                [f"Number of PEs up to which the efficiency is at least 50 %: {'; '.join(texts)}; upper bound for all mappings that give "
                  f"each pixel to one PE: {halves.iloc[0, 1]}.",
                  finding_of_2d(rows[between]), finding_of_resonance(rows[between], side),
                  f"The most expensive pixel costs {largest:.1f} times the mean, so no mapping that gives each pixel to one PE has a speed-up of "
@@ -71,18 +72,18 @@ def scale(lab, scenes):
                  f"{1 / largest:.3f}."],
                 comparisons_of(rows, side, side * side / largest),
                 [claim_of_2d(rows["P"][between], view_tables, ensemble)] if not scenes else [],
-                [Table("scale-half", "Numbers of PEs up to which the efficiency is at least 50 %", halves),
+                [Table("scale-half", "Number of PEs up to which the efficiency is at least 50 %", halves),
                  Table("scale", "Efficiency for each number of PEs", rows),
-                 Table("scale-views", "Efficiency for each number of PEs, mean of the views", means, on_page=False)],
+                 Table("scale-views", "Efficiency for each number of PEs, mean of the ensemble", means, on_page=False)],
                 plots_of(rows, means, len(view_tables)),
-                [f"With more PEs than columns p = 16 keeps an efficiency of 50 % up to {halves.iloc[1, 1]} PEs at {side} x {side}; no mapping that gives each "
-                 f"pixel to one PE keeps it beyond {halves.iloc[0, 1]}."],
+                [f"At {side} x {side} pixels, p = 16 has an efficiency of at least 50 % up to {halves.iloc[1, 1]} PEs. No mapping that gives each "
+                 f"pixel to one PE has it beyond {halves.iloc[0, 1]} PEs."],
                 placeholders={"ensemble": ensemble.description, "fewest": rows["P"].min(), "most": rows["P"].max(), "close": f"{100 * KEEPS_UP:.0f}"},
                 compared_with=papers.SPA)
 
 
 def half_of(name, rows):
-    """Returns (largest P up to which the efficiency is at least 50 %, speed-up for this P); 0 if there is no such P."""
+    """Returns a row: the mapping, the largest P up to which its efficiency is at least 50 % (0: none), and its speed-up for this P."""
     efficient = rows[(rows[name] >= HALF_EFFICIENCY).cummin()]
     pes, efficiency = efficient[["P", name]].iloc[-1] if len(efficient) else (0, 0.0)
     return {"mapping": name, "50 % or more up to P": int(pes), "speed-up there": efficiency * pes}
@@ -101,44 +102,43 @@ def finding_of_2d(between):
             for name in (FIXED, ROOT, ADAPTED, "column split", "random")}
     best = max((FIXED, ROOT, ADAPTED), key=lambda name: len(kept[name]))
     if len(kept[best]) == len(between):
-        need = f"So 2-D is not necessary: the cyclic mapping with {best}, whose slots several PEs share, is enough."
+        need = f"So a 2-D mapping is not necessary: the cyclic mapping with {best}, in which several PEs share a slot, is enough."
     elif not kept[best]:
-        need = "So 2-D is necessary, as Kohata & Ito say."
+        need = "So a 2-D mapping is necessary, as Kohata & Ito say."
     else:
-        need = f"So 2-D is not always necessary: {best} is enough for P = {', '.join(map(str, kept[best]))}."
+        need = f"So a 2-D mapping is not always necessary: {best} is enough for P = {', '.join(map(str, kept[best]))}."
     counts = "; ".join(f"{name}: {len(pes)}" for name, pes in kept.items())
-    return (f"For more PEs than the image has columns Kohata & Ito ask for 2-D \"or the like\". Of {len(between)} such arrays, the number on "
-            f"which a mapping keeps up with 2-D is: {counts}. {need}")
+    return (f"For more PEs than columns Kohata & Ito propose a 2-D mapping \"or the like\". Of {len(between)} numbers of PEs greater than W, each "
+            f"mapping keeps up with the 2-D mapping for this many: {counts}. {need}")
 
 
 def finding_of_resonance(between, side):
-    """Sentence on offsets that have no effect. The next row of a PE is s = P / W rows further on, where the offset shifts the PE's pixel by s p
-    columns. If s p is a multiple of W, the pixel stays in its column."""
+    """Returns a sentence on offsets without effect. The rows of a PE are s = P / W apart, so the offset shifts its pixel by s p columns from one to
+    the next. If s p is a multiple of W, all pixels of the PE are in one column."""
     lost = {name: [str(p) for p in between["P"] if p % side == 0 and p // side * OFFSETS[name](side, p) % side == 0]
             for name in (FIXED, ROOT, ADAPTED)}
     texts = [f"{name} for P = {', '.join(pes)}" for name, pes in lost.items() if pes]
     if not texts:
-        return "Where PEs share the rows of a slot, the load with each of these offsets differs from that of the column split."
-    return ("Where PEs share the rows of a slot, an offset can cancel out: if the shift after P / W rows is a multiple of W, the load "
-            f"is that of the column split. This happens with {'; '.join(texts)}.")
+        return "If P / W PEs share a slot, the loads with each of these offsets differ from those of the column split."
+    return ("An offset is without effect if P / W PEs share a slot and its shift after P / W rows is a multiple of W: the loads are then "
+            f"those of the column split. This happens with {'; '.join(texts)}.")
 
 
 def claim_of_2d(between, view_tables, ensemble):
-    """Judges the claim that a 2-D mapping is necessary, for arrays with more PEs than columns."""
+    """Judges the claim that a 2-D mapping is necessary for more PEs than columns. between: the numbers of PEs above the number of columns."""
     ratios_to_2d = {name: np.array([[v[name][i] / v[GRID][i] for i in between.index] for v in view_tables]) for name in (FIXED, ROOT, ADAPTED)}
     best = [max(ratios_to_2d, key=lambda name, i=i: ratios_to_2d[name][:, i].mean()) for i in range(len(between))]  # for each array
     ratios = np.array([ratios_to_2d[name][:, i] for i, name in enumerate(best)])  # [array, view]
     worst = int(ratios.mean(1).argmin())
     return judged("beyond-a-side", every(below(one, KEEPS_UP, ensemble.families) for one in ratios), ensemble.description,
-                  f"On {len(between)} arrays with more PEs than columns, the best of the cyclic mappings is {', '.join(dict.fromkeys(best))}. On "
-                  f"{between.iloc[worst]} "
-                  f"PEs, where it is worst, it has {estimate(ratios[worst], ensemble.families).text(2)} of the 2-D mapping's efficiency.")
+                  f"For {len(between)} numbers of PEs above the number of columns, the best cyclic mapping is {', '.join(dict.fromkeys(best))}. Its "
+                  f"efficiency / that of 2-D is lowest for {between.iloc[worst]} PEs: {estimate(ratios[worst], ensemble.families).text(2)}.")
 
 
 def comparisons_of(rows, side, most):
     row = rows[rows["P"] * 2 > side].iloc[0]
     return [Comparison(f"efficiency on {row['P']:.0f} PEs, {name}", "", None, row[name]) for name in PLAIN] + [
-        Comparison("upper bound of the speed-up", "", None, most, "all cycles / those of the most expensive pixel")]
+        Comparison("upper bound of the speed-up", "", None, most, "cycles of all pixels / cycles of the most expensive pixel")]
 
 
 def plots_of(rows, means, views):
@@ -146,12 +146,12 @@ def plots_of(rows, means, views):
         return [Series(name, rows["P"], rows[name] * times) for name in names]
 
     both = [name + fold for name in (FIXED, ADAPTED, "column split") for fold in ("", ", block fold")]
-    return [Plot("scale", "Efficiency against the number of PEs, cyclic fold", "PEs", "efficiency",
+    return [Plot("scale", "Efficiency against the number of PEs, cyclic fold", "number of PEs", "efficiency",
                  lines(["upper bound", *PLAIN]), "x"),
-            Plot("scale-folds", "Efficiency against the number of PEs, both folds", "PEs", "efficiency", lines(both),
+            Plot("scale-folds", "Efficiency against the number of PEs, both folds", "number of PEs", "efficiency", lines(both),
                  "x"),
-            Plot("scale-speedup", "Speed-up against the number of PEs, cyclic fold", "PEs", "speed-up",
+            Plot("scale-speedup", "Speed-up against the number of PEs, cyclic fold", "number of PEs", "speed-up",
                  lines(["upper bound", *PLAIN], rows["P"]), "xy"),
-            Plot("scale-views", f"Efficiency against the number of PEs, mean of {views} views", "PEs",
+            Plot("scale-views", f"Efficiency against the number of PEs, mean of {views} pictures", "number of PEs",
                  "efficiency", [Series(name, means["P"], means[name], half_widths=means[f"{name}, +-"])
                                 for name in PLAIN], "x")]

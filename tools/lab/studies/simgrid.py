@@ -1,23 +1,23 @@
 """The asynchronous torus, compared with SimGrid
 
-Do raya's simulator and SimGrid give the same time for the same work on the same machine?
+Do raya's discrete-event simulation and SimGrid give the same time for the same work on the same machine?
 
-- Source: SimGrid (Casanova et al. 2014), with the protocol of Yoshitani & Yamazaki, about 1995 (Table 1: ray packets of 22 words).
-- The work: the cost of each packet of a render on its node, and the messages that it causes ({scene}, {size} x {size} pixels, {nodes}
-  nodes, primary rays made by the root or by all nodes, ray packets of 22 words, one return a ray). The work does not depend on the
-  order in time, so both simulators can replay it.
-- raya: its own discrete-event simulation (`host/torus/async_machine.hpp`). SimGrid 3.32: hosts, links, actors and messages of the S4U
-  interface (`tools/simgrid/replay.cpp`); SimGrid's solver shares processors and links. Common rules: a main task and a communication
-  task with priority; one message at a time in each direction of a link; ports with {buffer} slots for each class of messages. A
-  ray needs two free slots to enter a link of another axis.
-- The platform has explicit links and routes between neighbours. A hop has two links: one for its direction, and the wire that both
-  directions share. SimGrid's own torus is not used: there a message occupies all links of its route at once, while transputers store it
+- Source: SimGrid (Casanova et al. 2014), with the protocol of Yoshitani & Yamazaki, about 1995: ray packets of 22 words (their Table 1).
+- Work: for each packet of a render, its cost on its node and the messages that it causes. The render is {scene}, {size} x {size} pixels,
+  {nodes} nodes. The root or all nodes make the primary rays; each ray causes one return. The work does not depend on the order of events, so
+  both simulators can replay it.
+- raya: its own discrete-event simulation (`host/torus/async_machine.hpp`). SimGrid 3.32: hosts, links, actors and messages of its S4U
+  interface (`tools/simgrid/replay.cpp`); SimGrid computes how messages share processors and links. Both follow the same rules. A node has a
+  main task, and a communication task with priority. A link transfers one message at a time in each direction. A port has {buffer}
+  slots for messages of each class (rays, returns). A ray needs two free slots to enter a link of another axis.
+- SimGrid's platform has explicit links and routes between neighbours. A hop uses two links: one for its direction, and the wire that both
+  directions share. SimGrid's own torus is not used: in it a message occupies all links of its route at once, but transputers store messages
   in every node.
-- Effects are enabled one after another, each in addition to those before: only computing, where messages take no time; the processors'
-  part of messages; links of 1.7 MB/s each way; both directions sharing 2.4 MB/s; finite buffers. The plot numbers them from 0.
+- Effects are added one after another: only computing (messages take no time); the processors' time for messages; links of 1.7 MB/s in each
+  direction; both directions share 2.4 MB/s; finite buffers. The plot numbers them from 0.
 - The times agree if they differ by at most {goal} % on every machine.
-- Output: simgrid.csv has a row for each torus, method of injection and machine: messages, modelled times of both simulators and of the effect
-  (ms), and the difference (%).
+- Output: simgrid.csv has a row for each torus, method of injection and machine: messages, modelled times of both simulators, the part of the
+  effect added last (ms), and the difference (%).
 """
 import os
 import tempfile
@@ -28,7 +28,7 @@ from raya.lab import Comparison, Page, Plot, Series, Table, papers, study
 from raya.lab.programs import output_of, sibling_program
 from raya.lab.voxels import even_scene, run_on_torus
 
-MAX_DIFFERENCE, BUFFER = 10, 4  # accepted difference in %; number of messages of a class that a port buffers
+MAX_DIFFERENCE, BUFFER = 10, 4  # maximum difference in %; slots of a port for messages of each class
 UNLIMITED = {"buffer": 1 << 20}  # buffers that never fill up
 NO_LINKS = {"one_way": 0, "both_ways": 0}
 # Each machine adds one effect to the previous machine; the last one is the complete machine.
@@ -45,7 +45,7 @@ def missing():
 
 
 def simulate_by_simgrid(result, changes):
-    """Replays a render by SimGrid. Returns (number of messages, finish time in ms)."""
+    """Replays a render with SimGrid on the machine with these changes. Returns (number of messages, finish time in ms)."""
     with tempfile.TemporaryDirectory(prefix="raya-simgrid-") as folder:
         platform, replay = os.path.join(folder, "platform.xml"), os.path.join(folder, "replay.txt")
         messages = result.write_replay(platform, replay, **changes)
@@ -81,32 +81,32 @@ def simgrid(lab, scenes):
     series = [Series(f"{torus}, {inject}, {simulator}", range(len(group)), group[f"{simulator} (ms)"], style)
               for (torus, inject), group in rows.groupby(["torus", "inject"], sort=False)
               for simulator, style in (("raya", "line"), ("SimGrid", "points"))]
-    bounds = [f"{row['torus']}, inject {row['inject']}: the complete machine takes {row['raya (ms)']:.1f} ms, between "
-              f"{row['overlapped']:.1f} ms overlapped and {row['stepwise']:.1f} ms stepwise."
+    bounds = [f"{row['torus']} torus, rays made by: {row['inject']}. The complete machine takes {row['raya (ms)']:.1f} ms in raya's simulation; "
+              f"the bounds are {row['overlapped']:.1f} ms overlapped and {row['stepwise']:.1f} ms stepwise."
               for _, row in complete.iterrows()]
     return Page({"scene": scene.name, "size": size, "nodes": "4x4x4", "buffer": BUFFER, "goal": MAX_DIFFERENCE},
                 findings_of(rows) + bounds,
-                [Comparison(f"{row['torus']}, {row['inject']}, complete machine, ours / SimGrid", "", None,
+                [Comparison(f"{row['torus']} torus, rays made by: {row['inject']}, complete machine, raya / SimGrid", "", None,
                             row["raya (ms)"] / row["SimGrid (ms)"], "modelled, asynchronous")
                  for _, row in complete.iterrows()],
-                tables=[Table("simgrid", "Time of the same work, simulated by raya and by SimGrid",
+                tables=[Table("simgrid", "Time of the same work, simulated by raya and by SimGrid, with one more effect in each row",
                               rows.drop(columns=["overlapped", "stepwise"]))],
-                plots=[Plot("simgrid", "Time of the machine, one effect after another", "number of effects", "modelled time (ms)",
+                plots=[Plot("simgrid", "Time of the machine, with one more effect after another", "number of added effects", "modelled time (ms)",
                             series)],
-                news=[f"An independent simulator gives the asynchronous torus a time that differs by at most {rows['difference (%)'].abs().max():.2g} %."],
-                clock="Modelled on T805s from counted cycles, 40 ns each; both simulators have the same rates.")
+                news=[f"The times of the asynchronous torus by raya and by SimGrid differ by at most {rows['difference (%)'].abs().max():.2g} %."],
+                clock="modelled for T805 transputers from counted cycles of 40 ns; both simulators use the same rates.")
 
 
 def findings_of(rows):
-    """Sentences on the difference between the two simulators, and on the effect that takes most time apart from computing."""
+    """Returns sentences on the difference between the two simulators, and on the effect that adds most time to computing."""
     worst = rows.loc[rows["difference (%)"].abs().idxmax()]
-    largest, where = abs(worst["difference (%)"]), f"{worst['torus']}, inject {worst['inject']}, {worst['machine']}"
-    agreement = (f"On all {len(rows)} machines the two times differ by less than {MAX_DIFFERENCE} %, at most by {largest:.2g} % ({where})."
+    largest, where = abs(worst["difference (%)"]), f"{worst['torus']} torus, rays made by: {worst['inject']}, {worst['machine']}"
+    agreement = (f"On all {len(rows)} machines the two times differ by at most {largest:.2g} % ({where}); the limit is {MAX_DIFFERENCE} %."
                  if largest <= MAX_DIFFERENCE else
-                 f"The two times differ by up to {largest:.2f} % ({where}), more than {MAX_DIFFERENCE} %, on {len(rows)} machines.")
+                 f"On {len(rows)} machines the two times differ by up to {largest:.2f} % ({where}), more than the limit of {MAX_DIFFERENCE} %.")
     effects = rows[rows["machine"].str.startswith("+")]
     ours, theirs = effects["raya, the effect (ms)"], effects["SimGrid, the effect (ms)"]
     i = ours.idxmax()
-    return [agreement, f"The largest effect after computing is \"{effects['machine'][i][2:]}\" ({effects['torus'][i]}, inject "
-            f"{effects['inject'][i]}): it adds {ours[i]:.2f} ms by raya and {theirs[i]:.2f} ms by SimGrid. The two differ by at most "
-            f"{(ours - theirs).abs().max():.3f} ms in any effect."]
+    return [agreement, f"The largest effect after computing is \"{effects['machine'][i][2:]}\" ({effects['torus'][i]} torus, rays made "
+            f"by: {effects['inject'][i]}). It adds {ours[i]:.2f} ms in raya's simulation and {theirs[i]:.2f} ms in SimGrid's. For each effect "
+            f"the two simulations differ by at most {(ours - theirs).abs().max():.3f} ms."]

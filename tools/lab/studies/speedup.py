@@ -1,18 +1,18 @@
 """Fig. 9: speed-up against the number of PEs
 
-How many times faster do P PEs compute the image than one?
+How many times faster than one PE do P PEs compute an image?
 
 - Source: Kohata & Ito 1993, abstract, Fig. 9 and the text next to it, Table 3.
-- {size} x {size} pixels on 1 to {pes} PEs of the SPA, every number; first pass. The picture of the plots is {scene}.
-- Speed-up = sum of all loads / largest load, from one cost image: modelled computing, without transfers.
-- {ensemble}. A mean is that of the families' means.
-- Kohata & Ito do not say which offset they used for fewer than 256 PEs, nor which PE then has which columns. The plots show p = 16 and
-  p = round(sqrt(P)), with both folds.
-- CAP and the Pixel Machine: Kohata & Ito quote the makers' speed-ups, of other scenes, and say that their Fig. 9 comes close to them. The
-  claims compare the SPA's speed-ups with the quoted ones. The plots also have the mapping of these machines, A x A PEs with every A-th pixel
-  of every A-th line each, on our scenes.
-- Output: fig9.csv has a row for each number of PEs P and a column with the speed-up of each offset and fold; fig9-squares.csv, fig9-views.csv
-  (means of the ensemble, half widths of 95 % intervals) and fig9-sizes.csv (other image sizes).
+- Images of {size} x {size} pixels, without antialiasing, on every number of PEs of the SPA from 1 to {pes}. "The picture" is the scene {scene}.
+- Speed-up = sum of the loads of all PEs / largest load. A load is the modelled computing time of a PE in cycles, without transfers.
+- The ensemble has {ensemble}. A mean of the ensemble is the mean of the families' means.
+- For fewer than 256 PEs, Kohata & Ito print neither the offset nor the pixels of each PE. We show p = 0, 16 and round(sqrt(P)). A slot has one
+  pixel of each line and moves p pixels to the right from line to line. With the cyclic fold a PE has every P-th slot, with the block fold
+  neighbouring slots.
+- Kohata & Ito quote speed-ups that the makers of CAP and the Pixel Machine measured for other scenes, and state that Fig. 9 is close to them. The
+  claims compare the SPA's speed-ups with these. In the 2-D mapping of both machines, each of A x A PEs has every A-th pixel of every A-th line.
+- Output: fig9.csv has a row for each number of PEs P, and a column with the speed-up for each offset and fold. fig9-squares.csv has the square
+  numbers and the powers of two, fig9-views.csv means of the ensemble and half widths of 95 % intervals, fig9-sizes.csv other image sizes.
 """
 import numpy as np
 import pandas as pd
@@ -21,15 +21,15 @@ from raya.lab import (Comparison, Page, Plot, Series, Table, above, estimate, es
                       with_paper, within)
 
 OFFSET = 16  # the paper's offset for 256 PEs
-HIGH = 0.8  # bound of the efficiency in the claims proportional, few-processors and finer-images
-CLOSE = 0.1  # bound of the relative difference in the claims like-2d, near-cap and near-pixel-machine
-FINER_VIEWS = 18  # pictures of the ensembles at 512 x 512 and 1024 x 1024
+HIGH = 0.8  # minimum efficiency by the rules of the claims proportional, few-processors and finer-images
+CLOSE = 0.1  # maximum relative difference by the rules of the claims like-2d, near-cap and near-pixel-machine
+FINER_VIEWS = 18  # number of pictures in each of the ensembles at 512 x 512 and 1024 x 1024
 COLUMNS = {"p = 0": lambda pes: 0 * pes, "p = 16": lambda pes: 0 * pes + OFFSET,
            "p = round(sqrt(P))": lambda pes: np.rint(np.sqrt(pes)).astype(int)}
 
 
 def speedups(image, pes, fold="cyclic"):
-    """Returns {name of an offset: speed-up on each number of PEs}"""
+    """Returns {name of an offset: speed-ups on each number of PEs in `pes`}."""
     return {name: raya.speedups(image, pes, offsets(pes) % image.shape[1], fold)
             for name, offsets in COLUMNS.items()}
 
@@ -85,41 +85,41 @@ def tables_of(rows, grids, means, sides):
                             "p = 0": some["p = 0, cyclic fold"], "p = 16": some["p = 16, cyclic fold"],
                             "p = sqrt(P)": some["p = round(sqrt(P)), cyclic fold"]})
     order = ["P"] + [f"{name}, {fold} fold" for name in COLUMNS for fold in ("cyclic", "block")]
-    return [Table("fig9-squares", "Speed-up of the picture on square numbers of PEs and powers of two, cyclic fold",
+    return [Table("fig9-squares", "Speed-up of the picture on square numbers and powers of two of PEs, cyclic fold",
                   squares),
             Table("fig9-views", "Speed-up, mean of the ensemble", means, on_page=False),
             Table("fig9", "Speed-up of the picture for each number of PEs", rows[order], on_page=False),
-            Table("fig9-sizes", "One PE to one for each column, cyclic fold, one picture of each size", sides)]
+            Table("fig9-sizes", "Speed-up of the scene at each image size, on 1 PE up to one for each column, cyclic fold", sides)]
 
 
 def comparisons_of(rows, grids, mean, grid_ratios, half_side_speedups, large_side, families):
     last, half_side, pes = rows.iloc[-1], large_side // 2, f"speed-up on {len(rows)} PEs, "
     ratio, half_side_speedup = estimate(grid_ratios, families), estimate(half_side_speedups, families)
     return [Comparison(pes + "p = 16, picture", "", papers.SPEEDUP_16, last["p = 16, cyclic fold"],
-                       "the paper's is printed in its abstracts"),
+                       "229 is printed in the paper's abstracts"),
             Comparison(pes + "p = 16, mean of the ensemble", "", None, mean["p = 16"], "", False, mean["p = 16, +-"]),
             Comparison(pes + "p = 0, picture", "", papers.SPEEDUP_0, last["p = 0, cyclic fold"],
-                       "our scene, centre at 256 x 256, is calibrated on the paper's u(0)", derived=True),
+                       "our scene, centre at 256 x 256, is matched to the paper's u(0)", derived=True),
             Comparison(pes + "p = 0, mean of the ensemble", "", None, mean["p = 0"], half_width=mean["p = 0, +-"]),
-            Comparison(f"CAP's mapping, {large_side} x {large_side} PEs over {half_side} x {half_side}", "", papers.CAP_RATIO,
+            Comparison(f"CAP's mapping: speed-up on {large_side}^2 PEs / on {half_side}^2 PEs", "", papers.CAP_RATIO,
                        ratio.mean, "mean of the ensemble; the makers of CAP measured another scene", half_width=ratio.half),
-            Comparison(f"Pixel Machine's mapping, {half_side} x {half_side} PEs", "", papers.PIXEL_MACHINE_SPEEDUP, half_side_speedup.mean,
-                       "mean of the ensemble; the makers measured another scene: 60 or more", half_width=half_side_speedup.half)]
+            Comparison(f"Pixel Machine's mapping: speed-up on {half_side}^2 PEs", "", papers.PIXEL_MACHINE_SPEEDUP, half_side_speedup.mean,
+                       "mean of the ensemble; the makers measured 60 or more for another scene", half_width=half_side_speedup.half)]
 
 
 def comparisons_of_machines(lab, scene, size):
-    """Returns the makers' speed-ups next to the modelled times of their machines, which include the transfer of the scene."""
+    """Compares the makers' speed-ups with ratios of our modelled times of their machines, which include the transfer of the scene."""
     def ratio(machine, few, many):
         totals = [lab.render(scene, machine=machine, mapping=f"grid:{a}x{a}", size=size).report["modelled_ms"]["total"] for a in (few, many)]
         return totals[0] / totals[1]
 
-    remark = "picture; modelled time with the transfer of the scene (`raya machines` has the rates and their sources)"
-    return [Comparison("machine cap, 64 cells over 256", "", papers.CAP_RATIO, ratio("cap", 8, 16), remark),
-            Comparison("machine pixel-machine, 1 node over 64", "", papers.PIXEL_MACHINE_SPEEDUP, ratio("pixel-machine", 1, 8), remark)]
+    remark = "the picture; modelled time, transfer of the scene included (`raya machines` lists the rates and their sources)"
+    return [Comparison("machine cap: time on 64 cells / on 256", "", papers.CAP_RATIO, ratio("cap", 8, 16), remark),
+            Comparison("machine pixel-machine: time on 1 node / on 64", "", papers.PIXEL_MACHINE_SPEEDUP, ratio("pixel-machine", 1, 8), remark)]
 
 
 def claims_of(lab, tables, ensemble):
-    """Judges the claims of section 4.2 and section 6 on numbers of PEs, for images of 256 x 256 pixels."""
+    """Judges the paper's claims on numbers of PEs (sections 3.3, 4.2 and 6), for images of 256 x 256 pixels."""
     families, about = ensemble.families, ensemble.description
 
     def speedups_on(name, fold="cyclic"):
@@ -141,21 +141,21 @@ def claims_of(lab, tables, ensemble):
     efficiencies_by_size = [one.map(lambda costs: 1 / (1 + raya.imbalances(costs.trace, costs.trace.shape[1], [round(costs.trace.shape[1]**0.5)])[0]))
                             for one in ensembles]
     return [judged("like-2d", within(like_2d, 1 - CLOSE, 1 + CLOSE, families), about,
-                   f"Speed-up with p = 16 over that of 16 x 16 PEs in two dimensions: {text(like_2d, 3)}. The mean speed-ups are "
+                   f"Speed-up with p = 16 / speed-up of 16 x 16 PEs in two dimensions: {text(like_2d, 3)}. The mean speed-ups are "
                    f"{text(cyclic[:, 255], 1)} and {text([g[16] for _, g in tables], 1)}."),
             judged("proportional", every(above(one, HIGH, families) for one in efficiency.T), about,
                    f"The mean efficiency is below {HIGH} for {low_count} of 255 numbers of PEs; the lowest is {text(efficiency[:, worst])} at "
                    f"P = {pes[worst]}. On powers of two it is at least "
-                   f"{min(efficiency[:, p - 2].mean() for p in (2, 4, 8, 16, 32, 64, 128, 256)):.2f}: PEs own whole columns, so the speed-up "
-                   "stays the same between the numbers that divide the columns evenly."),
+                   f"{min(efficiency[:, p - 2].mean() for p in (2, 4, 8, 16, 32, 64, 128, 256)):.2f}. PEs own whole slots, so the speed-up "
+                   "rises in steps, at the numbers of PEs that divide the number of columns."),
             judged("near-cap", within(over_64, papers.CAP_RATIO * (1 - CLOSE), papers.CAP_RATIO * (1 + CLOSE), families), about,
-                   f"256 PEs of the SPA over 64: {text(over_64)}."),
+                   f"Speed-up of the SPA on 256 PEs / on 64 PEs: {text(over_64)}."),
             judged("near-pixel-machine", within(on_64, papers.PIXEL_MACHINE_SPEEDUP * (1 - CLOSE),
                                                 papers.PIXEL_MACHINE_SPEEDUP * (1 + CLOSE), families), about,
-                   f"64 PEs of the SPA over one: {text(on_64)}."),
+                   f"Speed-up of the SPA on 64 PEs: {text(on_64)}."),
             judged("few-processors", above(on_16, HIGH, families), about, f"Efficiency of the column split on 16 PEs: {text(on_16, 3)}."),
             judged("finer-images", every(above(values, HIGH, one.families) for values, one in zip(efficiencies_by_size, ensembles)),
-                   f"{about}; {FINER_VIEWS} of them at 512 x 512 and 1024 x 1024",
+                   f"{about}; {FINER_VIEWS} pictures each at 512 x 512 and 1024 x 1024",
                    "Efficiency at 256, 512 and 1024 pixels a side: "
                    + ", ".join(estimate(values, one.families).text(3) for values, one in zip(efficiencies_by_size, ensembles)) + ".")]
 
@@ -163,40 +163,40 @@ def claims_of(lab, tables, ensemble):
 def findings_of(rows, grids, sides, in_paper):
     w, half = len(rows), len(rows) // 2
     p16, p0, root = (rows[f"{name}, cyclic fold"] for name in ("p = 16", "p = 0", "p = round(sqrt(P))"))
-    whole = f"On {w} PEs p = 16 gives {p16[w - 1]:.1f} times and p = 0 {p0[w - 1]:.1f} times"
+    whole = f"On {w} PEs the speed-up of the picture is {p16[w - 1]:.1f} with p = 16 and {p0[w - 1]:.1f} with p = 0"
     if in_paper:
         ratio = p16[w - 1] / papers.SPEEDUP_16
         how = "more than" if ratio > 1.02 else "less than" if ratio < 0.98 else "within 2 % of"
-        whole += f"; the former is {how} the {papers.SPEEDUP_16} of Kohata & Ito's abstract"
+        whole += f"; with p = 16 it is {how} the {papers.SPEEDUP_16} of Kohata & Ito's abstract"
     worst = sides.loc[sides["its efficiency"].idxmin()]
     columns = sides[sides["P"] == sides["side (pixels)"]]
-    sized = (f"With a PE for each column and p = round(sqrt(P)) images of "
-             f"{', '.join(map(str, sides['side (pixels)'].unique()))} pixels a side gain "
-             + ", ".join(f"{s:.0f} times on {p} PEs" for s, p in zip(columns["p = round(sqrt(P))"], columns["P"])) +
-             ": the array can grow to one PE for each column, as Kohata & Ito conclude. The lowest efficiency of "
-             f"powers of two up to there is {worst['its efficiency']:.2f}, on {worst['P']:.0f} PEs at "
+    sized = (f"With a PE for each column and p = round(sqrt(P)), images of "
+             f"{', '.join(map(str, sides['side (pixels)'].unique()))} pixels a side have a speed-up of "
+             + ", ".join(f"{s:.0f} on {p} PEs" for s, p in zip(columns["p = round(sqrt(P))"], columns["P"])) +
+             ": the array can grow to one PE for each column, as Kohata & Ito conclude. The lowest efficiency on "
+             f"1, 2, 4, ... PEs, up to one for each column, is {worst['its efficiency']:.2f}, on {worst['P']:.0f} PEs at "
              f"{worst['side (pixels)']:.0f} x {worst['side (pixels)']:.0f}.")
     best = p16[half:w - 1].max()
     gain = 100 * (best / p16[half - 1] - 1)
     a = max(a for a in grids if a * a < w)
-    stairs = (f"Whole columns cause steps: with {half + 1} to {w - 1} PEs some PE still has two of the {w} columns, and p = 16 "
-              f"gains {f'at most {gain:.1f} %' if gain > 0.5 else 'nothing'} over {half} PEs; on {a * a} PEs it gives "
-              f"{p16[a * a - 1]:.1f} times, {a} x {a} PEs in two dimensions {grids[a]:.1f} times.")
+    stairs = (f"PEs own whole slots, so the speed-up rises in steps: on {half + 1} to {w - 1} PEs some PE has two of the {w} slots. p = 16 "
+              f"gains {f'at most {gain:.1f} %' if gain > 0.5 else 'nothing'} over {half} PEs. On {a * a} PEs the speed-up is "
+              f"{p16[a * a - 1]:.1f} with p = 16, and {grids[a]:.1f} with {a} x {a} PEs in two dimensions.")
     mean = {c: (rows[c] / rows["P"]).mean() for c in rows.columns[1:]}
 
     def better(name):
         c, b = mean[f"{name}, cyclic fold"], mean[f"{name}, block fold"]
-        return "the cyclic fold" if c > b else "the block fold" if b > c else "none"
+        return "the cyclic fold" if c > b else "the block fold" if b > c else "neither"
 
-    folds = (f"Mean efficiency over all P: column split {mean['p = 0, cyclic fold']:.3f} with the cyclic fold and "
-             f"{mean['p = 0, block fold']:.3f} with the block fold, p = 16 {mean['p = 16, cyclic fold']:.3f} and "
-             f"{mean['p = 16, block fold']:.3f}; the better fold is {better('p = 0')} for the column split and "
+    folds = (f"The mean efficiency over all P is {mean['p = 0, cyclic fold']:.3f} with the cyclic fold and "
+             f"{mean['p = 0, block fold']:.3f} with the block fold for the column split, {mean['p = 16, cyclic fold']:.3f} and "
+             f"{mean['p = 16, block fold']:.3f} for p = 16. The better fold is {better('p = 0')} for the column split and "
              f"{better('p = 16')} for p = 16.")
-    offset = (f"p = round(sqrt(P)) is better than p = 16 for {(root > p16)[1:].sum()} of {w - 1} numbers of PEs, mean "
-              f"efficiency {mean['p = round(sqrt(P)), cyclic fold']:.3f} against {mean['p = 16, cyclic fold']:.3f}")
+    offset = (f"p = round(sqrt(P)) is better than p = 16 for {(root > p16)[1:].sum()} of {w - 1} numbers of PEs. Its mean "
+              f"efficiency over all P is {mean['p = round(sqrt(P)), cyclic fold']:.3f}, that of p = 16 is {mean['p = 16, cyclic fold']:.3f}")
     idle = rows["P"][(rows["P"] > 1) & (p16 == p0)]
     if len(idle):
-        offset += f"; p = 16 gives the same as the column split for P = {', '.join(map(str, idle))}"
+        offset += f". p = 16 has the same speed-up as the column split for P = {', '.join(map(str, idle))}"
     return [whole + ".", sized, stairs, folds, offset + "."]
 
 
@@ -204,17 +204,17 @@ def plots_of(rows, grids, means, in_paper):
     pes, w = rows["P"], len(rows)
     squares = [a * a for a in grids]
     paper = [Series("Kohata & Ito, p = 0 and 16", [w, w], [papers.SPEEDUP_0, papers.SPEEDUP_16], "paper"),
-             Series("Pixel Machine, its own scene, 60 or more", [64], [papers.PIXEL_MACHINE_SPEEDUP], "paper")]
+             Series("Pixel Machine, scene of its makers, at least", [64], [papers.PIXEL_MACHINE_SPEEDUP], "paper")]
     some = means[(pes % 8 == 0) | (pes == w)]
     labels = {"p = 16": "p = 16", "p = round(sqrt(P))": "p = round(sqrt(P))", "p = 0": "p = 0, column split"}
     folds = [Series(f"{name}, {fold} fold", pes, rows[f"{name}, {fold} fold"] / pes)
              for name in ("p = 16", "p = 0") for fold in ("cyclic", "block")]
-    return [Plot("fig9", "Speed-up against the number of PEs, cyclic fold", "PEs", "speed-up",
+    return [Plot("fig9", "Speed-up of the picture against the number of PEs, cyclic fold", "PEs", "speed-up",
                  [Series("ideal", pes, pes),
                   *(Series(label, pes, rows[f"{name}, cyclic fold"]) for name, label in labels.items()),
                   Series("2-D, A x A PEs", squares, grids.values(), "points"), *(paper if in_paper else [])]),
             Plot("fig9-views", "Speed-up against the number of PEs, mean of the ensemble", "PEs", "speed-up",
                  [Series("ideal", pes, pes), *(Series(label, some["P"], some[name], half_widths=some[f"{name}, +-"])
                                                for name, label in labels.items()), *(paper[:1] if in_paper else [])]),
-            Plot("fig9-folds", "Efficiency against the number of PEs, both folds", "PEs", "efficiency",
+            Plot("fig9-folds", "Efficiency of the picture against the number of PEs, both folds", "PEs", "efficiency",
                  folds + [Series("2-D, A x A PEs", squares, np.divide([*grids.values()], squares), "points")])]

@@ -3,24 +3,24 @@
 Are static strategies inadequate from 128 PEs on, and static plus dynamic ones nearly optimal, as Heirich and Arvo (1998) found?
 
 - Source: Heirich & Arvo 1998, conclusions.
-- Images of {size} x {size} on 128 and more PEs of the SPA; efficiency = the pixels' modelled cycles / (P x the time at which the last PE
-  has finished).
-- Static: column split, cyclic mapping with p = 16 and p = sqrt(P), blocks of contiguous scan lines, tiles of 8 x 8 pixels in turn, the
-  grid nearest to a square (every A-th line, every B-th pixel), random.
-- dynamic:C: an idle PE takes the next C pixels. hybrid:C: each PE first processes a share of its own pixels (those of the grid, row by
-  row from the top), then takes C pixels at a time of the remainder. Both are simulated exactly on the cost image.
-- A request costs its PE {request_cycles} budget cycles: one word to the root and two words back at 6 Mword/s, each with the 0.18 ms that
-  a rotation takes to synchronise all PEs. This is the maximum for the request of one PE; "free requests" shows the minimum. The SPA had
-  no dynamic distribution. Requests do not wait for each other, except in the table of LINKS-1.
-- LINKS-1 (Nishimura et al. 1985): the root answers one request at a time, and a request takes it {request_cycles} cycles. This table has the
-  efficiency for each number of pixels a request.
-- Lower bound of the makespan, the time at which the last PE has finished: the larger of the mean load and the highest cost of a pixel.
-- A strategy is near the optimum if its makespan is at most 1.1 times the lower bound. The tables of cases (scene and number of PEs) are for
-  three factors of the clock from 1 to 8.
-- The claims use {ensemble}, at {claim_size} x {claim_size} on {claim_pes} PEs.
-- Output: static-vs-dynamic.csv has a row for each scene, strategy and P: makespan (budget cycles), efficiency, makespan / lower bound,
-  requests. static-vs-dynamic-limits.csv has the first P with an efficiency below 90 % and 50 %, static-vs-dynamic-factors.csv the cases,
-  static-vs-dynamic-root.csv LINKS-1.
+- Images of {size} x {size} pixels on 128 and more PEs of the SPA. Makespan = the time at which the last PE has finished, in cycles of the
+  instruction budget. Efficiency = sum of all pixels' cycles / (P x makespan).
+- Lower bound of the makespan: the larger of the mean load of a PE and the highest cost of a pixel. We call a strategy nearly optimal if its
+  makespan is at most 1.1 times the lower bound.
+- Static strategies: column split; cyclic mapping with p = 16 and p = sqrt(P); blocks of contiguous scan lines; tiles of 8 x 8 pixels, one after
+  the other to each PE in turn; the 2-D grid of A x B PEs nearest to a square (a PE has every B-th pixel of every A-th line); random.
+- dynamic:C: an idle PE takes the next C pixels. hybrid:C, share S: each PE first processes the fraction S of its own pixels (those of the 2-D
+  grid, row by row from the top), then takes C pixels at a time of all pixels that are left. A discrete-event simulation on the pixels' costs
+  gives the makespan.
+- The SPA had no dynamic distribution. We assume that a request costs its PE {request_cycles} budget cycles: one word to the root and two words
+  back at 6 Mword/s, each message with the 0.18 ms in which a rotation synchronises all PEs. This is the maximum; with "free requests", the
+  minimum, a request costs nothing. Requests do not wait for each other, except in the table of LINKS-1.
+- In LINKS-1 (Nishimura et al. 1985) a root answers one request at a time; we assume {request_cycles} budget cycles for each.
+- A case is a scene on one number of PEs. The clock's factor is the number of the SPA's cycles for one budget cycle. It changes the cost of a
+  request in budget cycles, so one table counts cases for three factors from 1 to 8.
+- The claims use {ensemble}, at {claim_size} x {claim_size} pixels on {claim_pes} PEs.
+- Output: static-vs-dynamic.csv has a row for each scene, strategy and P. static-vs-dynamic-limits.csv has the first P with an efficiency below
+  90 % and 50 %, static-vs-dynamic-factors.csv the numbers of cases, static-vs-dynamic-root.csv LINKS-1.
 """
 import math
 
@@ -34,13 +34,13 @@ from raya.lab.spa import CLOCK, FACTOR, FACTORS
 from raya.lab.voxels import powers_of_two
 
 NAME, MIN_PES, MAX_PES = "static-vs-dynamic", 128, 16_384
-NEAR_OPTIMAL = 1.1  # our limit: maximum makespan / lower bound of a nearly optimal strategy
+NEAR_OPTIMAL = 1.1  # maximum makespan / lower bound of a nearly optimal strategy: our choice
 SQUARE_ROOT = "cyclic, p = sqrt(P)"
 ROOT_CHUNKS, ROOT_PES = tuple(4**i for i in range(7)), (64, 256, 1024)  # pixels a request and numbers of PEs in the table of LINKS-1
 
 
 def request_cycles(factor):
-    """Returns the budget cycles from a PE's request for work to the answer: one word to the root, two words back."""
+    """Returns the number of budget cycles from a PE's request for work to the answer: one word to the root, two words back."""
     return round(MACHINES["links"]["root_cycles"] * FACTOR / factor)
 
 
@@ -54,7 +54,7 @@ def static_mappings(size, pes):
 
 
 def plans(overhead):
-    """Yields (name, kind, True if requests take time, plan for raya.schedule()) of each strategy. A hybrid starts with the grid mapping."""
+    """Yields (name, kind, True if requests take time, plan for raya.schedule()) of each dynamic or hybrid strategy."""
     for chunk, share in ((1, 0), (16, 0), (64, 0), (16, 0.5), (16, 0.9), (1, 0.9)):
         kind = "hybrid" if share else "dynamic"
         name = f"{kind}:{chunk}" + (f", share {share}" if share else "")
@@ -64,7 +64,7 @@ def plans(overhead):
 
 
 def outcomes_of(label, image, sizes, overhead):
-    """Returns table with a row for each strategy and number of PEs."""
+    """Returns a table with a row for each strategy and number of PEs. label: name of the scene; overhead: budget cycles of a request."""
     size, total, rows = len(image), int(image.sum()), []
     for pes in sizes:
         bound = raya.lower_bound(image, pes)
@@ -86,7 +86,7 @@ def outcomes_of(label, image, sizes, overhead):
 
 
 def root_rows(images):
-    """Returns a table of LINKS-1's organisation: efficiencies if requests are free, and if the root answers one at a time."""
+    """Returns a table of dynamic distribution: efficiency if requests are free, and if a root answers one at a time, as in LINKS-1."""
     rows = []
     for name, image in images.items():
         for pes in ROOT_PES:
@@ -101,28 +101,28 @@ def finding_of_root(rows):
     texts = []
     for (name, pes), group in rows.groupby(["scene", "P"], sort=False):
         first, best = group.iloc[0], group.loc[group["efficiency, one at a time"].idxmax()]
-        texts.append(f"{name} on {pes} PEs {100 * first['efficiency, one at a time']:.0f} % with single pixels and at most "
-                     f"{100 * best['efficiency, one at a time']:.0f} % with {best['pixels a request']}")
-    return f"Efficiency if a root answers one request at a time, as on LINKS-1, by the pixels a request: {'; '.join(texts)}."
+        texts.append(f"{name} on {pes} PEs {100 * first['efficiency, one at a time']:.0f} % with one pixel a request and at most "
+                     f"{100 * best['efficiency, one at a time']:.0f} %, with {best['pixels a request']} pixels a request")
+    return f"Efficiency if a root answers one request at a time, as in LINKS-1: {'; '.join(texts)}."
 
 
 def news_of_root(rows):
     rows = rows[(rows["scene"] == rows["scene"].iloc[0]) & (rows["P"] == ROOT_PES[1])]
     first, best = rows.iloc[0], rows.loc[rows["efficiency, one at a time"].idxmax()]
-    return (f"If one root answers one request at a time, as on LINKS-1, {ROOT_PES[1]} PEs have an efficiency of "
-            f"{100 * first['efficiency, one at a time']:.0f} % with single pixels and of {100 * best['efficiency, one at a time']:.0f} % with "
+    return (f"If a root answers one request at a time, as in LINKS-1, {ROOT_PES[1]} PEs have an efficiency of "
+            f"{100 * first['efficiency, one at a time']:.0f} % with one pixel a request and of {100 * best['efficiency, one at a time']:.0f} % with "
             f"{best['pixels a request']} pixels a request ({first['scene']}).")
 
 
 def best_of(rows, kind):
-    """Returns a row for each P, that of the best strategy of a kind. Strategies with free requests are excluded."""
+    """Returns, for each P, the row of the best strategy of a kind, without the strategies with free requests."""
     strategies = rows[(rows["kind"] == kind) & (rows["pays"] | (kind == "static"))]
     return strategies.loc[strategies.groupby("P", sort=True)["makespan (cycles)"].idxmin()].reset_index(drop=True)
 
 
 def counts_of(scenes):
-    """Returns {name: number of cases}, where a case is a scene with a number of PEs: all cases; cases in which no static strategy is near
-    the bound, in which a hybrid is near the bound, and in which a hybrid is faster than all static strategies."""
+    """Returns {name: number of cases}: of all cases, and of those in which no static strategy is near the bound, in which a hybrid is near the
+    bound, and in which a hybrid is faster than all static strategies. A case is a scene on one number of PEs."""
     static, hybrid = (pd.concat([best_of(rows, kind) for rows in scenes]) for kind in ("static", "hybrid"))
     return {"cases": len(static), "no static one near the bound": (static["makespan / lower bound"] > NEAR_OPTIMAL).sum(),
             "hybrid near the bound": (hybrid["makespan / lower bound"] <= NEAR_OPTIMAL).sum(),
@@ -146,7 +146,7 @@ def static_vs_dynamic(lab, scenes):
     for number, rows in enumerate(tables_by_scene, 1):
         percent = 100 * rows.pivot_table("efficiency", "strategy", "P", sort=False)
         percent.loc["upper bound"] = 100 * rows.groupby("P")["bound"].first()
-        tables.append(Table(f"{NAME}-{number}", f"Efficiency (%) by P, {rows['scene'][0]}",
+        tables.append(Table(f"{NAME}-{number}", f"Efficiency (%) for each P, {rows['scene'][0]}",
                             percent.rename(columns=str).reset_index()))
         plots += plots_of(rows, percent, number)
     outcomes = pd.concat(tables_by_scene, ignore_index=True)
@@ -154,17 +154,17 @@ def static_vs_dynamic(lab, scenes):
         lambda one: pd.Series({f"P, under {100 * limit:.0f} %": first_below(one, limit) or "never"
                                for limit in (0.9, 0.5)})).reset_index()
     shown = outcomes.drop(columns=["kind", "pays", "bound"])
-    plots.append(Plot(f"{NAME}-root", f"A root that answers one request at a time, {outcomes['scene'][0]}", "pixels a request", "efficiency",
+    plots.append(Plot(f"{NAME}-root", f"One request at a time, {outcomes['scene'][0]}", "pixels a request", "efficiency",
                       [Series(f"P = {pes}", group["pixels a request"], group["efficiency, one at a time"])
                        for pes, group in of_root[of_root["scene"] == outcomes["scene"][0]].groupby("P")], "x"))
     return Page({"size": size, "pes": sizes, "factor": FACTOR, "request_cycles": request_cycles(FACTOR),
                  "random_seed": 1, "scenes": list(images)},
                 [*findings_of(tables_by_scene, counts_of(tables_by_scene), size), finding_of_root(of_root)], claims=claims_of(lab) if not scenes else [],
-                tables=tables + [Table(f"{NAME}-limits", "The first P at which the efficiency is under 90 % and under "
+                tables=tables + [Table(f"{NAME}-limits", "The first P at which the efficiency is below 90 % and below "
                                        "50 %", limits),
-                                 Table(f"{NAME}-root", "LINKS-1: efficiency by the number of pixels a request", of_root),
+                                 Table(f"{NAME}-root", "LINKS-1: efficiency for each number of pixels a request", of_root),
                                  Table(NAME, "Every strategy, scene and number of PEs", shown, on_page=False),
-                                 Table(f"{NAME}-factors", "Numbers of cases (scene and P) for each factor of the clock",
+                                 Table(f"{NAME}-factors", "Numbers of cases (a scene on one number of PEs) for each factor of the clock",
                                        factors)],
                 plots=plots, news=[news_of_root(of_root)],
                 clock=CLOCK, compared_with=papers.DYNAMIC,
@@ -173,20 +173,20 @@ def static_vs_dynamic(lab, scenes):
 
 
 def first_below(rows, limit):
-    """Returns smallest number of PEs at which the efficiency is below the limit; 0 if there is none."""
+    """Returns the smallest number of PEs at which the efficiency is below the limit; 0 if there is none."""
     below = rows["P"][rows["efficiency"] < limit]
     return below.iloc[0] if len(below) else 0
 
 
 def from_text(pes):
-    return f"from P = {pes}" if pes else "at no P"
+    return f"at P = {pes}" if pes else "at no P"
 
 
 CLAIM_SIZE, CLAIM_PES, CLAIM_VIEWS = 256, (128, 256, 1024, 4096), 36
 
 
 def claims_of(lab):
-    """Judges the claims of Heirich & Arvo, and that of Kohata & Ito on dynamic distribution, over an ensemble."""
+    """Judges the claims of Heirich & Arvo, and the claim of Kohata & Ito on dynamic distribution, over an ensemble."""
     ensemble = lab.ensemble([], CLAIM_SIZE, views=CLAIM_VIEWS)
     families, about, requests = ensemble.families, ensemble.description, request_cycles(FACTOR)
     tables = [outcomes_of(costs.label, costs.trace, CLAIM_PES, requests) for costs in ensemble.pictures]
@@ -197,7 +197,7 @@ def claims_of(lab):
 
     free_efficiency, cyclic_efficiency = on_256("dynamic:1, free requests", "efficiency"), on_256("cyclic, p = 16", "efficiency")
     sent_requests = on_256("dynamic:1", "requests")
-    gain = 1 / cyclic_efficiency - 1 / free_efficiency  # difference of the imbalances, as efficiency = 1 / (1 + u)
+    gain = 1 / cyclic_efficiency - 1 / free_efficiency  # difference of the imbalances u, because efficiency = 1 / (1 + u)
 
     def texts(values):
         return ", ".join(f"{estimate(one, families).text(2)} on {pes} PEs" for one, pes in zip(values.T, CLAIM_PES))
@@ -207,17 +207,17 @@ def claims_of(lab):
             judged("hybrid-nearly-optimal", every(below(one, NEAR_OPTIMAL, families) for one in bound_ratios["hybrid"].T), about,
                    f"Makespan / lower bound of the best hybrid, including the cost of requests: {texts(bound_ratios['hybrid'])}."),
             judged("dynamic-balances", every([above(gain, 0, families), counted(all(sent_requests > 0))]), about,
-                   f"Dynamic distribution of single pixels with free requests lowers u by {estimate(gain, families).text()} on 256 PEs. It takes "
-                   f"{sent_requests.min()} or more requests; an array with a static mapping takes none.")]
+                   f"On 256 PEs, u of dynamic distribution (one pixel a request, free requests) is {estimate(gain, families).text()} lower than u of "
+                   f"p = 16. It takes at least {sent_requests.min()} requests for an image; a static mapping takes none.")]
 
 
 def findings_of(scenes, counts, size):
     inadequate, cases = counts["no static one near the bound"], counts["cases"]
     how = "holds" if inadequate == cases else "holds in part" if inadequate else "does not hold"
-    findings = [f"That static strategies are inadequate from {scenes[0]['P'].min()} PEs on {how} here: in {inadequate} "
-                f"of {cases} cases (scene and P) no static one ends within 10 % of the lower bound. Static plus "
-                f"dynamic, including the cost of requests, does in {counts['hybrid near the bound']} of them and beats every static "
-                f"strategy in {counts['hybrid beats all static ones']}."]
+    findings = [f"The statement that static strategies are inadequate from {scenes[0]['P'].min()} PEs on {how} here: in {inadequate} "
+                f"of {cases} cases (a scene on one number of PEs) no static strategy is within 10 % of the lower bound. The best hybrid, "
+                f"including the cost of requests, is within 10 % in {counts['hybrid near the bound']} cases. It is faster than every static "
+                f"strategy in {counts['hybrid beats all static ones']} cases."]
     for rows in scenes:
         findings += [static_finding(rows), hybrid_finding(rows)]
     collapse = collapse_finding(scenes[0], size)
@@ -232,11 +232,11 @@ def static_finding(rows):
         strategy_rows = rows[rows["strategy"] == name]
         return f"{from_text(first_below(strategy_rows, 0.9))} and {from_text(first_below(strategy_rows, 0.5))}"
 
-    return (f"{rows['scene'][0]}, static: at P = {first['P']} {first['strategy']} is best, "
-            f"{100 * first['efficiency']:.0f} % efficient, at P = {last['P']} {last['strategy']}, "
-            f"{100 * last['efficiency']:.0f} % (upper bound {100 * last['bound']:.0f} %). The best of them falls below "
-            f"90 % {from_text(first_below(best, 0.9))} and below 50 % {from_text(first_below(best, 0.5))}; the column "
-            f"split {limits('column split')}, cyclic with p = sqrt(P) {limits(SQUARE_ROOT)}.")
+    return (f"{rows['scene'][0]}, static strategies: the best one at P = {first['P']} is {first['strategy']}, with an efficiency of "
+            f"{100 * first['efficiency']:.0f} %; at P = {last['P']} it is {last['strategy']}, with "
+            f"{100 * last['efficiency']:.0f} % (upper bound {100 * last['bound']:.0f} %). The efficiency of the best one falls below "
+            f"90 % {from_text(first_below(best, 0.9))} and below 50 % {from_text(first_below(best, 0.5))}; that of the column "
+            f"split {limits('column split')}; that of the cyclic mapping with p = sqrt(P) {limits(SQUARE_ROOT)}.")
 
 
 def hybrid_finding(rows):
@@ -245,14 +245,14 @@ def hybrid_finding(rows):
     near, sizes = int((paid <= NEAR_OPTIMAL).cummin().sum()), sorted(rows["P"].unique())
     up_to = (f"at P = {sizes[0]}" if near == 0 else "for every P" if near == len(sizes) else
              f"up to P = {sizes[near - 1]}")
-    return (f"{rows['scene'][0]}, static plus dynamic: {'' if near else 'not '}within 10 % of the lower bound {up_to}; "
-            f"the best of them takes at most {max(1, paid.max()):.2f} times the lower bound, {max(1, free.max()):.2f} times with "
+    return (f"{rows['scene'][0]}, hybrid strategies: the best one is {'' if near else 'not '}within 10 % of the lower bound {up_to}. "
+            f"Over all P its makespan is at most {max(1, paid.max()):.2f} times the lower bound, and {max(1, free.max()):.2f} times with "
             "free requests.")
 
 
 def collapse_finding(rows, size):
-    """Sentence on cyclic mappings that give every PE pixels of a single column, because the offset's shift repeats with the period of the shared
-    rows."""
+    """Returns a sentence on the cyclic mappings with which each PE's pixels lie in one column, because the shift by p repeats with the number of
+    PEs that share a slot; empty if there are none."""
     texts = []
     for name in ("cyclic, p = 16", SQUARE_ROOT):
         for pes in sorted(rows["P"].unique()):
@@ -262,14 +262,14 @@ def collapse_finding(rows, size):
                 texts.append(f"{name} at P = {pes}")
     if not texts:
         return ""
-    return (f"No better than a column split: {'; '.join(texts)}. Each PE's pixels lie in one column there, as the offset returns to "
-            "the same column after as many rows as there are PEs in a slot.")
+    return (f"No better than a column split: {'; '.join(texts)}. There, each PE's pixels lie in one column: the PEs that share a slot (a "
+            "column that moves by p in each row) take its rows in turn, and the slot returns to the same column after as many rows.")
 
 
 def plots_of(rows, percent, number):
     kinds = rows.drop_duplicates("strategy").set_index("strategy")
     for label, what, names in (("static", "static mappings", kinds.index[kinds["kind"] == "static"]),
                                ("dynamic", "dynamic and hybrid distribution", kinds.index[kinds["pays"]])):
-        yield Plot(f"{NAME}-{number}-{label}", f"{rows['scene'][0]}: {what}", "PEs", "efficiency (%)",
+        yield Plot(f"{NAME}-{number}-{label}", f"Efficiency against the number of PEs, {rows['scene'][0]}: {what}", "PEs", "efficiency (%)",
                    [Series(name, percent.columns, percent.loc[name]) for name in [*names, "upper bound"]],
                    "x")

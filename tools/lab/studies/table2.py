@@ -1,19 +1,19 @@
 """Table 2: times of the SPA and of other machines
 
-How long does one image take on the SPA with all its PEs and with one PE, and how long on this machine?
+How long does one image take on the SPA with all its PEs, on the SPA with one PE, and on this machine?
 
-- Source: Kohata & Ito 1993, Table 2; host model from Tables 2 and 4.
-- {scene} at {size} x {size}; SPA with {size} PEs, a PE for each column, p = {offset}, and with one PE. The renders count events, words
-  and transfers; times are modelled from these counts.
-- Display is not modelled: totals include the printed 1,130 ms (SPA, PC) and 300 ms (workstation).
-- Our scene is not that of Kohata & Ito, and nothing is fitted to theirs, so the milliseconds of computing differ. The gain of the whole
-  job is computed from our balance and the printed milliseconds of one PE.
-- Host model: a call takes a set-up, its rotations, and its words divided by a rate. The printed 2 and 12 ms of Table 4 and 140 ms of
-  Table 2, each rounded to 1 ms, give a range for each of the three.
-- Measured: the reference renders in double precision on one thread; the device's time is that of its kernels, without their build and
-  transfers. A warm-up is not counted.
-- Output: table2.csv has a row for each machine, with times in ms (printed, modelled or measured); table2-factors.csv has the modelled times for
-  each factor of the clock; table2-host.csv has the host model.
+- Source: Kohata & Ito 1993, Table 2. The host model follows from Tables 2 and 4.
+- {scene} at {size} x {size} pixels, on {size} PEs of the SPA (a PE for each column, p = {offset}) and on one PE. The renders count rays, tests,
+  words and transfers. Times are modelled from these counts.
+- The time of the display is not modelled. Totals include the printed 1,130 ms (SPA, PC) and 300 ms (workstation).
+- The scene of Kohata & Ito is not published. Ours differs, so the milliseconds of computing differ. The speed-up of the whole job in the first
+  table follows from our speed-up of computing and from the printed times of one PE, of the transfers and of the display.
+- Host model: a call from the host takes the time of its set-up, of its rotations, and of its words at the host's rate. The printed 2 and 12 ms
+  (Table 4) and 140 ms (Table 2), each rounded to 1 ms, give a range for each of the three constants.
+- Measured on this machine: the reference, raya's renderer in double precision, on one thread; and the kernels of the OpenCL device, without their
+  build and without transfers. Warm-up renders are not counted.
+- Output: table2.csv has a row for each machine, with times in ms (printed, modelled or measured). table2-factors.csv has the modelled times for
+  each factor of the clock. table2-host.csv has the host model.
 """
 import time
 
@@ -23,7 +23,7 @@ from raya.lab import Comparison, Page, Picture, Table, counted, first_scene, jud
 from raya.lab.laboratory import SPA, format_for
 from raya.lab.spa import CLOCK, FACTOR, FACTORS, host_model, run_on_spa
 
-SAMPLING_S = 10  # seconds of a series after which no further run starts
+SAMPLING_S = 10  # seconds: no further run starts after the runs of a series took as long
 
 
 def job_gain(one_ms, array_ms):
@@ -69,9 +69,9 @@ def table2(lab, scenes):
                 with_paper(in_paper, comparisons_of(size, array.time(), one.time(), speedup, balance,
                                                     1e3 * reference.minimum)),
                 [claim_of_totals()] if in_paper and not scenes else [],
-                [Table("table2", "Times", rows_of(size, array, one, here, in_paper)),
-                 Table("table2-factors", "The whole job for each factor of the clock", factors),
-                 Table("table2-host", "Host model, with the ranges that the rounding of the printed 2, 12 and 140 ms leaves", host)],
+                [Table("table2", "Times of one image", rows_of(size, array, one, here, in_paper)),
+                 Table("table2-factors", "Computing times, and speed-up of the whole job, for each factor of the clock", factors),
+                 Table("table2-host", "Host model: range of each figure, from the rounding of the printed 2, 12 and 140 ms", host)],
                 pictures=[Picture("table2-picture", f"{scene.name} at {size} x {size}, rendered by the PEs",
                                   "glass and mirror spheres in the middle of the image, above a checkered plane"
                                   if scene.name == "centre" else "the scene of the command line",
@@ -82,7 +82,7 @@ def table2(lab, scenes):
 def claim_of_totals():
     gflops, megabytes = SPA["pes"] * 2 / SPA["cycle_ns"], SPA["pes"] * SPA["pe_memory_bytes"] / 2**20
     return judged("totals-of-table-1", counted(round(gflops, 2) == 5.12 and megabytes == 8), "",
-                  f"The modelled machine has {gflops:.2f} GFLOPS, two operations in each cycle of {SPA['cycle_ns']:g} ns, and {megabytes:g} MB.")
+                  f"The modelled machine has {gflops:.2f} GFLOPS (each PE: two operations in a cycle of {SPA['cycle_ns']:g} ns), {megabytes:g} MB.")
 
 
 def host_rows(array):
@@ -115,9 +115,9 @@ def rows_of(size, array, one, here, in_paper):
 
 
 def comparisons_of(size, array, one, speedup, balance, reference):
-    display = "with the display, which is fitted to the printed 1,130 ms"
-    cycle_ms = 100e-6 * FACTOR  # ms of a budget cycle, with the clock model's factor
-    rows = [(f"{size} PEs: objects", "ms", papers.OBJECTS_MS, array["objects"], "set-up + words / rate of the host"),
+    display = "contains the display, whose rate is fitted to the printed 1,130 ms"
+    cycle_ms = 100e-6 * FACTOR  # milliseconds of a budget cycle, with the clock's factor
+    rows = [(f"{size} PEs: objects", "ms", papers.OBJECTS_MS, array["objects"], "set-up + words of the scene / rate of the host"),
             (f"{size} PEs: compute", "ms", papers.COMPUTE_MS, array["compute"], "the paper's scene differs from ours"),
             (f"{size} PEs: image transfer", "ms", papers.IMAGE_MS, array["image"],
              "the host's rate is derived from this printed figure"),
@@ -125,13 +125,13 @@ def comparisons_of(size, array, one, speedup, balance, reference):
             ("1 PE: compute", "ms", papers.ONE_PE_COMPUTE_MS, one["compute"], "the paper's scene differs from ours"),
             ("1 PE: total", "ms", papers.ONE_PE_TOTAL_MS, one["total"], display),
             ("cycles a pixel", "", papers.ONE_PE_COMPUTE_MS / cycle_ms / papers.SIZE**2,
-             one["compute"] / cycle_ms / size**2, "of the budget; the paper's by this clock", True),
-            ("speed-up of computing", "", papers.SPEEDUP_16, speedup, "needs no clock"),
+             one["compute"] / cycle_ms / size**2, "of the instruction budget; the paper's: printed time / time of a budget cycle", True),
+            ("speed-up of computing", "", papers.SPEEDUP_16, speedup, "does not depend on the clock"),
             ("speed-up of the whole job", "", papers.ONE_PE_TOTAL_MS / papers.TOTAL_MS, balance,
-             "our balance, the printed times of one PE, transfers and display", True),
-            ("one processor, 64 bits", "ms", papers.PC_MS, reference,
-             "the paper's PC; ours: this machine, measured, one thread of the reference"),
-            ("one processor, 64 bits, and the workstation", "ms", papers.WORKSTATION_MS, reference, "the paper's workstation; ours as above")]
+             "from our speed-up of computing and the printed times of one PE, transfers and display", True),
+            ("PC, and this machine", "ms", papers.PC_MS, reference,
+             "one processor, 64 bits; ours: the reference on one thread of this machine, measured"),
+            ("workstation, and this machine", "ms", papers.WORKSTATION_MS, reference, "one processor, 64 bits; ours: the same measurement")]
     return [Comparison(*row) for row in rows]
 
 
@@ -142,12 +142,12 @@ def findings_of(size, speedup, array, one, factors, host, reference, fp32, spa22
     slower = f"{ratio:.3g} times slower than" if ratio >= 1 else f"{1 / ratio:.3g} times faster than"
     objects = host.iloc[-1]
     return [f"{size} PEs compute {speedup:.1f} times faster than one. The whole job, display included, is {gain:.1f} times faster "
-            f"on this clock, {gains.iloc[0]:.1f} to {gains.iloc[-1]:.1f} times for factors of 1 to 8.",
-            f"The host model gives {objects['least']:.2f} .. {objects['largest']:.2f} ms for the words of our scene; 2 ms are printed "
-            "for the paper's scene, whose number of words is not printed.",
-            f"A pixel takes {one.time(1)['compute'] / 100e-6 / size**2:.0f} cycles of one PE by the instruction budget. The scene of "
-            "Kohata & Ito takes about 1,520 on this clock, from the printed 9,888 cycles of 100 ns a pixel [D].",
-            f"Measured here, warm: one thread in 64 bits takes {1e3 * reference.minimum:.0f} ms, the device's kernels "
+            f"with the clock's factor, {gains.iloc[0]:.1f} to {gains.iloc[-1]:.1f} times with factors of 1 to 8.",
+            f"The host model gives {objects['least']:.2f} .. {objects['largest']:.2f} ms for the transfer of our scene. The paper "
+            "prints 2 ms for its scene, but not the scene's number of words.",
+            f"A pixel of our scene takes {one.time(1)['compute'] / 100e-6 / size**2:.0f} cycles of the instruction budget. A pixel of Kohata & Ito's "
+            "takes 9,888 cycles of 100 ns [D: 64,800 ms / 65,536 pixels], or about 1,520 budget cycles by the clock's factor.",
+            f"Measured on this machine, warm: one thread in 64 bits takes {1e3 * reference.minimum:.0f} ms. The device's kernels take "
             f"{1e3 * fp32.minimum:.1f} ms in fp32 and {1e3 * spa22.minimum:.1f} ms in the SPA's format, whose slowest of "
-            f"{spa22.runs} runs took {100 * (spa22.maximum / spa22.minimum - 1):.0f} % longer than its fastest; one thread is {slower} "
-            "the SPA's modelled computing."]
+            f"{spa22.runs} runs took {100 * (spa22.maximum / spa22.minimum - 1):.0f} % longer than the fastest one. One thread is {slower} "
+            "the SPA by its modelled computing time."]

@@ -1,17 +1,17 @@
 """A turn round the scene
 
-Does the balance of one picture hold while the camera turns, and does the offset that is best for the first frame also suit the others?
+Is the load balanced equally well in all frames while the camera turns? Is the offset that is best for the first frame also good for the others?
 
-- Source: Kohata & Ito 1993, Fig. 8, which shows one picture.
-- {frames} frames, {step_degrees} degrees apart, about the axis through the point that the camera looks at, as in `raya render --frames
-  1:{frames} --turn 360`; a PE for each column, first pass.
-- u = (max load - mean load) / mean load of every offset, from one cost image of each frame. It needs no clock.
-- An offset is chosen by two methods: by frame 1, and by the mean of the odd frames. Both are judged in the even frames and compared
-  with p = sqrt(P), and with each frame's own best offset, a bound that no choice in advance can beat.
-- Frames of one turn resemble each other, so intervals are over turns that start from random views of the scene: the camera at the same
-  distance, between {lowest_view_degrees} and {highest_view_degrees} degrees above the point that it looks at.
-- Output: turn.csv has u of each frame for the chosen offsets; turn-starts.csv has a row for each turn, with the chosen offsets and their mean u
-  in the even frames. Further scenes have turn-2.csv, turn-3.csv, ...
+- Source: Kohata & Ito 1993, Fig. 8, which shows u(p) of one picture.
+- {frames} frames, between which the camera turns by {step_degrees} degrees about the upward axis through the point that it looks at, as in
+  `raya render --frames 1:{frames} --turn 360`. A PE for each column; no antialiasing.
+- The load imbalance u = (max load - mean load) / mean load is computed for every offset, from the pixels' modelled cycles in each frame.
+- Two methods choose an offset: the one with the lowest u in frame 1, or the one with the lowest mean u of the odd frames. Both are tested in the
+  even frames. There they are compared with p = sqrt(P), and with the best offset of each single frame, a lower bound for every fixed offset.
+- Frames of one turn resemble each other, so confidence intervals are over several turns. Each of them starts from a random view of the scene: the
+  camera at the same distance, between {lowest_view_degrees} and {highest_view_degrees} degrees above the point that it looks at.
+- Output: turn.csv has u of each frame for the chosen offsets. turn-starts.csv has a row for each turn, with the chosen offsets and their mean u
+  in the even frames. The second scene has turn-2.csv and turn-2-starts.csv, and so on.
 """
 import numpy as np
 import pandas as pd
@@ -19,22 +19,22 @@ import raya
 from raya.lab import Page, Plot, Series, Table, estimate, range_text, study
 from raya.lab.laboratory import format_for
 
-FRAMES, MAX_TURNS = 24, 8
+FRAMES, MAX_TURNS = 24, 8  # MAX_TURNS: maximum number of turns that start from random views
 DEGREES = [360 * i / FRAMES for i in range(FRAMES)]
 
 
 def turn_of(lab, scene, size):
-    """Returns u as an array [frame, offset]."""
+    """Returns the load imbalance u in a turn of the camera, as an array [frame, offset]."""
     return np.array([raya.imbalances(lab.costs(scene.turned(degrees), size).trace, size, range(size))
                      for degrees in DEGREES])
 
 
 def choices_of(u, root):
-    """Returns the offsets that are best for frame 1 and for the odd frames, and the mean u of the even frames with each of these offsets."""
+    """Returns the best offsets for frame 1 and for the odd frames, and the mean u of the even frames for these and two other choices."""
     odd, even = u[0::2], u[1::2]
     first, half = int(u[0].argmin()), int(odd.mean(0).argmin())
-    return {"best p of frame 1": first, "its u": even[:, first].mean(), "best p of odd frames": half,
-            "u of that": even[:, half].mean(), f"u, p = {root}": even[:, root].mean(),
+    return {"best p of frame 1": first, "u, best p of frame 1": even[:, first].mean(), "best p of odd frames": half,
+            "u, best p of odd frames": even[:, half].mean(), f"u, p = {root}": even[:, root].mean(),
             "u, each frame's best p": even.min(1).mean()}
 
 
@@ -58,14 +58,14 @@ def turn(lab, scenes):
 
 
 def findings_of(scene, u, rows, root):
-    half, first, at_root = rows["u of that"], rows["its u"], rows[f"u, p = {root}"]
-    return [f"{scene}: over the {FRAMES} frames of its turn u at p = {root} is {u[:, root].mean():.3f} in the mean and "
-            f"{range_text(u[:, root])} in single frames, {u[0, root]:.3f} in the first; at p = 0 it is "
-            f"{u[:, 0].mean():.3f}, {range_text(u[:, 0])}.",
-            f"{scene}, {len(rows)} turns from random views, in the even frames: u is "
-            f"{estimate(half).text()} with the offset of the odd frames, {estimate(first).text()} with that of frame 1 (a "
+    half, first, at_root = rows["u, best p of odd frames"], rows["u, best p of frame 1"], rows[f"u, p = {root}"]
+    return [f"{scene}, {FRAMES} frames of one turn: the mean u is {u[:, root].mean():.3f} at p = {root} "
+            f"({range_text(u[:, root])} in single frames, {u[0, root]:.3f} in the first) and "
+            f"{u[:, 0].mean():.3f} at p = 0 ({range_text(u[:, 0])}).",
+            f"{scene}, {len(rows)} turns from random views: the mean u of the even frames is "
+            f"{estimate(half).text()} with the best offset of the odd frames. It is {estimate(first).text()} with the best offset of frame 1 (a "
             f"difference of {estimate(first - half).text()}) and {estimate(at_root).text()} at p = {root} (a difference of "
-            f"{estimate(at_root - half).text()}); with each frame's own best offset it is "
+            f"{estimate(at_root - half).text()}). With the best offset of each single frame it is "
             f"{estimate(rows[rows.columns[-1]]).text()}."]
 
 
@@ -80,13 +80,13 @@ def tables_of(number, scene, u, rows, root):
     stem = "turn" if number == 1 else f"turn-{number}"
     frames = pd.DataFrame({"frame": range(1, FRAMES + 1), "turned by (degrees)": DEGREES,
                            **{f"u, {name}": u[:, p] for name, p in columns_of(u, root).items()},
-                           "best p of the frame": u.argmin(1), "its u": u.min(1)})
-    return [Table(stem, f"u of every frame of {scene}, from the scene's own view", frames),
-            Table(f"{stem}-starts", f"Turns of {scene} from random views: mean u of the even frames", rows)]
+                           "best p of the frame": u.argmin(1), "u, best p of the frame": u.min(1)})
+    return [Table(stem, f"u of every frame of {scene}, in the turn that starts from the scene's view", frames),
+            Table(f"{stem}-starts", f"Mean u of the even frames of {scene}, in turns that start from random views", rows)]
 
 
 def plot_of(number, scene, u, root):
     lines = [Series("p = 0, column split" if p == 0 else name, DEGREES, u[:, p])
              for name, p in columns_of(u, root).items()]
-    return Plot(f"turn-{number}", f"Balance over a turn round {scene}", "turned by (degrees)", "u",
+    return Plot(f"turn-{number}", f"Load imbalance u while the camera turns round {scene}", "turned by (degrees)", "u",
                 lines + [Series("each frame's best p", DEGREES, u.min(1), "points")], "y")
