@@ -35,7 +35,7 @@ TEST_CASE("study: writes figures, tables, JSON and a document", "[cli]") {
     INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK(run.err.empty());
-    for (const char* part : {"u(0)", "u(8)", "u(16)", "best p of all 32", "fig8.md"})
+    for (const char* part : {"u(0)", "u(8)", "u(16)", "p with the lowest u, of all 32", "fig8.md"})
         CHECK_THAT(run.out, Catch::Contains(part));
     const std::filesystem::path folder = outputs / "made/x";
     CHECK(files_in(folder) == Files{"fig8-all.png", "fig8-all.svg", "fig8-families.csv", "fig8-near.csv", "fig8.csv",

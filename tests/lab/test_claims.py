@@ -233,26 +233,17 @@ def last_pixel_late(side=128):
     return image
 
 
-def scene_rows(count, best, falls, after=1.1):
-    """Rows of a scene of `count` objects. Up to `best` divisions, each figure falls by its factor in `falls` for every factor of 32 in the divisions.
-    Beyond, it rises by `after` for every factor of 2."""
-    power = np.arange(14)
-    before, beyond = np.clip(np.log2(best) - power, 0, None) / 5, np.clip(power - np.log2(best), 0, None)
-    names = ("modelled (s)", "measured (ms)", "tests")
-    return pd.DataFrame({"scene": f"{count} objects", "objects": count, "divisions": 1 << power, "voxels of an object": 1.5,
-                         **{name: fall**before * after**beyond for name, fall in zip(names, falls)}})
+def judge_divisions(falls, best=1, after=1.1, gain=papers.DIVISIONS_FALL):
+    """divisions. falls: factors by which the tests fall in the layouts for 32 times as many divisions, in turn; best: number of divisions with the
+    fewest tests / number of objects; after: factor of each doubling beyond; gain: mean factor by which the time falls, in proportion to the tests."""
+    def layouts_of(lab, size, count):
+        fall = np.resize(falls, len(divisions.RADII) * divisions.VIEWS)[:, None]
+        doublings = np.arange(14) - np.log2(count * best)
+        before, beyond = np.clip(-doublings, 0, None) / 5, np.clip(doublings, 0, None)
+        return {"tests": fall**before * after**beyond, "time": (gain * fall / np.mean(falls))**before * after**beyond}
 
-
-def judge_divisions(falls, bests=(64, 1024), after=1.1, gain=5.2):
-    """divisions. falls: factors by which the tests fall in the layouts, in turn; bests: best divisions for 64 and 1024 objects; gain: of the time."""
-    drawn = iter(np.resize(falls, len(divisions.RADII) * divisions.VIEWS))
-
-    def run(lab, scene, size, voxels):
-        assert scene.objects == 1024 and np.prod(voxels) in (papers.FEW_DIVISIONS, papers.MANY_DIVISIONS)
-        return SimpleNamespace(tests=1000 * next(drawn) if np.prod(voxels) == papers.FEW_DIVISIONS else 1000)
-
-    with patch.object(divisions, "run_in_one_pe", run):
-        return divisions.claims_of(FakeLaboratory([]), 96, [scene_rows(count, best, (gain, 5, 5), after) for count, best in zip((64, 1024), bests)])
+    with patch.object(divisions, "layouts_of", layouts_of):
+        return divisions.claims_of(FakeLaboratory([]), 96)
 
 
 def judge_objects(ratios, even, random):
@@ -264,7 +255,8 @@ def judge_objects(ratios, even, random):
     runs, rows = {}, []
     for count in objects.COUNTS:
         times = np.resize(ratios, objects.VARIANTS)
-        runs[count, objects.EVEN, objects.PAPER] = [SimpleNamespace(asynchronous_ms=40.0) for _ in times]
+        for kind in (objects.EVEN, objects.WITHIN):
+            runs[count, kind, objects.PAPER] = [SimpleNamespace(asynchronous_ms=40.0) for _ in times]
         runs[count, objects.RANDOM, objects.PAPER] = [SimpleNamespace(asynchronous_ms=40.0 * ratio) for ratio in times]
         rows.append({"objects": count, "kind": objects.RANDOM, "protocol": objects.PAPER, **dict.fromkeys(objects.TIMES, estimate(times))})
     return objects.claims_of(runs, pd.DataFrame(rows), [(objects.EVEN, objects.PAPER, growth(*even, np.array([-2, -1, 0, 1, 2]) / 50)),
@@ -303,12 +295,12 @@ CASES = [
     ("fig13", "noise", lambda: judge_fig13(noise()), {"contours-uneven": "no", "supersampling-balances": "?"}),
 
     ("fig7", "expensive columns in the middle", lambda: judge_fig7([columns(1000 + height * HUMP) for height in values_of(1000, 100)]),
-     {"hump": "yes", "no-hump": "yes"}),
+     {"hump": "yes"}),
     ("fig7", "expensive columns at the sides", lambda: judge_fig7([columns(3000 - height * HUMP) for height in values_of(1000, 100)]),
-     {"hump": "no", "no-hump": "yes"}),
-    ("fig7", "noise", lambda: judge_fig7(noise()), {"hump": "?", "no-hump": "yes"}),
-    ("fig7", "a hump with p = 16", lambda: judge_fig7(humps_along_16(values_of(1000, 100))), {"hump": "no", "no-hump": "no"}),
-    ("fig7", "a hump of about 0.1 with p = 16", lambda: judge_fig7(humps_along_16(values_of(140, 50))), {"hump": "no", "no-hump": "?"}),
+     {"hump": "no"}),
+    ("fig7", "noise", lambda: judge_fig7(noise()), {"hump": "?"}),
+    ("fig7", "a hump with p = 16", lambda: judge_fig7(humps_along_16(values_of(1000, 100))), {"hump": "no"}),
+    ("fig7", "a hump of about 0.1 with p = 16", lambda: judge_fig7(humps_along_16(values_of(140, 50))), {"hump": "no"}),
 
     ("fig9", "all figures within the rules", judge_fig9,
      {"like-2d": "yes", "proportional": "yes", "near-cap": "yes", "near-pixel-machine": "yes", "few-processors": "yes", "finer-images": "yes"}),
@@ -316,8 +308,8 @@ CASES = [
      {"like-2d": "no", "proportional": "no", "near-cap": "no", "near-pixel-machine": "no", "few-processors": "no", "finer-images": "no"}),
     ("fig9", "figures above the upper bounds of their rules", lambda: judge_fig9(1.2, 0.9, 4.4, 67.0),
      {"like-2d": "no", "proportional": "yes", "near-cap": "no", "near-pixel-machine": "no", "few-processors": "yes", "finer-images": "yes"}),
-    ("fig9", "efficiency too low on 77 PEs", lambda: judge_fig9(efficiency_77=0.5),
-     {"like-2d": "yes", "proportional": "no", "near-cap": "yes", "near-pixel-machine": "yes", "few-processors": "yes", "finer-images": "yes"}),
+    ("fig9", "efficiency too low on 77 PEs, which the paper does not print", lambda: judge_fig9(efficiency_77=0.5),
+     {"like-2d": "yes", "proportional": "yes", "near-cap": "yes", "near-pixel-machine": "yes", "few-processors": "yes", "finer-images": "yes"}),
     ("fig9", "all figures at the bounds of the rules", lambda: judge_fig9(0.9, 0.8, 0.9 * papers.CAP_RATIO, 54.0, 0.8, 256, 0.05),
      {"like-2d": "?", "proportional": "?", "near-cap": "?", "near-pixel-machine": "?", "few-processors": "?", "finer-images": "?"}),
 
@@ -343,28 +335,28 @@ CASES = [
      {"gain-for-all": "no", "neighbours-alike": "yes", "columns-vary": "yes", "cyclic-is-high": "yes", "other-problems": "yes"}),
 
     ("lattice", "offsets beyond n are worse", lambda: judge_lattice(0.1, 0.02),
-     {"blocks-shared": "yes", "beyond-is-worse": "yes"}),
+     {"beyond-is-worse": "yes"}),
     ("lattice", "offsets beyond n are better, and PEs own two pixels of a block", lambda: judge_lattice(-0.1, 0.02, "no"),
-     {"blocks-shared": "no", "beyond-is-worse": "no"}),
+     {"beyond-is-worse": "no"}),
     ("lattice", "offsets beyond n scatter", lambda: judge_lattice(0.01, 0.05),
-     {"blocks-shared": "yes", "beyond-is-worse": "?"}),
+     {"beyond-is-worse": "?"}),
 
-    ("table2", "256 PEs", judge_table2, {"totals-of-table-1": "yes"}),
-    ("table2", "128 PEs", lambda: judge_table2(128), {"totals-of-table-1": "no"}),
+    ("table2", "256 PEs", judge_table2, {}),
+    ("table2", "128 PEs", lambda: judge_table2(128), {}),
 
     ("table3", "p = 16 is balanced", lambda: judge_table3(values_of(1000, 1000)),
-     {"rotations": "yes", "small-p-communicates-less": "yes", "filter-total": "yes"}),
+     {"rotations": "yes"}),
     ("table3", "p = 16 is less balanced, and rotations fall with p", lambda: judge_table3(values_of(60_000, 10_000), (2, 18, 36), [1, 0, *range(15)]),
-     {"rotations": "no", "small-p-communicates-less": "no", "filter-total": "no"}),
+     {"rotations": "no"}),
     ("table3", "p = 16 halves the total", lambda: judge_table3(values_of(33_000, 8000)),
-     {"rotations": "yes", "small-p-communicates-less": "yes", "filter-total": "?"}),
+     {"rotations": "yes"}),
 
     ("table4", "an expensive block", lambda: judge_table4(values_of(200_000, 20_000), ratio=1.25, uneven_at_8=400_000),
-     {"comparison-communicates": "yes", "comparison-like-filter": "yes", "gain-exceeds-communication": "yes"}),
+     {"gain-exceeds-communication": "yes"}),
     ("table4", "a block that costs hardly more, and more rotations", lambda: judge_table4(values_of(200, 20), (2, 18, 36), ratio=1.26),
-     {"comparison-communicates": "no", "comparison-like-filter": "no", "gain-exceeds-communication": "no"}),
+     {"gain-exceeds-communication": "no"}),
     ("table4", "a block whose gain equals the rotations, and fewer words", lambda: judge_table4(values_of(4200, 3000), words=700, ratio=0.7),
-     {"comparison-communicates": "no", "comparison-like-filter": "no", "gain-exceeds-communication": "?"}),
+     {"gain-exceeds-communication": "?"}),
 
     ("best-offset", "pixels of equal cost", lambda: judge_best_offset([uneven_image([])] * 4, [uneven_image([])] * 4), {"root-is-enough": "yes"}),
     ("best-offset", "offsets up to sqrt(P) are uneven except 8 and 16, the values of sqrt(P)",
@@ -374,33 +366,37 @@ CASES = [
     ("best-offset", "offsets up to sqrt(P) are uneven in some pictures",
      lambda: judge_best_offset([BAD_UP_TO_ROOT] * 4, [BAD_UP_TO_ROOT, uneven_image([])] * 2), {"root-is-enough": "?"}),
 
-    ("scale", "no cyclic mapping keeps up", lambda: judge_scale((0.5, 0.6), (0.4, 0.6), (0.1, 0.1)), {"beyond-a-side": "yes"}),
-    ("scale", "a cyclic mapping keeps up", lambda: judge_scale((0.95, 1.0), (0.5, 0.9), (0.1, 0.9)), {"beyond-a-side": "no"}),
-    ("scale", "a cyclic mapping keeps up on one array", lambda: judge_scale((0.5, 1.1), (0.85, 0.85), (0.1, 0.1)), {"beyond-a-side": "no"}),
-    ("scale", "a cyclic mapping is at the bound on one array", lambda: judge_scale((0.9, 0.5), (0.4, 0.5), (0.1, 0.1)), {"beyond-a-side": "?"}),
+    ("scale", "no cyclic mapping keeps up", lambda: judge_scale((0.5, 0.6), (0.4, 0.6), (0.1, 0.1)), {}),
+    ("scale", "a cyclic mapping keeps up", lambda: judge_scale((0.95, 1.0), (0.5, 0.9), (0.1, 0.9)), {}),
+    ("scale", "a cyclic mapping keeps up on one array", lambda: judge_scale((0.5, 1.1), (0.85, 0.85), (0.1, 0.1)), {}),
+    ("scale", "a cyclic mapping is at the bound on one array", lambda: judge_scale((0.9, 0.5), (0.4, 0.5), (0.1, 0.1)), {}),
 
     ("static-vs-dynamic", "pixels of equal cost", lambda: judge_static_vs_dynamic(EQUAL, count=4),
-     {"static-inadequate": "no", "hybrid-nearly-optimal": "yes", "dynamic-balances": "no"}),
+     {"dynamic-balances": "no"}),
     ("static-vs-dynamic", "a tenth of the pixels costs 20 times as much", lambda: judge_static_vs_dynamic(random_pixels(0.1, 20), count=4),
-     {"static-inadequate": "yes", "hybrid-nearly-optimal": "no", "dynamic-balances": "yes"}),
+     {"dynamic-balances": "yes"}),
     ("static-vs-dynamic", "as above, with one pixel for each of 4096 PEs", lambda: judge_static_vs_dynamic(random_pixels(0.1, 20, 64), count=4),
-     {"static-inadequate": "no", "hybrid-nearly-optimal": "no", "dynamic-balances": "yes"}),
+     {"dynamic-balances": "yes"}),
     ("static-vs-dynamic", "half of the pixels cost twice as much, so hybrids are nearly optimal on few PEs",
      lambda: judge_static_vs_dynamic(random_pixels(0.5, 2), count=4),
-     {"static-inadequate": "no", "hybrid-nearly-optimal": "no", "dynamic-balances": "yes"}),
+     {"dynamic-balances": "yes"}),
     ("static-vs-dynamic", "pixels of equal cost and a costly tenth in turn", lambda: judge_static_vs_dynamic(EQUAL, random_pixels(0.1, 20), count=4),
-     {"static-inadequate": "?", "hybrid-nearly-optimal": "?", "dynamic-balances": "?"}),
+     {"dynamic-balances": "?"}),
     ("static-vs-dynamic", "the last pixel costs much", lambda: judge_static_vs_dynamic(last_pixel_late(), count=4),
-     {"static-inadequate": "no", "hybrid-nearly-optimal": "no", "dynamic-balances": "no"}),
+     {"dynamic-balances": "no"}),
 
     ("divisions", "minima at the number of objects", lambda: judge_divisions((4.8, 5.2)),
-     {"tests-fewest-at-objects": "yes", "time-falls-then-rises": "yes", "more-objects-gain-more": "yes", "tests-to-a-fifth": "yes"}),
-    ("divisions", "minima elsewhere, and tests to a half", lambda: judge_divisions((1.8, 2.2), (1024, 64)),
-     {"tests-fewest-at-objects": "no", "time-falls-then-rises": "no", "more-objects-gain-more": "no", "tests-to-a-fifth": "no"}),
-    ("divisions", "tests to a quarter in the mean", lambda: judge_divisions((3.5, 4.5)),
-     {"tests-fewest-at-objects": "yes", "time-falls-then-rises": "yes", "more-objects-gain-more": "yes", "tests-to-a-fifth": "?"}),
-    ("divisions", "no rise beyond the number of objects, and tests to a ninth", lambda: judge_divisions((8, 10), after=1.0),
-     {"tests-fewest-at-objects": "yes", "time-falls-then-rises": "no", "more-objects-gain-more": "yes", "tests-to-a-fifth": "no"}),
+     {"tests-fewest-at-objects": "yes", "time-falls-then-rises": "yes", "more-objects-gain-more": "yes", "tests-to-a-fifth": "yes",
+      "time-to-a-fifth": "yes"}),
+    ("divisions", "minimum at four times the number of objects, tests to a ninth, and twice the time", lambda: judge_divisions((8, 10), 4, gain=0.5),
+     {"tests-fewest-at-objects": "no", "time-falls-then-rises": "no", "more-objects-gain-more": "no", "tests-to-a-fifth": "no",
+      "time-to-a-fifth": "no"}),
+    ("divisions", "falls of tests and time vary", lambda: judge_divisions((2, 8)),
+     {"tests-fewest-at-objects": "yes", "time-falls-then-rises": "yes", "more-objects-gain-more": "yes", "tests-to-a-fifth": "?",
+      "time-to-a-fifth": "?"}),
+    ("divisions", "tests and time rise in some layouts and fall in others", lambda: judge_divisions((0.2, 5), after=1.1, gain=2.6),
+     {"tests-fewest-at-objects": "?", "time-falls-then-rises": "?", "more-objects-gain-more": "?", "tests-to-a-fifth": "?",
+      "time-to-a-fifth": "?"}),
 
     ("objects", "random objects are slower, and rays end earlier", lambda: judge_objects((1.2, 1.25), (3, 0.8), (4, 0.7)),
      {"random-is-slower": "yes", "not-linear": "yes", "front-voxels": "yes"}),
@@ -417,14 +413,17 @@ CASES = [
 def test_verdicts(study, make, wanted):
     judgements = make()
     decide(judgements)
-    assert {j.claim.id: j.verdict for j in judgements} == {key: VERDICTS[answer] for key, answer in wanted.items()}, f"seed {SEED}"
+    tested = {j.claim.id: j.verdict for j in judgements if j.claim.kind in ("test", "counted")}
+    assert tested == {key: VERDICTS[answer] for key, answer in wanted.items()}, f"seed {SEED}"
     for judgement in judgements:
         claim, test = judgement.claim, judgement.test
         assert claim.study == study and judgement.reason.endswith("."), claim.id
         if claim.kind == "test":
             assert judgement.ensemble and test.interval is not None, claim.id
+        elif claim.kind != "counted":
+            assert test is None and judgement.verdict == claim.kind, claim.id
         else:
-            assert claim.kind == "counted" and (test, judgement.power) in ((counted(True), ""), (counted(False), "")), claim.id
+            assert (test, judgement.power) in ((counted(True), ""), (counted(False), "")), claim.id
 
 
 def test_each_verdict_of_each_claim_has_a_case():
@@ -477,12 +476,13 @@ def ids_judged():
 
 
 def test_each_claim_is_judged_once_by_the_study_that_it_names():
-    """No study judges a claim that has no verdict (derived or untestable)."""
+    """A study may also give its figures for a claim without a verdict (derived or untestable)."""
     names = {}
     for name, study in studies().items():
         names.setdefault(study.run.__module__.split(".")[-1], []).append(name)
     judged_by = ids_judged()
-    assert Counter(key for _, key in judged_by) == Counter(key for key, claim in CLAIMS.items() if claim.kind in ("test", "counted"))
+    counts = Counter(key for _, key in judged_by)
+    assert set(counts.values()) == {1} and {key for key, claim in CLAIMS.items() if claim.kind in ("test", "counted")} <= set(counts)
     for module, key in judged_by:
         assert CLAIMS[key].study in names[module], f"{key}: judged by {module}"
 
@@ -506,11 +506,11 @@ def test_each_paper_has_claims():
 
 def test_claims_without_a_verdict_are_on_a_page_with_verdicts():
     """A page shows the derived and untestable claims of its study next to the claims that the study judges."""
-    with_verdicts = {claim.study for claim in CLAIMS.values() if claim.kind in ("test", "counted")}
+    with_verdicts = {CLAIMS[key].study for _, key in ids_judged()}
     for claim in CLAIMS.values():
         assert claim.study in with_verdicts, claim.id
     for study in with_verdicts:
-        assert [judgement.claim for judgement in undecided_claims(study)] == [
+        assert [judgement.claim for judgement in undecided_claims(study, [])] == [
             claim for claim in CLAIMS.values() if claim.study == study and claim.kind in ("derived", "untestable")]
 
 
@@ -520,29 +520,22 @@ def test_claims_without_a_verdict_are_on_a_page_with_verdicts():
     ("like-2d", f"within {1 - speedup.CLOSE:g} .. {1 + speedup.CLOSE:g}"),
     ("root-is-enough", f"at most {best_offset.MAX_LOSS} % longer"),
     ("gain-for-all", f"at least {100 * images.SHARE:g} %"),
-    ("no-hump", f"at most {loads.FLAT_LIMIT} of the mean load"),
     ("good-at-8", f"at least {imbalance.GOOD_FRACTION} of the gain"),
-    ("proportional", f"at least {speedup.HIGH},"),
+    ("proportional", f"at least {speedup.HIGH}."),
     ("near-cap", f"within {100 * speedup.CLOSE:g} % of {papers.CAP_RATIO}"),
     ("near-pixel-machine", f"within {100 * speedup.CLOSE:g} % of {papers.PIXEL_MACHINE_SPEEDUP}"),
     ("columns-vary", {2: "at least twice"}[images.STRONGLY]),
     ("cyclic-is-high", f"At least {100 * images.SHARE:g} % of the pictures have an efficiency of {images.HIGH} or more"),
-    ("filter-total", f"above {table3.TWICE},"),
     ("supersampling-p0", f"within {100 * cluster.SUPERSAMPLING_BOUND:g} % of {papers.SUPERSAMPLE_0_MS} ms"),
     ("supersampling-p16", f"within {100 * cluster.SUPERSAMPLING_BOUND:g} % of {papers.SUPERSAMPLE_16_MS} ms"),
-    ("comparison-like-filter", f"within {100 * table4.LIKE_FILTER:g} %"),
     ("contours-uneven", f"above {imbalance.UNEVEN}"),
     ("few-processors", f"at least {speedup.HIGH}"),
     ("finer-images", f"at least {speedup.HIGH}"),
-    ("beyond-a-side", f"below {scale.KEEPS_UP}"),
     ("tests-fewest-at-objects", f"at most {100 * (divisions.DIFFERENCE_RATIO - 1):.0f} %"),
-    ("tests-to-a-fifth", "{} .. {}".format(*divisions.FIFTH)),
+    ("tests-to-a-fifth", f"within {100 * divisions.TOLERANCE:g} %"),
+    ("time-to-a-fifth", f"within {100 * divisions.TOLERANCE:g} %"),
     ("not-linear", f"above {objects.LINEAR_LIMIT}"),
-    ("front-voxels", {0.5: "more than half"}[objects.HALF]),
-    ("static-inadequate", f"more than {static_vs_dynamic.NEAR_OPTIMAL}"),
-    ("static-inadequate", f"from {min(static_vs_dynamic.CLAIM_PES)} on"),
-    ("hybrid-nearly-optimal", f"at most {static_vs_dynamic.NEAR_OPTIMAL}"),
-    ("hybrid-nearly-optimal", f"from {min(static_vs_dynamic.CLAIM_PES)} on")])
+    ("front-voxels", {0.5: "more than half"}[objects.HALF])])
 def test_bound_of_the_rule_is_that_of_the_study(key, part):
     assert part in CLAIMS[key].rule
 
@@ -584,7 +577,7 @@ def test_holms_correction_covers_all_pages():
 
 
 def test_claims_that_no_study_decides_keep_their_kind_and_change_no_verdict():
-    undecided = [*undecided_claims("cluster"), *undecided_claims("objects")]
+    undecided = [*undecided_claims("cluster", []), *undecided_claims("objects", [])]
     tested = judgements_with([0.02])
     decide(undecided + tested)
     assert tested[0].verdict == REPRODUCED
@@ -593,7 +586,7 @@ def test_claims_that_no_study_decides_keep_their_kind_and_change_no_verdict():
 
 
 def test_sentence_on_errors_counts_the_statistical_tests():
-    sentence = errors_sentence(judgements := [*judgements_with([0.02, 0.5, 0.5]), judged("rotations", counted(True)), *undecided_claims("cluster")])
+    sentence = errors_sentence(judgements := [*judgements_with([0.02, 0.5, 0.5]), judged("rotations", counted(True)), *undecided_claims("cluster", [])])
     assert sentence.startswith("3 of the claims are decided by statistical tests.") and "at most 5 %" in sentence
     assert errors_sentence(judgements[3:]) == ""
 
@@ -605,14 +598,14 @@ def test_sentence_on_the_power():
 
 def test_pages_of_a_document_have_the_verdicts_on_all_claims(tmp_path):
     pages = [Page({}, claims=judgements_with([0.02], ["speedup-229"])).describe("cluster", "Cluster"),
-             Page({}, claims=[*judgements_with([0.4, 0.4], ["hump", "no-hump"]), judged("rotations", counted(False))]).describe("fig7", "Loads")]
+             Page({}, claims=[*judgements_with([0.4, 0.4], ["hump", "good-at-8"]), judged("rotations", counted(False))]).describe("fig7", "Loads")]
     write_document(tmp_path, pages, {})
     written = pd.read_csv(tmp_path / "claims.csv").set_index("id")["verdict"]
     assert written.to_dict() == {"speedup-229": COMPATIBLE, "imbalance-16": "derived", "filter-totals": "derived", "hump": COMPATIBLE,
-                                 "no-hump": COMPATIBLE, "rotations": NOT_REPRODUCED}
+                                 "good-at-8": COMPATIBLE, "no-hump": "derived", "rotations": NOT_REPRODUCED}
     for name in ("index.html", "index.md"):
         text = (tmp_path / name).read_text()
-        assert "0 reproduced, 3 compatible, 1 not reproduced, 0 untestable, 2 derived" in text, name
+        assert "0 reproduced, 3 compatible, 1 not reproduced, 0 untestable, 3 derived" in text, name
     assert '"verdict": "compatible"' in (tmp_path / "cluster.json").read_text()
 
 

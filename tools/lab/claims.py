@@ -56,12 +56,15 @@ class Judgement:
 
 
 def judged(key, test, ensemble="", reason=""):
-    return Judgement(CLAIMS[key], ensemble, reason, test)
+    """Returns the judgement of a claim. The test counts only if the claim's kind has a verdict."""
+    return Judgement(CLAIMS[key], ensemble, reason, test if CLAIMS[key].kind in ("test", "counted") else None)
 
 
-def undecided_claims(study):
-    """Returns judgements on the study's derived and untestable claims, which have no test."""
-    return [Judgement(claim) for claim in CLAIMS.values() if claim.study == study and claim.kind in ("derived", "untestable")]
+def undecided_claims(study, judgements):
+    """Returns judgements on the study's derived and untestable claims that `judgements` does not contain."""
+    known = {judgement.claim.id for judgement in judgements}
+    return [Judgement(claim) for claim in CLAIMS.values()
+            if claim.study == study and claim.kind in ("derived", "untestable") and claim.id not in known]
 
 
 def decide(judgements):

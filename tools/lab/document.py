@@ -35,10 +35,12 @@ ABOUT = {
         "counts are compared with theirs.",
         "Both machines are models that run as OpenCL kernels. Every machine and every mapping gives the same image, bit for bit. "
         "The kernels count loads, packets and tests. Times are modelled from these counts unless a page calls them measured.",
-        "A claim is a statement of a paper. claims.toml has each claim once, with a rule that was fixed before the result. Reproduced: the "
-        "interval fulfils the rule. Not reproduced: the interval contradicts the rule. Compatible: neither, because the test has too little "
+        "A claim is a statement of a paper. claims.toml has each claim once, with a rule that was fixed before the pictures of docs/verdicts.md "
+        "were computed. Reproduced: the interval fulfils the rule. Not reproduced: the interval contradicts the rule. Compatible: neither, because the test has too little "
         "power. Untestable: no study can decide the claim. Derived, without a verdict: the claim follows from another claim, or from figures "
-        "to which scenes were matched. Holm's correction covers all tests of this document.",
+        "to which scenes were matched. Tests are two-sided. Holm's correction covers all "
+        "tests of this document, so a claim can be compatible although its own 95 % interval fulfils the rule. \"Weakest\" is that test of a "
+        "claim with several tests that supports it least.",
         "An ensemble has pictures of scene families, in this order: " + "; ".join(FAMILIES) + ". Each seed gives another scene or another "
         "view. If the command line names scenes, an ensemble has random views of these scenes instead. Intervals treat the families as strata.",
         "\"Derived\" marks a figure that we computed from figures that the paper prints. \"[D]\" marks such a figure in a "
@@ -54,6 +56,7 @@ ABOUT = {
         "Yoshitani & Yamazaki, Figs 1 and 2, the voxels and 2-D DDA: drawings. `docs/packets.md` describes the packets of our 3-D DDA.",
         "Their Table 1, contents of a packet: no claim that a study can test. The studies use its 22 words; `docs/packets.md` lists ours.",
         "Their Fig. 3: study divisions. Their Fig. 4: study objects.",
+        "No curve of a figure was digitised: only numbers in the texts and tables are compared.",
     ],
 }
 
@@ -147,8 +150,9 @@ def title_of_comparisons(page):
 
 def cells_of_claims(pages):
     """Returns the table of claims, [row][column], the header first."""
-    return [["paper", "statement", "verdict", "rule", "interval", "ensemble", "result"]] + [
-        [f"{c.claim.paper}, {c.claim.place}", f"{c.claim.statement} {c.claim.original and '(' + c.claim.original + ')'}".rstrip(), c.verdict,
+    return [["claim", "statement", "verdict", "rule", "interval", "ensemble", "result"]] + [
+        [f"{c.claim.id}: {c.claim.paper}, {c.claim.place}",
+         f"{c.claim.statement} {c.claim.original and '(' + c.claim.original + ')'}".rstrip(), c.verdict,
          c.claim.rule, c.test.interval if c.test else "", c.ensemble, " ".join(filter(None, (c.reason, c.power)))]
         for page in pages for c in page.claims]
 
@@ -294,4 +298,5 @@ def write_document(folder, pages, drawings, skip_notes=()):
     write_atomically(folder / "index.html", body)
     if len(pages) > 1:
         for name in ("index.md", "claims.md"):
-            write_atomically(folder / name, jinja_environment.get_template(f"{name}.j2").render(pages=pages, skip_notes=skip_notes))
+            template = jinja_environment.get_template(f"{name}.j2")
+            write_atomically(folder / name, template.render(pages=pages, skip_notes=skip_notes, references=REFERENCES))

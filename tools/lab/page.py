@@ -117,7 +117,7 @@ class Page:
         """Sets title, question and method from a study's prose: its first line, the paragraph after it, and the items of its list. {names} are
         replaced by settings and placeholders. Raises ValueError for an unknown {name} and for two files with the same name."""
         self.name = name
-        self.claims = self.claims and [*self.claims, *undecided_claims(name)]
+        self.claims = self.claims and [*self.claims, *undecided_claims(name, self.claims)]
         try:
             prose = prose.format_map({**self.settings, **self.placeholders})
         except KeyError as error:

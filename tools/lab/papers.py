@@ -17,7 +17,7 @@ FILTERED_0_MS, FILTERED_16_MS = TRACE_0_MS + FILTER_0_MS, TRACE_16_MS + FILTER_1
 # Table 4: supersampling, communication and computation, p = 0 and p = 16.
 EXCHANGE_0_MS, EXCHANGE_16_MS, SUPERSAMPLE_0_MS, SUPERSAMPLE_16_MS = 2, 12, 739, 407
 # [D] Times for p = 8, from Table 3: the time of its rotations plus the time of the filter's arithmetic, which is the same for every p.
-FILTER_ARITHMETIC_MS, FILTER_8_MS, EXCHANGE_8_MS = 7, 14, 7
+FILTER_ARITHMETIC_MS = 7
 # [D] Fraction of recomputed pixels, from Table 4, if its computation time is that of supersampling alone.
 RECOMPUTED_MIN, RECOMPUTED_MAX = 0.16, 0.18
 # [D] From Tables 2 and 3, with the digits that are certain although 653, 283 and 64,800 ms are rounded.

@@ -42,7 +42,8 @@ def balls_scene(level):
 MEMBERS = {
     "divisions": "voxels", "A x B x C": "sides", "tests a ray": "tests_per_ray", "steps a ray": "steps_per_ray",
     "modelled (s)": "modelled_s", "measured (ms)": "measured_ms", "measured, median (ms)": "median_ms",
-    "voxels of an object": "voxels_of_object", "overlapped (ms)": "overlapped_ms", "stepwise (ms)": "stepwise_ms", "asynchronous (ms)": "asynchronous_ms",
+    "voxels of an object": "voxels_of_object", "overlapped (ms)": "overlapped_ms", "stepwise (ms)": "stepwise_ms",
+    "asynchronous (ms)": "asynchronous_ms",
     "the root's processor (ms)": "root_processor_ms", "the root's busiest link (ms)": "root_link_ms",
     "root / overlapped (%)": "root_share", "busiest link (bytes)": "busiest_link_bytes", "u": "imbalance",
     "rays discarded": "discarded", "hops a packet": "hops_per_packet", "most packets in a queue": "queue_max"}

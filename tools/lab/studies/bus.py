@@ -74,6 +74,9 @@ def bus(lab, scenes):
     scene, size = first_scene(scenes), lab.size(256)
     by_method = [rows_of(lab, scene, size, method) for method in ("filter", "supersample")]
     rows = pd.concat(by_method, ignore_index=True)
+    last = rows.iloc[-1]
+    best = {"bus": min(last["bus (ms)"], last["broadcasts, time (ms)"]),
+            "words": min(last["bus, words alone (ms)"], last["broadcasts, words alone (ms)"])}
     return Page({"scene": scene.name, "size": size, "pes": by_method[0]["P"].tolist(), "format": format_for(scene)},
                 [*map(finding_of_ring, by_method),
                  "The P links of the ring carry words at the same time. Up to one PE per column, the words per link in a rotation fall as "
@@ -82,8 +85,9 @@ def bus(lab, scenes):
                  f"In {rows['same'].sum()} of {len(rows)} cases the three methods give the same image, bit for bit."],
                 tables=[Table("bus", "The exchange of neighbouring pixels by each method", rows.drop(columns="same"))],
                 plots=[*map(plot_of, by_method)],
-                news=[f"On {rows['P'].iloc[-1]} PEs the exchange of neighbouring pixels over the bus takes at least "
-                      f"{rows[['bus / ring', 'broadcasts / ring']].iloc[-1].min():.0f} times as long as over the ring."],
+                news=[f"On {last['P']} PEs the exchange of neighbours takes {best['bus'] / last['ring (ms)']:.1f} times as long over the bus as over "
+                      f"the ring, if a transfer over the bus takes the synchronisation of a rotation, and {best['words'] / last['ring (ms)']:.1f} "
+                      "times if it takes none."],
                 clock="modelled. A rotation takes the time of its words at the printed 6 Mword/s plus 0.1845 ms of synchronisation, which follows "
                 "from Tables 3 and 4 [D]. No time is printed for a transfer from PE to PE: we assume the same rate and synchronisation, one "
                 "transfer after another. \"words alone\" is a lower bound, without synchronisation. The factor by which the clock model "

@@ -84,7 +84,7 @@ def cluster(lab, scenes):
         return Comparison(what, unit, paper if in_paper else None, mean.mean, f"{remark}; {range_text(scene_rows[column])} for single scenes",
                           derived, mean.half)
 
-    fitted = [comparison(what + ", all scenes", unit, column, paper, True, rows, "fitted, with other seeds")
+    fitted = [comparison(what + ", all scenes", unit, column, paper, what != "1 PE: compute", rows, "fitted, with other seeds")
               for what, unit, column, paper in FITTED]
     not_fitted = [comparison(what + ", matched scenes", unit, column, paper, derived, matched, "not fitted")
                   for what, unit, column, paper, derived in NOT_FITTED] if len(matched) > 1 else []

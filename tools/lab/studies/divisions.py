@@ -11,11 +11,12 @@ Into how many voxels should one machine divide space, for a given number of obje
 """
 import numpy as np
 import raya
-from raya.lab import Comparison, Page, Plot, Table, counted, estimate, judged, papers, range_text, series_by, study, within
-from raya.lab.laboratory import TESTS
-from raya.lab.voxels import near_cube, powers_of_two, run_cases, run_in_one_pe
+from raya.lab import Comparison, Page, Plot, Table, above, below, estimate, every, judged, next_value_within, papers, range_text, series_by, study
+from raya.lab.laboratory import TESTS, tests_of
+from raya.lab.voxels import near_cube, powers_of_two, run_cases, run_in_one_pe, sides_text
 
 DIVISIONS = powers_of_two(8192)
+OBJECTS = (64, 256, 512, 1024)
 COLUMNS = ("scene", "divisions", "A x B x C", "copies", "rays", "tests", "steps", "tests a ray", "steps a ray",
            "modelled (s)", "measured (ms)", "measured, median (ms)", "objects", "voxels of an object")
 DIFFERENCE_RATIO = 1.02  # ratio of two figures above which they count as different
@@ -30,7 +31,7 @@ SUBJECTS = {"modelled": ("Modelled time against divisions", "modelled time of a 
 @study("divisions")
 def divisions(lab, scenes):
     size, from_paper = lab.size(96), not scenes
-    even = [raya.generate.uniform(n, near_cube(n)).renamed(f"{n} objects") for n in (64, 256, 512, 1024)]
+    even = [raya.generate.uniform(n, near_cube(n)).renamed(f"{n} objects") for n in OBJECTS]
     cases = [{"scene": scene, "cut": near_cube(count)} for scene in scenes or even for count in DIVISIONS]
     rows = run_cases(cases, lambda scene, cut: run_in_one_pe(lab, scene, size, cut, runs=5), COLUMNS)
     by_scene = [scene_rows for _, scene_rows in rows.groupby("scene", sort=False)]
@@ -46,7 +47,7 @@ def divisions(lab, scenes):
                         "theirs fall to \"about 1/5\" from 32 to 1024 divisions.")
     shown = rows.drop(columns=["cut", "objects", "voxels of an object", "run"])
     return Page({"size": size, "bounces": 0, "format": "fp32", "scenes": settings}, findings,
-                comparisons_of(by_scene, from_paper), claims_of(lab, size, by_scene) if from_paper else [],
+                comparisons_of(by_scene, from_paper), claims_of(lab, size) if from_paper else [],
                 [Table("divisions", "Each number of objects and divisions", shown)],
                 [Plot(f"divisions-{name}", title, "divisions", label, series_by(rows, "scene", "divisions", column),
                       "xy") for name, (title, label, column, _) in SUBJECTS.items()],
@@ -137,8 +138,8 @@ def finding_of_parts(runs):
             f"lies in {runs[-1].voxels_of_object:.1f} voxels on average.")
 
 
-RADII, VIEWS = (0.5, 1.0, 1.5, 2.0), 6  # layouts of the claim tests-to-a-fifth: radii relative to the even scene; random views of each
-FIFTH = 4, 6  # bounds of the claim tests-to-a-fifth
+RADII, VIEWS = (0.5, 1.0, 1.5, 2.0), 3  # layouts of the claims: radii relative to the even scene; random views of each
+TOLERANCE = 0.2  # of the claims tests-to-a-fifth and time-to-a-fifth
 
 
 def with_radii(scene, factor):
@@ -148,37 +149,49 @@ def with_radii(scene, factor):
     return raya.parse("\n".join(lines) + "\n", f"{scene.name}, radii x {factor:g}")
 
 
-def falls_of_layouts(lab, size):
-    """Returns tests at 32 divisions / tests at 1024 divisions, for 1024 evenly spread spheres of several radii from several views."""
-    even, falls = raya.generate.uniform(1024, near_cube(1024)), []
+def layouts_of(lab, size, count):
+    """Returns {"tests", "time": array [layout, division of DIVISIONS]} of evenly spread spheres with several radii from several views. Modelled
+    time of a T805, ms."""
+    figures = {"tests": [], "time": []}
     for i, factor in enumerate(RADII):
+        scene = with_radii(raya.generate.uniform(count, near_cube(count)), factor)
         for seed in range(lab.seed + i * VIEWS, lab.seed + (i + 1) * VIEWS):
-            scene = with_radii(even, factor).random_view(seed)
-            few, many = (run_in_one_pe(lab, scene, size, near_cube(n)).tests for n in (papers.FEW_DIVISIONS, papers.MANY_DIVISIONS))
-            falls.append(few / many)
-    return np.array(falls)
+            view = scene.random_view(seed)
+            events = [lab.render(view, machine="grande", format="fp32", size=size, pes=1, offset=0, bounces=0,
+                                 accel=f"grid:{sides_text(near_cube(n))}").events for n in DIVISIONS]
+            figures["tests"].append([tests_of(e) for e in events])
+            figures["time"].append([raya.t805_ms(e) for e in events])
+    return {name: np.array(rows, float) for name, rows in figures.items()}
 
 
-def claims_of(lab, size, by_scene):
-    def is_minimum_at_object_count(name):
-        rows = [(scene_rows, row_at_object_count(scene_rows)) for scene_rows in by_scene]
-        return all(row is not None and ratio_to_minimum(scene_rows, row, name) <= DIFFERENCE_RATIO for scene_rows, row in rows)
+def claims_of(lab, size):
+    layouts, radii = {count: layouts_of(lab, size, count) for count in OBJECTS}, [factor for factor in RADII for _ in range(VIEWS)]
+    about = f"{len(RADII)} radii of evenly spread spheres, {VIEWS} views of each, seeds {lab.seed}..{lab.seed + len(RADII) * VIEWS - 1}"
 
-    def falls_then_rises(scene_rows):
-        until = scene_rows[scene_rows["divisions"] <= scene_rows["objects"]]["modelled (s)"]
-        return bool((until.diff()[1:] < 0).all()) and scene_rows["modelled (s)"].iloc[-1] > DIFFERENCE_RATIO * until.iloc[-1]
+    def at(name, count, divisions):
+        return layouts[count][name][:, DIVISIONS.index(divisions)]
 
-    falls = [ratio_to_minimum(scene_rows, scene_rows.iloc[0], "modelled") for scene_rows in by_scene]
-    texts = ", ".join(f"{fall:.1f} ({scene_rows['scene'].iloc[0]})" for fall, scene_rows in zip(falls, by_scene))
-    layouts = falls_of_layouts(lab, size)
-    radii = [factor for factor in RADII for _ in range(VIEWS)]
-    about = f"1024 evenly spread spheres, {len(RADII)} radii, {VIEWS} views of each, seeds {lab.seed}..{lab.seed + len(RADII) * VIEWS - 1}"
-    return [judged("time-falls-then-rises", counted(all(map(falls_then_rises, by_scene))), "",
-                   f"{finding_of_optimum('modelled', by_scene)} {finding_of_rise(by_scene)}"),
-            judged("more-objects-gain-more", counted((np.diff(falls) > 0).all()), "",
-                   f"From one division to the minimum, the modelled time falls by a factor of {texts}."),
-            judged("tests-to-a-fifth", within(layouts, *FIFTH, radii, digits=1), about,
-                   f"From 32 to 1024 divisions the tests fall by a factor of {estimate(layouts, radii).text(1)}, {range_text(layouts, 1)} for single "
+    def ratios(name, count, divisions, by):
+        return at(name, count, divisions) / at(name, count, by)
+
+    def texts(by_count, digits=2):
+        return ", ".join(f"{estimate(values, radii).text(digits)} ({count})" for count, values in by_count.items())
+
+    def fall(name):
+        return ratios(name, OBJECTS[-1], papers.FEW_DIVISIONS, papers.MANY_DIVISIONS)
+
+    half, double = ({n: ratios("time", n, int(n * factor), n) for n in OBJECTS} for factor in (0.5, 2))
+    excess = {n: at("tests", n, n) / layouts[n]["tests"].min(1) for n in OBJECTS}
+    gain = {n: ratios("time", n, 1, n) for n in OBJECTS}
+    return [judged("time-falls-then-rises", every(above(values, 1, radii) for by in (half, double) for values in by.values()), about,
+                   "Modelled time / time with divisions = objects (number of objects in brackets): "
+                   f"{texts(half)} with half as many divisions, {texts(double)} with twice as many."),
+            judged("more-objects-gain-more", every(above(gain[n] - gain[m], 0, radii) for m, n in zip(OBJECTS, OBJECTS[1:])), about,
+                   f"Modelled time without division / time with divisions = objects: {texts(gain, 1)}."),
+            judged("tests-to-a-fifth", next_value_within(papers.TESTS_FALL, fall("tests"), TOLERANCE, 1), about,
+                   f"The tests fall by a factor of {estimate(fall('tests'), radii).text(1)}, {range_text(fall('tests'), 1)} for single layouts."),
+            judged("time-to-a-fifth", next_value_within(papers.DIVISIONS_FALL, fall("time"), TOLERANCE, 1), about,
+                   f"The modelled time falls by a factor of {estimate(fall('time'), radii).text(1)}, {range_text(fall('time'), 1)} for single "
                    "layouts."),
-            judged("tests-fewest-at-objects", counted(is_minimum_at_object_count("tests")), "",
-                   f"{finding_of_optimum('tests', by_scene)} {finding_of_loss(by_scene)} Up to 2 % above the minimum is taken as the minimum.")]
+            judged("tests-fewest-at-objects", every(below(values, DIFFERENCE_RATIO, radii) for values in excess.values()), about,
+                   f"Tests with divisions = objects / minimum of the tests: {texts(excess, 3)}.")]

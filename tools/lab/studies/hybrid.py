@@ -71,8 +71,6 @@ def hybrid(lab, scenes):
                             "shortest overlapped time, modelled without a memory limit") for one, best in zip(every, best_groups)],
                 tables=[Table("hybrid", "Time of the whole machine", times),
                         Table("hybrid-memory", "Memory of the node that needs most", memory)], plots=plots_of(rows),
-                news=[f"Screen and space division combined, as by Harada et al. (1995): {NODES} nodes with unlimited memory are fastest if they form "
-                      f"{min(best_groups)} to {max(best_groups)} groups that each hold the whole scene."],
                 clock=CLOCK)
 
 

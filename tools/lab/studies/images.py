@@ -83,7 +83,8 @@ def images(lab, scenes):
                  Table("images", "Load imbalance and efficiency of each image", rows)],
                 plots_of(rows, groups, split_column, cyclic_column, pes, p),
                 [f"The cyclic mapping also balances another problem: over {WINDOWS} windows of the Mandelbrot set its mean efficiency is "
-                 f"{groups['Mandelbrot windows'][cyclic_column].mean():.2f}, that of the column split {groups['Mandelbrot windows'][split_column].mean():.2f}."], compared_with=papers.SPA,
+                 f"{groups['Mandelbrot windows'][cyclic_column].mean():.2f}, that of the column split {groups['Mandelbrot windows'][split_column].mean():.2f}."],
+                compared_with=papers.SPA,
                 placeholders={"fewest": rows["objects"].min(), "most": rows["objects"].max(), "ensemble": ensemble.description,
                               "finer": len(finer.pictures)})
 
@@ -161,7 +162,8 @@ def plots_of(rows, groups, split_column, cyclic_column, pes, p):
         series.append(Series("Kohata & Ito, their most unbalanced image", [1, 1], [papers.EFFICIENCY_0, papers.EFFICIENCY_16],
                              "paper"))
     distributions = [Series(f"{name}, {label}", 100 * np.arange(1, len(image_rows) + 1) / len(image_rows), np.sort(image_rows[column]), "steps")
-                     for label, image_rows in groups.items() if not label.startswith("scenes") for name, column in (("cyclic", cyclic_column), ("p = 0", split_column))]
+                     for label, image_rows in groups.items() if not label.startswith("scenes")
+                     for name, column in (("cyclic", cyclic_column), ("p = 0", split_column))]
     return [Plot("images", "Efficiency of each scene", "scene", "efficiency", series, x_names=names),
             Plot("images-groups", "Distribution of the efficiency over the pictures", "pictures with at most this efficiency (%)",
                  "efficiency", distributions)]

@@ -117,7 +117,7 @@ def findings_of(u, picture_u, families, means, n):
 
 def comparisons_of(rows, picture_u, n, in_paper):
     printed = {0: (papers.IMBALANCE_0, "our scene is calibrated to this value: see scenes/README.md"),
-               8: (None, 'the paper calls p = 8 "already good"'), 16: (papers.IMBALANCE_16, papers.IMBALANCE_16_ROUNDING)}
+               8: (None, "the paper calls the distribution with p = 8 good, too"), 16: (papers.IMBALANCE_16, papers.IMBALANCE_16_ROUNDING)}
     comparisons = []
     for p, (figure, remark) in printed.items():
         row, p_u = rows.iloc[p % len(rows)], picture_u[:, p % len(rows)]
@@ -128,7 +128,8 @@ def comparisons_of(rows, picture_u, n, in_paper):
         what = f"p with the lowest u, of 0..{n}" if paper else f"p with the lowest u, of all {len(rows)}"
         for column, more in (("u", ", single picture"), ("mean u", ", mean of the ensemble")):
             best = offset_rows[column].idxmin()
-            comparisons.append(Comparison(what + more, "", paper if in_paper else None, int(best), f"u = {offset_rows[column][best]:.3f}"))
+            source = f"the paper's: {paper}; " if paper and in_paper else ""
+            comparisons.append(Comparison(what + more, "", None, int(best), f"{source}u = {offset_rows[column][best]:.3f}"))
     return comparisons
 
 
@@ -139,7 +140,7 @@ def plots_of(name, scene, phase, rows, near, pictures, in_paper):
                  [Series(mean, near["p"], near["mean u"], half_widths=near["+-"]),
                   Series(f"{scene}, one picture", near["p"], near["u"]),
                   Series("lowest u of a picture", near["p"], near["least u"]),
-                  Series("highest u of a picture", near["p"], near["largest u"])] + paper),
+                  Series("highest u of a picture", near["p"], near["largest u"])] + paper, log="y"),
             Plot(f"{name}-all", f"Load imbalance against every offset, {phase}", "offset p (pixels)", "load imbalance u",
                  [Series(mean, rows["p"], rows["mean u"]),
                   Series("95 % interval of the mean, every fourth p", few["p"], few["mean u"], "points", few["+-"]),

@@ -55,7 +55,6 @@ def page_of(name, lab, scenes, first_pass):
                 claims_of(picture_loads, ensemble.description) if first_pass and not scenes else [],
                 [Table(name, "Load of each PE with p = 0 and p = 16", rows, on_page=False)],
                 plots_of(name, scene.name, phase, rows, scene_loads, len(u[0])),
-                ["Kohata & Ito show the loads of one image. The means of many pictures show the effect of the mapping, whatever the picture."],
                 compared_with=papers.SPA,
                 placeholders={"figure": f"{place}: load of each PE{'' if first_pass else ' in supersampling'}", "phase": phase, "place": place,
                               "name": name, "ensemble": ensemble.description,

@@ -49,17 +49,19 @@ def lattice(lab, scenes):
     correlations = [spearmanr(np.sqrt(squares), one)[0] for one in u]
     return Page({"size": size, "pes": size, "reference": n, "pictures": len(u)},
                 findings_of(rows, u, families, n, longer, as_long, correlations, squares),
-                comparisons_of(rows, n, longer, as_long, correlations), claims_of(u, ensemble, rows, n, beyond) if n * n == size and not scenes else [],
+                comparisons_of(rows, n, longer, as_long, correlations),
+                claims_of(u, ensemble, rows, n, beyond) if n * n == size and not scenes else [],
                 [Table("lattice-chosen", f"p = 0, p = {n}, offsets with shortest vectors as long or longer, and the best of all",
                        table), Table("lattice", "Shortest vector and u of each offset", rows, on_page=False)],
                 [*plots_of(rows, n, longer, as_long, len(u))],
-                [f"The lattice predicts the balance: the {len(longer)} offsets beyond {n} with shortest vectors longer than that of p = {n} "
-                 f"have a mean u of {rows['mean u'][longer].mean():.4f}, p = {n} has {rows['mean u'][n]:.4f}."] if len(longer) else [],
+                [f"The lattice of an offset predicts its mean u: the rank correlation of the mean u with the length of the shortest vector is "
+                 f"{spearmanr(np.sqrt(squares), rows['mean u'])[0]:.2f}."],
                 placeholders={"ensemble": ensemble.description, "length": f"{squares[n]**0.5:.2f}", "mirror": size - n}, compared_with=papers.SPA)
 
 
 def claims_of(u, ensemble, rows, n, beyond):
     families = ensemble.families
+    beyond = [p for p in beyond if p < len(rows) - n]  # larger offsets are the mirror images of smaller ones than n
     confidence = bonferroni_confidence(len(beyond))
     differences = [estimate(u[:, p] - u[:, n], families, confidence) for p in beyond]
     worse, better = sum(d.low > 0 for d in differences), sum(d.high < 0 for d in differences)
@@ -69,7 +71,8 @@ def claims_of(u, ensemble, rows, n, beyond):
                    f"Counted for n = {n}: with p = {n}, no n x n block has two pixels of one PE. This holds for {shared.sum()} offsets: "
                    f"{', '.join(map(str, rows['p'][shared]))}."),
             judged("beyond-is-worse", every(above(u[:, p] - u[:, n], 0, families) for p in beyond), ensemble.description,
-                   f"Of the {len(beyond)} offsets greater than {n}, {worse} have a higher mean u than p = {n} and {better} a lower one, with 95 % "
+                   f"Of the {len(beyond)} offsets from {n + 1} to {len(rows) - n - 1}, {worse} have a higher mean u than p = {n} and {better} a "
+                   f"lower one, with 95 % "
                    f"confidence in all differences together. The mean of u(p) - u({n}) over these offsets is {mean.text(4)}.")]
 
 

@@ -159,7 +159,8 @@ def static_vs_dynamic(lab, scenes):
                        for pes, group in of_root[of_root["scene"] == outcomes["scene"][0]].groupby("P")], "x"))
     return Page({"size": size, "pes": sizes, "factor": FACTOR, "request_cycles": request_cycles(FACTOR),
                  "random_seed": 1, "scenes": list(images)},
-                [*findings_of(tables_by_scene, counts_of(tables_by_scene), size), finding_of_root(of_root)], claims=claims_of(lab) if not scenes else [],
+                [*findings_of(tables_by_scene, counts_of(tables_by_scene), size), finding_of_root(of_root)],
+                claims=claims_of(lab) if not scenes else [],
                 tables=tables + [Table(f"{NAME}-limits", "The first P at which the efficiency is below 90 % and below "
                                        "50 %", limits),
                                  Table(f"{NAME}-root", "LINKS-1: efficiency for each number of pixels a request", of_root),

@@ -54,10 +54,8 @@ def comparisons_of(rows, share):
                        ("communication", exchange, "communication", "the clock is derived from the printed time"),
                        ("phase alone", computation, "alone", "computation: comparisons and new rays"),
                        ("with first pass", computation, "with_first", "computation: first pass, comparisons and new rays"))]
-    first, middle, last = (rows.iloc[i] for i in range(3))
+    first, last = rows.iloc[0], rows.iloc[-1]
     return comparisons + [
-        Comparison(f"p = {middle['p']:.0f}: communication", "ms", papers.EXCHANGE_8_MS, middle["communication"],
-                   "not printed: predicted from Tables 3 and 4", derived=True),
         Comparison("phase alone, p = 0 / p = 16", "", PRINTED_RATIO, first["alone"] / last["alone"],
                    "the clock's factor cancels", derived=True),
         Comparison("with first pass, p = 0 / p = 16", "", PRINTED_RATIO,
