@@ -86,7 +86,7 @@ TEST_CASE("roofline_table: contains the bound of each kernel and its percentage 
         {kernel("trace", 100), kernel("route", 100)});
     const std::string table = roofline_table(all);
     CAPTURE(table);
-    CHECK_THAT(table, Contains("trace: compute bound, 10.00 % of the fp32 multiply-add rate, 100.00 % of e6m15's own"));
+    CHECK_THAT(table, Contains("trace: compute bound, 10.00 % of the fp32 multiply-add rate, 100.00 % of the rates of e6m15"));
     CHECK_THAT(table, Contains("route: bandwidth bound, 50.00 % of the copy bandwidth\n"));
     CHECK_THAT(table,
                Contains("100.00 Gop/s multiply-adds in fp32; in e6m15: 10.00 multiply-adds, 1.00 divisions, 2.00"));

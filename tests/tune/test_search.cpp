@@ -276,7 +276,7 @@ TEST_CASE(
     const Space space = space_of(cpu, {.torus = true});
     TunedValues copies = space.defaults;
     copies.link_exchange = 1;
-    CHECK_THAT(change_text(space, space.defaults, copies), Catch::EndsWith(", link exchange own -> copies"));
+    CHECK_THAT(change_text(space, space.defaults, copies), Catch::EndsWith(", link exchange default -> copies"));
 }
 
 }  // namespace
