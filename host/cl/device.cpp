@@ -167,10 +167,11 @@ DeviceInfo device_info(const cl::Device& device) {
 std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo>& devices, std::size_t ordinal) {
     if (devices.empty()) {
         const std::string limit = memory_limit();
-        throw DeviceError(fmt::format(
-            "no OpenCL device found; remedy: {}install a driver (Debian: apt install pocl-opencl-icd), check the "
-            "environment variable OCL_ICD_VENDORS, which may hide the driver, and the output of clinfo",
-            limit.empty() ? "" : fmt::format("raise {}, which may be too low for a driver, ", limit)));
+        throw DeviceError(
+            fmt::format("no OpenCL device found; remedy: {}install a driver (Debian: apt install pocl-opencl-icd), "
+                        "look at the output "
+                        "of clinfo, or unset the environment variable OCL_ICD_VENDORS if it hides the driver",
+                        limit.empty() ? "" : fmt::format("raise {}, which may be too low for a driver, ", limit)));
     }
     const std::string entry = list_entry(wanted, ordinal);
     if (entry.empty()) return default_index(devices, ordinal);

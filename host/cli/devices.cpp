@@ -34,8 +34,9 @@ void list_devices() {
     for (const std::string& version : versions) fmt::print("{}\n", version);
     fmt::print(
         "\nlanes, group: the defaults of --lanes and --group. --device and RAYA_DEVICE take a number, a type, or "
-        "part of a name or version.\nRAYA_BUILD_OPTIONS is added to every kernel's build options and listed in the "
-        "report, e.g. -cl-opt-disable, to find out whether the compiler's optimiser causes a wrong result.\n");
+        "part of a name or version.\nThe options in RAYA_BUILD_OPTIONS are added to every kernel's build "
+        "options; the report lists them. For example, RAYA_BUILD_OPTIONS=-cl-opt-disable shows whether the compiler's "
+        "optimiser causes a wrong result.\n");
 }
 
 }  // namespace

@@ -38,8 +38,8 @@ struct Rendering {
     bool refined = false;       // division, square root and fma are refined, as if the device did not round them
                                 // correctly
 
-    // Returns the check kind, the key in StoredImage::counts: the renderer with its accelerator or torus, such as
-    // "ring", "bvh" or "torus2d 3x2x2 root". Renderings of an image with the same check kind have equal counts.
+    // Returns the name of the renderer with its accelerator or torus, such as "ring", "bvh" or "torus2d 3x2x2 root". It
+    // is the key in StoredImage::counts: renderings of an image by the same renderer have equal counts.
     std::string check_kind() const {
         if (torus)
             return fmt::format("{} {}{}", links_name(links), sides_text(nodes),

@@ -37,8 +37,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void shade_tree_step(__global const uint* restrict job,    // the job's words (kernels/shared/job.h)
                      __global const float* restrict rays,  // [ray][7]: origin, direction, limit
                      const uint level,
-                     __global uint* restrict state,     // [ray][3 + RAYA_EVENTS]: active (0 or 1), level, pending
-                                                        // levels, event counts
+                     __global uint* restrict state,     // [ray][3 + RAYA_EVENTS]: active (0 or 1), level, mask
+                                                        // of the levels with a pending ray, event counts
                      __global float* restrict numbers)  // [ray][17]: sum, current ray, pending ray made at `level`
 {
     const uint first = first_ray();

@@ -72,8 +72,8 @@ inline std::vector<std::uint32_t> finite_objects(const PackedJob& job) {
     return finite;
 }
 
-/// Returns a partition that lists every finite object in random voxels: about half of the objects in one voxel, each
-/// remaining object in up to `max_copies` voxels.
+/// Returns a partition that lists every finite object in random voxels: about half of the objects are each in a single
+/// voxel, the others each in up to `max_copies` voxels.
 inline Partition random_partition(SplitMix& random, const PackedJob& job, const Divisions& divisions,
                                   std::uint32_t max_copies) {
     std::vector<std::set<std::uint32_t>> lists(divisions[0] * divisions[1] * divisions[2]);

@@ -55,8 +55,8 @@ function labels(r) {
   const longest = [...commands].sort((a, b) => b.total_ns - a.total_ns).slice(0, 8);
   return [
     paragraph(
-      `The render took ${timeText(1e3 * num(r, "measured.render_s"))} on the host's clock, the build of its kernels ${
-        timeText(1e3 * num(r, "measured.build_s"))} before it. ` +
+      `On the host's clock the build of the kernels took ${timeText(1e3 * num(r, "measured.build_s"))}, and the render ${
+        timeText(1e3 * num(r, "measured.render_s"))}. ` +
       "Times of commands are the device's, from start to end."),
     caption(
       namedBars(description, longest.map((command) => ({
