@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <charconv>
 #include <cstdio>
 #include <memory>
 
@@ -18,25 +19,69 @@
 #include "host/cli/scene_input.hpp"
 #include "host/error.hpp"
 #include "host/model/unit_text.hpp"
+#include "host/verify/ci_reports.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/version.hpp"
 
 namespace raya {
 namespace {
 
+// Longest time of a check before it counts as hung: about twice the build time of the slowest kernel in
+// docs/portability.md.
+constexpr double kDefaultTimeout_s = 600;
+
 struct VerifyCommand {
-    std::string device, report, page, kernel_dir, only;
-    std::uint32_t lanes = 0;
-    bool brief = false, quick = false, full = false;
+    std::string device, report, page, junit, tap, expect, kernel_dir, only, skip, shard;
+    std::uint32_t lanes = 0, repeat = 1;
+    double timeout_s = kDefaultTimeout_s;
+    bool brief = false, quick = false, full = false, list = false;
 
     Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
 };
 
 // Returns the text "57 checks passed, 0 failed, 2 skipped in 12.3 s".
 std::string closing_text(const std::vector<Check>& checks, double seconds) {
-    return fmt::format("{} passed, {} failed, {} skipped in {:.1f} s",
+    const std::size_t expected = count_of(checks, Outcome::kExpectedFail),
+                      unexpected = count_of(checks, Outcome::kUnexpectedPass);
+    return fmt::format("{} passed, {} failed, {} skipped{}{} in {:.1f} s",
                        counted(count_of(checks, Outcome::kPass), "check"), count_of(checks, Outcome::kFail),
-                       count_of(checks, Outcome::kSkip), seconds);
+                       count_of(checks, Outcome::kSkip),
+                       expected ? fmt::format(", {} failed as expected", expected) : "",
+                       unexpected ? fmt::format(", {} passed unexpectedly", unexpected) : "", seconds);
+}
+
+// Sets shard and shards from the text "I/N". Throws UserError if it is not valid.
+void set_shard(VerifySettings& settings, const std::string& text) {
+    if (text.empty()) return;
+    const char *const end = text.data() + text.size(), *at = text.data();
+    const auto reads = [&](std::uint32_t& number) {
+        const auto [stop, error] = std::from_chars(at, end, number);
+        at = stop;
+        return error == std::errc{};
+    };
+    const bool is_valid = reads(settings.shard) && at != end && *at++ == '/' && reads(settings.shards) && at == end;
+    if (!is_valid || settings.shard < 1 || settings.shard > settings.shards)
+        throw UserError(fmt::format("--shard {}: must be I/N with I 1..N, such as 2/4", text));
+}
+
+VerifySettings settings_of(const VerifyCommand& command) {
+    VerifySettings settings{.depth = command.depth(),
+                            .sources = {command.kernel_dir},
+                            .only = command.only,
+                            .skip = command.skip,
+                            .repeat = command.repeat,
+                            .timeout_s = command.timeout_s,
+                            .lanes = command.lanes};
+    set_shard(settings, command.shard);
+    if (!command.expect.empty()) settings.expected_failures = read_expected_failures(command.expect);
+    return settings;
+}
+
+void list_checks(const VerifyCommand& command, const VerifySettings& settings) {
+    const bool all = command.device == "all";
+    for (const cl::Device& device : all ? all_devices() : std::vector<cl::Device>{choose_device(command.device)})
+        for (const std::string& name : check_names(device, settings))
+            fmt::print("{}{}\n", all ? device_info(device).name + ": " : "", name);
 }
 
 // Verifies device number `index` of those that --device selects, and prints each check. Sets `device_count` to the
@@ -63,7 +108,9 @@ DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, cons
             },
         .finished =
             [&](const Check& check) {
-                if (!quiet || check.verdict.outcome == Outcome::kFail) print(check_lines(check));
+                const Outcome outcome = check.verdict.outcome;
+                if (!quiet || outcome == Outcome::kFail || outcome == Outcome::kUnexpectedPass)
+                    print(check_lines(check));
             }};
     DeviceChecks result = supervise(command.device, index, settings, sink, device_count);
     if (!quiet || device_count == 1 || !result.all_passed())
@@ -84,6 +131,8 @@ Json report_of(const std::vector<DeviceChecks>& device_checks, Depth depth) {
                            {"passed", count_of(device.checks, Outcome::kPass)},
                            {"failed", count_of(device.checks, Outcome::kFail)},
                            {"skipped", count_of(device.checks, Outcome::kSkip)},
+                           {"failed_as_expected", count_of(device.checks, Outcome::kExpectedFail)},
+                           {"passed_unexpectedly", count_of(device.checks, Outcome::kUnexpectedPass)},
                            {"seconds", device.seconds},
                            {"checks", checks}});
     }
@@ -106,10 +155,10 @@ void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
 void run_verify(const VerifyCommand& command) {
     if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
     if (!command.page.empty()) check_page_name("--page", command.page);
+    const VerifySettings settings = settings_of(command);
+    if (command.list) return list_checks(command, settings);
     Warnings warnings;
     warn_of_build_options(warnings);
-    const VerifySettings settings{
-        .depth = command.depth(), .sources = {command.kernel_dir}, .only = command.only, .lanes = command.lanes};
     std::vector<DeviceChecks> device_checks;
     bool all_passed = true;
     for (std::size_t device_count = 1; device_checks.size() < device_count;) {
@@ -118,6 +167,8 @@ void run_verify(const VerifyCommand& command) {
     }
     if (device_checks.size() > 1) print_device_totals(device_checks);
     write_report_and_page({command.report, command.page}, report_of(device_checks, command.depth()));
+    if (!command.junit.empty()) write_whole_file(command.junit, junit_report(device_checks));
+    if (!command.tap.empty()) write_whole_file(command.tap, tap_report(device_checks));
     if (!all_passed) throw CheckFailure{};
 }
 
@@ -146,8 +197,26 @@ void add_verify_command(CLI::App& program) {
         ->check(CLI::IsMember({1, 4, 8, 16}))
         ->type_name("V");
     add_value(*command, "--only", options->only,
-              "Run only checks whose printed \"LAYER NAME\" contains this text: number, \"image glass\", spa22, ...")
+              "Run only checks whose printed \"LAYER NAME\" contains this text: number, \"image glass\", spa22, ...; * "
+              "stands for any text")
         ->type_name("TEXT");
+    add_value(*command, "--skip", options->skip, "Run no check whose \"LAYER NAME\" contains this text, as for --only")
+        ->type_name("TEXT");
+    command->add_flag("--list", options->list, "Print the names of the selected checks, and run none");
+    add_value(*command, "--repeat", options->repeat, "Number of runs of each check; it fails if one of them fails")
+        ->check(CLI::Range(1, 1'000'000))
+        ->type_name("N");
+    add_value(*command, "--shard", options->shard,
+              "Run the I-th of N parts of the selected checks, to divide them over N jobs")
+        ->type_name("I/N");
+    add_value(*command, "--timeout", options->timeout_s,
+              "Seconds after which a check counts as failed and its process is ended; 0: never")
+        ->check(CLI::Range(0., 1e6))
+        ->type_name("S");
+    add_file(
+        *command, FileUse::kRead, "--expect", options->expect, "FILE",
+        "Checks that are known to fail, one on each line: PATTERN | REASON | LINK, with a pattern as for --only. Their "
+        "failures do not count; if one passes, the exit code is 4");
     add_device_option(*command, options->device);
     command->get_option("--device")
         ->description(command->get_option("--device")->get_description() + "; all: every usable device in turn");
@@ -157,6 +226,8 @@ void add_verify_command(CLI::App& program) {
     group.next(kDiagnostics);
     add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
              "Write all checks and their failures as JSON; -: stdout; the lines about the checks then go to stderr");
+    add_file(*command, FileUse::kWritten, "--junit", options->junit, "FILE.xml", "Write the results as JUnit XML");
+    add_file(*command, FileUse::kWritten, "--tap", options->tap, "FILE", "Write the results as TAP, version 14");
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
              "Write all checks, and the first failure in full, as an HTML page; raya page makes the same page from a "
              "report");

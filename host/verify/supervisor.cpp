@@ -24,19 +24,28 @@ Json settings_json(const VerifySettings& s, const std::string& selector, std::si
             {"depth", depth_name(s.depth)},
             {"kernel_dir", s.sources.folder.string()},
             {"only", s.only},
+            {"skip", s.skip},
+            {"shard", s.shard},
+            {"shards", s.shards},
+            {"repeat", s.repeat},
             {"lanes", s.lanes},
             {"done", s.done}};
 }
 
 VerifySettings settings_of(const Json& json) {
     const std::string& depth = json.at("depth").text();
+    const auto number = [&](const char* key) { return static_cast<std::uint32_t>(json.at(key).integer(UINT32_MAX)); };
     const auto has_depth = [&](Depth named) { return depth == depth_name(named); };
     return {.depth = has_depth(Depth::kFull)    ? Depth::kFull
                      : has_depth(Depth::kBrief) ? Depth::kBrief
                                                 : Depth::kQuick,
             .sources = {.folder = json.at("kernel_dir").text()},
             .only = json.at("only").text(),
-            .lanes = static_cast<std::uint32_t>(json.at("lanes").integer(UINT32_MAX)),
+            .skip = json.at("skip").text(),
+            .shard = number("shard"),
+            .shards = number("shards"),
+            .repeat = number("repeat"),
+            .lanes = number("lanes"),
             .done = json.at("done").integer()};
 }
 
@@ -75,6 +84,10 @@ std::string example_names(const std::vector<std::string>& names) {
 // Throws UserError if --only selects no check.
 void refuse_empty_selection(const cl::Device& device, const VerifySettings& settings) {
     if (!check_names(device, settings).empty()) return;
+    if (!settings.skip.empty() || settings.shards > 1)
+        throw UserError(
+            fmt::format("--only, --skip and --shard select no check of {}; --list prints the selected checks",
+                        device_info(device).name));
     VerifySettings unfiltered = settings;
     unfiltered.only.clear();
     throw UserError(fmt::format(
@@ -118,6 +131,10 @@ class Supervision {
                 take(Json::parse(line, {"the process of the checks"}));
             else if (sink_.running && running_)
                 sink_.running(running_->layer, running_->name, check_seconds());
+            if (running_ && settings_.timeout_s > 0 && check_seconds() > settings_.timeout_s) {
+                finish(timed_out_check());
+                return true;  // the destructor kills the process
+            }
         }
         const int status = process.wait();
         if (ended_ && status == 0) return false;
@@ -168,9 +185,34 @@ class Supervision {
                 "run raya verify without --kernel-dir; if it passes, these kernels are wrong"};
         settings_.done += running_.has_value();
         running_.reset();
+        apply_expectation(check);
         all_.seconds += check.seconds;
         all_.checks.push_back(check);
         if (sink_.finished) sink_.finished(check);
+    }
+
+    // Changes the outcome of a check that is expected to fail.
+    void apply_expectation(Check& check) const {
+        Verdict& v = check.verdict;
+        if (v.outcome == Outcome::kSkip) return;
+        for (const ExpectedFailure& e : settings_.expected_failures) {
+            if (!name_matches(check.layer + " " + check.name, e.pattern)) continue;
+            const std::string why = e.link.empty() ? e.reason : e.reason + ", " + e.link;
+            const bool passes = v.outcome == Outcome::kPass;
+            v.outcome = passes ? Outcome::kUnexpectedPass : Outcome::kExpectedFail;
+            v.result = passes ? fmt::format("passed, but --expect lists it as failing ({}): {}", why, v.result)
+                              : fmt::format("{} (expected: {})", v.result, why);
+            return;
+        }
+    }
+
+    Check timed_out_check() const {
+        Check check{running_->layer, running_->name, check_seconds(), {}};
+        check.verdict = failed(fmt::format("no result after {:.0f} s, so the process was ended", check_seconds()),
+                               {.where = "in the driver or its compiler, while this check ran",
+                                .remedies = {"--timeout SECONDS, if the device or its compiler is slow",
+                                             "--lanes 1: compilers take less time for one lane"}});
+        return check;
     }
 
     // Returns a failed check for a process that ended too early with exit status `status`. Throws an exception if no

@@ -24,7 +24,11 @@ struct DeviceChecks {
     std::vector<Check> checks;
     double seconds = 0;  // sum of the checks' times
 
-    bool all_passed() const { return count_of(checks, Outcome::kFail) == 0 && count_of(checks, Outcome::kPass) > 0; }
+    /// Returns true if checks ran and each had the expected outcome.
+    bool all_passed() const {
+        return count_of(checks, Outcome::kFail) + count_of(checks, Outcome::kUnexpectedPass) == 0 &&
+               count_of(checks, Outcome::kPass) + count_of(checks, Outcome::kExpectedFail) > 0;
+    }
 };
 
 /// Callbacks of supervise().
@@ -38,8 +42,8 @@ struct SupervisorSink {
 };
 
 /// Checks device number `index`, from 0, of the devices that `selector` selects: "all" selects every usable device, any
-/// other text one device by the rules of choose_device(). If the child process ends early, the running check counts as
-/// failed, and the next checks run in a new process, as long as each process completes at least one check. Sets
+/// other text one device by the rules of choose_device(). If the child process ends early, or a check takes longer than
+/// settings.timeout_s, the running check counts as failed, and the next checks run in a new process. Sets
 /// `devices` to the number of selected devices. Throws the UserError or DeviceError that the child process reports, and
 /// DeviceError if the driver ends the process before the first check.
 DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,

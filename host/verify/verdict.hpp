@@ -11,7 +11,13 @@
 
 namespace raya {
 
-enum class Outcome { kPass, kFail, kSkip };
+enum class Outcome {
+    kPass,
+    kFail,
+    kSkip,
+    kExpectedFail,   // failed, as VerifySettings::expected_failures says
+    kUnexpectedPass  // passed, although VerifySettings::expected_failures lists the check
+};
 
 /// Details of a failed check. Unknown members are empty.
 struct Fault {

@@ -1,6 +1,7 @@
 #include "host/verify/verify.hpp"
 
 #include <fmt/core.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <sstream>
@@ -12,6 +13,8 @@
 
 namespace raya {
 namespace {
+
+bool has_failed(Outcome outcome) { return outcome == Outcome::kFail || outcome == Outcome::kExpectedFail; }
 
 bool contains_any(const std::string& message, const std::vector<const char*>& texts) {
     return std::any_of(texts.begin(), texts.end(),
@@ -79,7 +82,28 @@ void visit_layers(Verification& verification) {
 }  // namespace
 
 const char* outcome_name(Outcome outcome) {
-    return outcome == Outcome::kPass ? "PASS" : outcome == Outcome::kFail ? "FAIL" : "SKIP";
+    switch (outcome) {
+        case Outcome::kPass:
+            return "PASS";
+        case Outcome::kFail:
+            return "FAIL";
+        case Outcome::kSkip:
+            return "SKIP";
+        case Outcome::kExpectedFail:
+            return "XFAIL";
+        case Outcome::kUnexpectedPass:
+            return "XPASS";
+    }
+    return "";
+}
+
+bool name_matches(const std::string& full_name, const std::string& pattern) {
+    std::string glob = "*";
+    for (const char c : pattern) {
+        if (c == '?' || c == '[' || c == '\\') glob += '\\';
+        glob += c;
+    }
+    return ::fnmatch((glob + "*").c_str(), full_name.c_str(), 0) == 0;
 }
 
 Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body) {
@@ -95,7 +119,7 @@ std::size_t count_of(const std::vector<Check>& checks, Outcome outcome) {
 }
 
 std::string check_lines(const Check& c) {
-    std::string lines = fmt::format("{}  {:<9} {:<46} {:6.2f} s  {}\n", outcome_name(c.verdict.outcome), c.layer,
+    std::string lines = fmt::format("{:<5} {:<9} {:<46} {:6.2f} s  {}\n", outcome_name(c.verdict.outcome), c.layer,
                                     c.name, c.seconds, c.verdict.result);
     if (c.verdict.outcome != Outcome::kFail) return lines;
     const Fault& f = c.verdict.fault;
@@ -111,7 +135,7 @@ Json to_json(const Check& c) {
                  {"status", outcome_name(c.verdict.outcome)},
                  {"seconds", c.seconds},
                  {"result", c.verdict.result}};
-    if (c.verdict.outcome != Outcome::kFail) return json;
+    if (!has_failed(c.verdict.outcome)) return json;
     const Fault& f = c.verdict.fault;
     json["where"] = f.where;
     json["expected"] = f.expected;
@@ -131,11 +155,10 @@ std::vector<std::string> compiler_remedies() {
 
 Check check_of(const Json& json) {
     const auto text = [&](const char* key) { return json.at(key).text(); };
-    const std::string status = text("status");
     Check check{text("layer"), text("name"), json.at("seconds").number(), {Outcome::kPass, text("result"), {}}};
-    if (status == outcome_name(Outcome::kSkip)) check.verdict.outcome = Outcome::kSkip;
-    if (status != outcome_name(Outcome::kFail)) return check;
-    check.verdict.outcome = Outcome::kFail;
+    for (const Outcome outcome : {Outcome::kFail, Outcome::kSkip, Outcome::kExpectedFail, Outcome::kUnexpectedPass})
+        if (text("status") == outcome_name(outcome)) check.verdict.outcome = outcome;
+    if (!has_failed(check.verdict.outcome)) return check;
     check.verdict.fault = {.where = text("where"),
                            .expected = text("expected"),
                            .got = text("got"),
@@ -164,15 +187,21 @@ Verification::Verification(const cl::Device& device, const VerifySettings& setti
 void Verification::check(const std::string& layer, const std::string& name,
                          const std::function<Verdict(Session&)>& body) {
     const std::string full_name = layer + " " + name;
-    if (full_name.find(settings_.only) == std::string::npos) return;
+    if (!name_matches(full_name, settings_.only)) return;
+    if (!settings_.skip.empty() && name_matches(full_name, settings_.skip)) return;
+    if (selected_++ % settings_.shards != settings_.shard - 1) return;
     names_.push_back(full_name);
     if (!runs_ || names_.size() <= settings_.done) return;
     if (sink_.started) sink_.started(layer, name);
     checks_.push_back(run_check(layer, name, [&] {
-        Session session(device_);
-        const Verdict verdict = body(session);
-        session.finish();
-        return verdict;
+        for (std::uint32_t run = 1;; ++run) {
+            Session session(device_);
+            Verdict verdict = body(session);
+            session.finish();
+            if (settings_.repeat > 1 && verdict.outcome == Outcome::kFail)
+                verdict.result += fmt::format(" (in run {} of {})", run, settings_.repeat);
+            if (run == settings_.repeat || verdict.outcome != Outcome::kPass) return verdict;
+        }
     }));
     if (sink_.finished) sink_.finished(checks_.back());
 }

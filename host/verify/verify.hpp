@@ -13,7 +13,7 @@
 
 namespace raya {
 
-/// Returns "PASS", "FAIL" or "SKIP".
+/// Returns "PASS", "FAIL", "SKIP", "XFAIL" or "XPASS".
 const char* outcome_name(Outcome outcome);
 
 struct Check {
@@ -37,8 +37,8 @@ std::size_t count_of(const std::vector<Check>& checks, Outcome outcome);
 /// its details follow.
 std::string check_lines(const Check& check);
 
-/// Returns an object with members layer, name, status, seconds and result; for a failure also where, expected, got,
-/// build_options and remedies.
+/// Returns an object with members layer, name, status, seconds and result; for a failure, expected or not, also where,
+/// expected, got, build_options and remedies.
 Json to_json(const Check& check);
 
 /// Inverse of to_json(Check).
@@ -56,10 +56,23 @@ inline constexpr const char* kVerifyReportKind = "raya verify";
 /// Returns text such as "quick".
 const char* depth_name(Depth depth);
 
+/// Returns true if `full_name`, "LAYER NAME", contains `pattern`, in which * stands for any text.
+bool name_matches(const std::string& full_name, const std::string& pattern);
+
+/// A check that is known to fail.
+struct ExpectedFailure {
+    std::string pattern, reason, link;  // pattern: see name_matches()
+};
+
 struct VerifySettings {
     Depth depth = Depth::kQuick;
     KernelSources sources{};
-    std::string only{};       // run only checks whose "LAYER NAME" contains this text; empty: all
+    std::string only{};                   // run only checks whose "LAYER NAME" matches; empty: all
+    std::string skip{};                   // run no check whose "LAYER NAME" matches; empty: skip none
+    std::uint32_t shard = 1, shards = 1;  // of the selected checks, run those with number modulo `shards` = shard - 1
+    std::uint32_t repeat = 1;             // number of runs of each check; it fails if one of them fails
+    double timeout_s = 0;                 // time after which supervise() ends a check; 0: never
+    std::vector<ExpectedFailure> expected_failures{};  // supervise() changes the outcome of checks that match
     std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
                               // Depth::kFull, all four numbers
     std::size_t done = 0;     // number of checks, from the first on, that are already done; verify() skips them
@@ -116,7 +129,8 @@ class Verification {
     CheckSink sink_;
     bool runs_;
     std::vector<Check> checks_;
-    std::vector<std::string> names_;  // of all selected checks, including the `done` checks
+    std::size_t selected_ = 0;        // number of checks that `only` and `skip` select, in all shards
+    std::vector<std::string> names_;  // of all checks of this shard, including the `done` checks
 };
 
 // Run the checks of one layer. Each layer relies on the layers before it.

@@ -43,6 +43,71 @@ TEST_CASE("verify: exits with 4 if a check fails, and shows the difference and r
     CHECK(failures == 2);
 }
 
+TEST_CASE("verify --expect: listed failures do not count, and listed checks that pass do", "[cli][verify]") {
+    const ScratchFolder scratch;
+    const std::string kernels = write_kernels(scratch / "kernels", {kMappingFault}), list = scratch / "expect.txt",
+                      junit = scratch / "v.xml", tap = scratch / "v.tap", report = scratch / "v.json";
+    const Arguments verify = {
+        "verify", "--only", "machine mapping", "--kernel-dir", kernels, "--expect", list, "--junit", junit,
+        "--tap",  tap,      "--report",        report};
+    write_whole_file(list, "# mappings\nmapping: | wrong mapping | https://example.org/1\n");
+    const RunOutcome unexpected = run_raya(verify);
+    INFO(unexpected.describe());
+    CHECK(unexpected.code == 4);
+    CHECK_THAT(unexpected.out, Catch::Contains("XPASS machine") && Catch::Contains("XFAIL machine   mapping: blocks") &&
+                                   Catch::Contains("0 failed, 0 skipped, 2 failed as expected"));
+    CHECK_THAT(file_contents(junit),
+               Catch::Contains("<failure message=\"passed, but --expect lists it as failing (wrong "
+                               "mapping, https://example.org/1)"));
+    write_whole_file(list, "mapping: blocks | wrong mapping\nmapping: cyclic*block | also wrong\n");
+    const RunOutcome expected = run_raya(verify);
+    INFO(expected.describe());
+    CHECK(expected.code == 0);
+    const Document device = Document::parse(file_contents(report))["devices"][0];
+    CHECK(device["failed_as_expected"] == 2);
+    CHECK(device["right"] == true);
+    CHECK_THAT(file_contents(junit), Catch::Contains("failures=\"0\"") && Catch::Contains("skipped=\"2\"") &&
+                                         Catch::Contains("(expected: wrong mapping)"));
+    CHECK_THAT(file_contents(tap),
+               Catch::StartsWith("TAP version 14\n1..") && Catch::Contains("not ok ") && Catch::Contains(" # TODO "));
+    write_whole_file(list, "mapping: blocks\n");
+    const ScratchFolder outputs;
+    check_refused(outputs, verify, 2, {list + ":1: expected PATTERN | REASON or PATTERN | REASON | LINK"});
+}
+
+TEST_CASE("verify --shard, --skip, --list: every check is in exactly one shard", "[cli][verify]") {
+    const auto listed = [](const Arguments& more) {
+        Arguments arguments = {"verify", "--brief", "--list"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const RunOutcome run = run_raya(arguments);
+        INFO(run.describe());
+        REQUIRE(run.code == 0);
+        std::istringstream lines(run.out);
+        std::multiset<std::string> names;
+        for (std::string line; std::getline(lines, line);) names.insert(line);
+        return names;
+    };
+    const auto all = listed({});
+    std::multiset<std::string> shards;
+    for (const char* shard : {"1/3", "2/3", "3/3"}) shards.merge(listed({"--shard", shard}));
+    CHECK(shards == all);
+    const auto numbers = listed({"--only", "number"}), others = listed({"--skip", "number"});
+    CHECK(numbers.size() + others.size() == all.size());
+    CHECK(listed({"--only", "n*fp32"}).size() < all.size());
+    const ScratchFolder scratch;
+    for (const char* shard : {"0/2", "3/2", "1", "1/2x", "/2"})
+        check_refused(scratch, {"verify", "--shard", shard}, 2, {"--shard", "must be I/N with I 1..N"});
+    check_refused(scratch, {"verify", "--only", "number fp32", "--shard", "5/9"}, 2, {"select no check of"});
+}
+
+TEST_CASE("verify --timeout: ends a check that hangs, and continues with the next", "[cli][verify]") {
+    const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine mapping: rows", "--timeout", "1"},
+                                    device_with_fault("clFinish 1 slow"));
+    INFO(run.describe());
+    CHECK(run.code == 4);
+    CHECK_THAT(run.out, Catch::Contains("no result after") && Catch::Contains("--timeout SECONDS"));
+}
+
 TEST_CASE("verify --kernel-dir: refuses a folder without all kernels, before any check", "[cli][verify]") {
     const ScratchFolder scratch, empty, outputs;
     const std::string partial = write_kernels(scratch / "kernels");

@@ -136,7 +136,7 @@ function deviceChecks(device) {
   const checks = list(device, "checks", "object"), failed = checks.find((check) => str(check, "status") === "FAIL");
   const rows = checks.map(
     (check) =>
-      [verdict({PASS: "yes", FAIL: "no"}[str(check, "status")] ?? "open", check.status), str(check, "layer"),
+      [verdict({PASS: "yes", FAIL: "no", XPASS: "no"}[str(check, "status")] ?? "open", check.status), str(check, "layer"),
        str(check, "name"), fixed(num(check, "seconds"), 2), str(check, "result").slice(0, 300)]);
   return [
     tiles([
