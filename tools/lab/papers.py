@@ -60,6 +60,11 @@ REFERENCES = [
     "pp. 65-70, 1979.",
     "Masaki Kohata, Taku Ito: Parallel Computation of Ray Tracing on a One-dimensional DSP Array "
     "(1次元DSPアレイでの光線追跡法の並列計算). IPSJ Journal (Information Processing Society of Japan), 1993, in Japanese.",
+    "Hitoshi Nishimura, Hiroshi Deguchi, Toshikazu Tatsumi, Toru Kawata, Isao Shirakawa, Koichi Omura: Performance evaluation of parallel "
+    "processing in the computer graphics system LINKS-1 (in Japanese, abstract). Transactions of the IEICE J68-D (4), pp. 733-740, 1985.",
+    "Cellular Array Processor CAP and Applications (abstract). Journal of VLSI Signal Processing, doi:10.1007/BF00932066, 1989.",
+    "Masaharu Yoshida, Tadashi Naruse, Tokiichiro Takahashi: A Dedicated Graphics Processor SIGHT-2. Eurographics Workshop on Graphics "
+    "Hardware, pp. 151-169, 1989.",
     "Michael Potmesil, Eric M. Hoffert: The Pixel Machine: A Parallel Image Computer. Computer Graphics 23 (3) "
     "(SIGGRAPH '89), pp. 69-78, 1989.",
     "Henri Casanova, Arnaud Giersch, Arnaud Legrand, Martin Quinson, Frédéric Suter: Versatile, Scalable, and "
