@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-GENERATED = {"report.md", "gpu_resources.md", "portability.md", "performance.md", "sweep.md"}  # tools write these
+GENERATED = {"report.md", "gpu_resources.md", "portability.md", "performance.md", "sweep.md", "verdicts.md"}  # tools write these
 MAX_WORDS, MAX_CELL_WORDS, MAX_COLUMNS = 80, 30, 120
 # Lines with measured figures, and the parts of these lines that differ between machines and runs: times, rates, lanes, sizes of binaries, the name
 # of the device. All other lines are compared exactly.
