@@ -260,7 +260,7 @@ def judge_objects(ratios, even, random):
         runs[count, objects.RANDOM, objects.PAPER] = [SimpleNamespace(asynchronous_ms=40.0 * ratio) for ratio in times]
         rows.append({"objects": count, "kind": objects.RANDOM, "protocol": objects.PAPER, **dict.fromkeys(objects.TIMES, estimate(times))})
     return objects.claims_of(runs, pd.DataFrame(rows), [(objects.EVEN, objects.PAPER, growth(*even, np.array([-2, -1, 0, 1, 2]) / 50)),
-                                                        (objects.RANDOM, objects.PAPER, growth(*random, np.array([-2, -1, 0, 1, 2]) / 50))])
+                                                        (objects.RANDOM, objects.PAPER, growth(*random, np.array([-2, -1, 0, 1, 2]) / 50))], "variants")
 
 
 # The cases: study, data, judgements, {id of a claim: "yes" for reproduced, "no" for not reproduced, "?" for compatible}.

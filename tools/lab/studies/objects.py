@@ -48,14 +48,14 @@ def render(lab, scene, size, **options):
     return run_on_torus(lab, scene, size, (4, 4, 4), (4, 4, 4), links="torus2d", bounces=0, **options)
 
 
-def even_variant(count, seed):
-    """Returns an even scene. Its spheres have the radii of even_scene() times a factor of RADII, and random places within their voxels."""
+def even_variant(count, factor, seed):
+    """Returns an even scene. Its spheres have the radii of even_scene() times a factor, and random places within their voxels."""
     rng, lines = np.random.default_rng(seed), []
     side = 2 / SIDES  # side of a voxel; the cube is [-1, 1]^3
     for line in even_scene(count).nff.splitlines():
         if line.startswith("s "):
             *centre, radius = map(float, line.split()[1:])
-            radius = min(RADII[seed % len(RADII)] * radius, MAX_RADIUS * side)
+            radius = min(factor * radius, MAX_RADIUS * side)
             voxel = np.floor((np.array(centre) + 1) / side)
             centre = -1 + side * voxel + rng.uniform(radius, side - radius, 3)
             line = "s " + " ".join(f"{value:.7g}" for value in (*centre, radius))
@@ -63,10 +63,10 @@ def even_variant(count, seed):
     return raya.parse("\n".join(lines) + "\n", f"even-{count}, variant {seed}").random_view(seed).moved_into_voxels()
 
 
-def scenes_of(count):
+def scenes_of(count, seeds):
     """Returns {kind: [scene of each variant]}: even scenes, random scenes, and random scenes with spheres moved into the voxels of their centres."""
-    even = [even_variant(count, seed) for seed in range(1, VARIANTS + 1)]
-    random = [one.scattered(seed) for seed, one in enumerate(even, 1)]
+    even = [even_variant(count, RADII[i % len(RADII)], seed) for i, seed in enumerate(seeds)]
+    random = [one.scattered(seed) for seed, one in zip(seeds, even)]
     return {EVEN: [one.touching_walls() for one in even], RANDOM: [one.touching_walls() for one in random],
             WITHIN: [one.moved_into_voxels().touching_walls() for one in random]}
 
@@ -97,8 +97,9 @@ def depth_of(lab, scene, size):
 @study("objects", one_scene=True)
 def objects(lab, scenes):
     size, runs, depths, words, exact, clocks = lab.size(96), {}, [], [], {}, {}
+    seeds = range(lab.seed, lab.seed + VARIANTS)
     for count in COUNTS:
-        scenes_by_kind = scenes_of(count)
+        scenes_by_kind = scenes_of(count, seeds)
         for kind, kind_scenes in scenes_by_kind.items():
             exact[count, kind] = np.mean([copies_without_margin(one) for one in kind_scenes])
         for protocol, options in PROTOCOLS.items():
@@ -126,9 +127,9 @@ def objects(lab, scenes):
     more = ["This study ignores the scenes of the command line: it generates scenes like those of Yoshitani & Yamazaki."
             ] if scenes else []
     return Page({"nodes": "4x4x4", "voxels": "4x4x4", "links": "torus2d", "size": size, "bounces": 0, "format": "fp32",
-                 "words": papers.RAY_WORDS, "variants": VARIANTS, "objects": list(COUNTS)},
+                 "words": papers.RAY_WORDS, "variants": VARIANTS, "seed": lab.seed, "objects": list(COUNTS)},
                 findings_of(runs, rows, ratios, growth, depths, words) + [finding_of_sweep(sweep)] + more,
-                claims=claims_of(runs, ratios, growth),
+                claims=claims_of(runs, ratios, growth, f"{VARIANTS} variants of each scene, seeds {seeds[0]}..{seeds[-1]}"),
                 tables=[*tables_of(rows, ratios, growth, depths, words),
                         Table("objects-sweep", "Time of random / time of even, asynchronous, protocol of Yoshitani & Yamazaki", sweep)],
                 plots=plots_of(rows, ratios, depths),
@@ -139,9 +140,8 @@ def sweep_of(runs, clocks):
     """Returns a table of time of random / time of even objects: for each factor of the radii at 25 MHz, and for each clock over all variants."""
     rows = []
     for count, by_clock in clocks.items():
-        ratio = by_clock["25 MHz"]  # [variant]; seeds start at 1
-        groups = {f"radii x {factor}": [value for seed, value in enumerate(ratio, 1) if RADII[seed % len(RADII)] == factor]
-                  for factor in RADII} | by_clock
+        ratio = by_clock["25 MHz"]  # [variant]
+        groups = {f"radii x {factor}": [value for i, value in enumerate(ratio) if RADII[i % len(RADII)] == factor] for factor in RADII} | by_clock
         rows += [{"objects": count, "variants": name, "random / even": estimate(values).mean, "+-": estimate(values).half}
                  for name, values in groups.items()]
     return pd.DataFrame(rows)
@@ -191,9 +191,9 @@ def texts_of(time_ratios, time):
     return ", ".join(f"{e.text(2)} ({count})" for e, count in zip(time_ratios[time], time_ratios["objects"]))
 
 
-def claims_of(runs, ratios, growth):
+def claims_of(runs, ratios, growth, about):
     """Judges by asynchronous times whether random scenes are slower, because the paper's machine is asynchronous. The reason has the bounds, too."""
-    random_ratios, about = select(ratios, RANDOM, PAPER), f"{VARIANTS} variants of each scene"
+    random_ratios = select(ratios, RANDOM, PAPER)
     times = {kind: np.array([[run.asynchronous_ms for run in runs[count, kind, PAPER]] for count in COUNTS]) for kind in (EVEN, RANDOM, WITHIN)}
     random_ratio, within_ratio = ((times[kind] / times[EVEN]).mean(0) for kind in (RANDOM, WITHIN))  # [variant]
     slower = [above(random_ratio, 1), above(random_ratio - within_ratio)]
