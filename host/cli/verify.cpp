@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cstdio>
+#include <map>
 #include <memory>
 
 #include "host/base/json.hpp"
@@ -33,7 +34,8 @@ constexpr double kDefaultTimeout_s = 600;
 struct VerifyCommand {
     std::string device, report, page, junit, tap, expect, kernel_dir, only, skip, shard;
     std::uint32_t lanes = 0, repeat = 1;
-    double timeout_s = kDefaultTimeout_s;
+    double timeout_s = kDefaultTimeout_s, soak_s = 0;
+    std::uint64_t seed = 1;
     bool brief = false, quick = false, full = false, list = false;
 
     Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
@@ -71,6 +73,8 @@ VerifySettings settings_of(const VerifyCommand& command) {
                             .skip = command.skip,
                             .repeat = command.repeat,
                             .timeout_s = command.timeout_s,
+                            .soak_s = command.soak_s,
+                            .seed = command.seed,
                             .lanes = command.lanes};
     set_shard(settings, command.shard);
     if (!command.expect.empty()) settings.expected_failures = read_expected_failures(command.expect);
@@ -82,6 +86,27 @@ void list_checks(const VerifyCommand& command, const VerifySettings& settings) {
     for (const cl::Device& device : all ? all_devices() : std::vector<cl::Device>{choose_device(command.device)})
         for (const std::string& name : check_names(device, settings))
             fmt::print("{}{}\n", all ? device_info(device).name + ": " : "", name);
+}
+
+// Prints, for each check that failed in a soak test, how often it failed and when it failed first.
+void print_soak_failures(const std::vector<Check>& checks, std::uint64_t seed) {
+    struct Count {
+        std::size_t runs = 0, failures = 0;
+        double first_s = 0;  // sum of the times of the checks up to the first failure
+    };
+    std::map<std::string, Count> counts;
+    double seconds = 0;
+    for (const Check& check : checks) {
+        seconds += check.seconds;
+        Count& count = counts[check.layer + " " + check.name];
+        ++count.runs;
+        if (check.verdict.outcome == Outcome::kFail && count.failures++ == 0) count.first_s = seconds;
+    }
+    for (const auto& [name, count] : counts)
+        if (count.failures > 0)
+            fmt::print("{}: failed {} of {}, first after {:.1f} s\n", name, count.failures, counted(count.runs, "time"),
+                       count.first_s);
+    fmt::print("random checks with --seed {}\n", seed);
 }
 
 // Verifies device number `index` of those that --device selects, and prints each check. Sets `device_count` to the
@@ -109,10 +134,12 @@ DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, cons
         .finished =
             [&](const Check& check) {
                 const Outcome outcome = check.verdict.outcome;
-                if (!quiet || outcome == Outcome::kFail || outcome == Outcome::kUnexpectedPass)
+                const bool prints_all = !quiet && settings.soak_s == 0;
+                if (prints_all || outcome == Outcome::kFail || outcome == Outcome::kUnexpectedPass)
                     print(check_lines(check));
             }};
     DeviceChecks result = supervise(command.device, index, settings, sink, device_count);
+    if (settings.soak_s > 0) print_soak_failures(result.checks, settings.seed);
     if (!quiet || device_count == 1 || !result.all_passed())
         print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
     return result;
@@ -213,6 +240,13 @@ void add_verify_command(CLI::App& program) {
               "Seconds after which a check counts as failed and its process is ended; 0: never")
         ->check(CLI::Range(0., 1e6))
         ->type_name("S");
+    add_value(*command, "--soak", options->soak_s,
+              "Run random checks with random numbers of lanes for this time, such as 60s, 30m, 2h; print only failures")
+        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}))
+        ->type_name("TIME");
+    add_value(*command, "--seed", options->seed, "Seed of --soak: the same seed gives the same sequence of checks")
+        ->type_name("N")
+        ->default_str("1");
     add_file(
         *command, FileUse::kRead, "--expect", options->expect, "FILE",
         "Checks that are known to fail, one on each line: PATTERN | REASON | LINK, with a pattern as for --only. Their "

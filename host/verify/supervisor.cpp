@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <optional>
@@ -28,6 +29,8 @@ Json settings_json(const VerifySettings& s, const std::string& selector, std::si
             {"shard", s.shard},
             {"shards", s.shards},
             {"repeat", s.repeat},
+            {"soak_s", s.soak_s},
+            {"seed", s.seed},
             {"lanes", s.lanes},
             {"done", s.done}};
 }
@@ -45,6 +48,8 @@ VerifySettings settings_of(const Json& json) {
             .shard = number("shard"),
             .shards = number("shards"),
             .repeat = number("repeat"),
+            .soak_s = json.at("soak_s").number(),
+            .seed = json.at("seed").integer(),
             .lanes = number("lanes"),
             .done = json.at("done").integer()};
 }
@@ -123,7 +128,10 @@ class Supervision {
     bool run_remaining(const std::string& selector, std::size_t index) {
         const std::size_t done_before = settings_.done;
         ended_ = false;
-        ChildProcess process(kVerifyTask, settings_json(settings_, selector, index));
+        VerifySettings remaining = settings_;
+        if (settings_.soak_s > 0)
+            remaining.soak_s = std::max(1e-3, settings_.soak_s - seconds_since(supervision_start_));
+        ChildProcess process(kVerifyTask, settings_json(remaining, selector, index));
         for (std::string line;;) {
             const ChildProcess::Read read = process.read(line, std::chrono::seconds(1));
             if (read == ChildProcess::Read::kEnd) break;
@@ -244,6 +252,7 @@ class Supervision {
     DeviceChecks all_;
     std::size_t devices_ = 0;  // number of selected devices
     std::optional<Running> running_;
+    Clock::time_point supervision_start_ = Clock::now();
     Clock::time_point start_;  // of the running check
     bool ended_ = false;       // the process has written {"ended": true}
 };
@@ -272,15 +281,18 @@ void run_checks(int pipe, const Json& request) {
                      {"platform", info.platform},
                      {"version", info.version},
                      {"driver", info.driver}});
-    verify(device, settings,
-           {.started =
-                [&](const std::string& layer, const std::string& name) {
-                    send_line(pipe, {{"started", {{"layer", layer}, {"name", name}}}});
-                },
-            .finished =
-                [&](const Check& check) {
-                    send_line(pipe, {{"check", to_json(check)}});
-                }});
+    const CheckSink sink{.started =
+                             [&](const std::string& layer, const std::string& name) {
+                                 send_line(pipe, {{"started", {{"layer", layer}, {"name", name}}}});
+                             },
+                         .finished =
+                             [&](const Check& check) {
+                                 send_line(pipe, {{"check", to_json(check)}});
+                             }};
+    if (settings.soak_s > 0)
+        verify_at_random(device, settings, sink);
+    else
+        verify(device, settings, sink);
     send_line(pipe, {{"ended", true}});
 }
 

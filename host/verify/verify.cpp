@@ -10,6 +10,7 @@
 #include "host/base/json.hpp"
 #include "host/cl/program.hpp"
 #include "host/error.hpp"
+#include "host/scene/split_mix.hpp"
 
 namespace raya {
 namespace {
@@ -187,7 +188,7 @@ Verification::Verification(const cl::Device& device, const VerifySettings& setti
 void Verification::check(const std::string& layer, const std::string& name,
                          const std::function<Verdict(Session&)>& body) {
     const std::string full_name = layer + " " + name;
-    if (!name_matches(full_name, settings_.only)) return;
+    if (settings_.is_whole_name ? full_name != settings_.only : !name_matches(full_name, settings_.only)) return;
     if (!settings_.skip.empty() && name_matches(full_name, settings_.skip)) return;
     if (selected_++ % settings_.shards != settings_.shard - 1) return;
     names_.push_back(full_name);
@@ -225,6 +226,34 @@ std::vector<Check> verify(const cl::Device& device, const VerifySettings& settin
     Verification verification(device, settings, sink);
     visit_layers(verification);
     return verification.take_checks();
+}
+
+void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
+    std::vector<VerifySettings> choices;
+    for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) {
+        VerifySettings one = settings;
+        one.lanes = lanes;
+        one.done = 0;
+        if (settings.lanes != 0 && settings.lanes != lanes) continue;
+        const std::vector<std::string> names = check_names(device, one);
+        one.is_whole_name = true;
+        one.skip.clear();
+        one.shard = one.shards = 1;
+        for (const std::string& name : names) {
+            one.only = name;
+            choices.push_back(one);
+        }
+    }
+    SplitMix random(settings.seed);
+    const Clock::time_point start = Clock::now();
+    for (std::size_t n = 0; seconds_since(start) < settings.soak_s; ++n) {
+        const VerifySettings& one = choices[random.next() % choices.size()];
+        if (n < settings.done) continue;
+        verify(device, one, {.started = sink.started, .finished = [&](Check check) {
+                                 check.verdict.result += fmt::format(", --lanes {}", one.lanes);
+                                 sink.finished(check);
+                             }});
+    }
 }
 
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings) {

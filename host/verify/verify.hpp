@@ -72,6 +72,9 @@ struct VerifySettings {
     std::uint32_t shard = 1, shards = 1;  // of the selected checks, run those with number modulo `shards` = shard - 1
     std::uint32_t repeat = 1;             // number of runs of each check; it fails if one of them fails
     double timeout_s = 0;                 // time after which supervise() ends a check; 0: never
+    double soak_s = 0;       // if not 0: verify_at_random() runs for so long; otherwise verify() runs each check once
+    std::uint64_t seed = 1;  // of verify_at_random()
+    bool is_whole_name = false;                        // `only` is a whole "LAYER NAME"
     std::vector<ExpectedFailure> expected_failures{};  // supervise() changes the outcome of checks that match
     std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
                               // Depth::kFull, all four numbers
@@ -88,6 +91,10 @@ struct CheckSink {
 /// cause. Throws DeviceError if the device's properties cannot be read, std::logic_error if a patch of the kernel
 /// sources does not apply.
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink = {});
+
+/// Runs random checks with random numbers of lanes for settings.soak_s seconds. The same settings and seed give the
+/// same sequence of checks; the first settings.done checks of the sequence are skipped. The results end with the lanes.
+void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink);
 
 /// Returns "LAYER NAME" of every check that verify() would run, in the same order.
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings);

@@ -4,6 +4,7 @@
 //                                             `lost` and `astray` also work for clEnqueueCopyBufferRect.
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third copy goes to target offset + size, the memory of another
 //                                             PE (at the end of the buffer: to target offset - size)
+//   RAYA_FAULT="clEnqueueCopyBuffer 3 flip"   every third copy has a wrong bit in its first byte
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third call raises SIGSEGV
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 overflow"   the third call overflows the stack of its thread
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 overflows"  the third call starts two threads that overflow their stacks
@@ -60,7 +61,8 @@ int overflow(int depth) {
 cl_int inject_fault(const char* call) {
     const Fault& fault = injected_fault();
     static std::atomic<int> calls{0};
-    if (fault.call != call || fault.action == "lost" || fault.action == "astray" || ++calls < fault.number)
+    if (fault.call != call || fault.action == "lost" || fault.action == "astray" || fault.action == "flip" ||
+        ++calls < fault.number)
         return CL_SUCCESS;
     if (fault.action == "crash") std::raise(SIGSEGV);
     if (fault.action == "overflow") std::_Exit(overflow(1));
@@ -181,6 +183,14 @@ cl_int CL_API_CALL clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_m
                                        size_t to_offset, size_t size, cl_uint waits, const cl_event* wait_list,
                                        cl_event* event) {
     if (corrupts_copy("clEnqueueCopyBuffer", "lost")) return command_without_copy(queue, from, waits, wait_list, event);
+    if (corrupts_copy("clEnqueueCopyBuffer", "flip")) {
+        unsigned char byte = 0;
+        driver_function<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer")(queue, from, CL_TRUE, from_offset, 1,
+                                                                              &byte, waits, wait_list, nullptr);
+        byte ^= 1;
+        driver_function<decltype(clEnqueueWriteBuffer)>("clEnqueueWriteBuffer")(queue, from, CL_TRUE, from_offset, 1,
+                                                                                &byte, 0, nullptr, nullptr);
+    }
     if (corrupts_copy("clEnqueueCopyBuffer", "astray")) to_offset = displaced_offset(to, to_offset, size);
     return call_or_fail<decltype(clEnqueueCopyBuffer)>("clEnqueueCopyBuffer", queue, from, to, from_offset, to_offset,
                                                        size, waits, wait_list, event);

@@ -108,6 +108,31 @@ TEST_CASE("verify --timeout: ends a check that hangs, and continues with the nex
     CHECK_THAT(run.out, Catch::Contains("no result after") && Catch::Contains("--timeout SECONDS"));
 }
 
+TEST_CASE("verify --soak: finds a bit that flips once in many copies, with its rate, and repeats by the seed",
+          "[cli][verify]") {
+    const ScratchFolder scratch;
+    const auto soak = [&](const RunOptions& options) {
+        const std::string report = scratch / "v.json";
+        const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine", "--lanes", "4", "--soak", "3s",
+                                         "--seed", "7", "--report", report},
+                                        options);
+        INFO(run.describe());
+        CHECK_THAT(run.out, Catch::Contains("random checks with --seed 7"));
+        std::vector<std::string> names;
+        for (const Document& check : Document::parse(file_contents(report))["devices"][0]["checks"])
+            names.push_back(check["name"]);
+        REQUIRE(names.size() >= 5);
+        names.resize(5);
+        return std::pair(run, names);
+    };
+    const auto [right, names] = soak({});
+    CHECK(right.code == 0);
+    const auto [wrong, same_names] = soak(device_with_fault("clEnqueueCopyBuffer 40 flip"));
+    CHECK(wrong.code == 4);
+    CHECK(same_names == names);
+    CHECK(has_line(wrong.out, "machine .*: failed [0-9]+ of [0-9]+ times?, first after [0-9.]+ s"));
+}
+
 TEST_CASE("verify --kernel-dir: refuses a folder without all kernels, before any check", "[cli][verify]") {
     const ScratchFolder scratch, empty, outputs;
     const std::string partial = write_kernels(scratch / "kernels");
