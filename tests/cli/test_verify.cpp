@@ -119,8 +119,8 @@ TEST_CASE("verify --soak: finds a bit that flips once in many copies, with its r
         INFO(run.describe());
         CHECK_THAT(run.out, Catch::Contains("random checks with --seed 7"));
         std::vector<std::string> names;
-        for (const Document& check : Document::parse(file_contents(report))["devices"][0]["checks"])
-            names.push_back(check["name"]);
+        const Document document = Document::parse(file_contents(report));
+        for (const Document& check : document["devices"][0]["checks"]) names.push_back(check["name"]);
         REQUIRE(names.size() >= 5);
         names.resize(5);
         return std::pair(run, names);
