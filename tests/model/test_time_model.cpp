@@ -58,6 +58,7 @@ TEST_CASE("an image of 256 x 256 takes 140 ms to the host and 1,130 ms to the sc
     const ModelledTime time =
         time_of({load_with(0)}, {.broadcasts = 1, .broadcast_words = 1000, .gathers = 1, .gather_words = 196'608});
     CHECK(time.image_ms == Approx(140).epsilon(1e-12));
+    CHECK(time_of({load_with(0, 1)}, {.gathers = 26, .gather_words = 196'608}).image_ms == time.image_ms);  // one PE
     CHECK(time.display_ms == Approx(1130).epsilon(1e-12));
     CHECK(time.objects_ms == Approx(kSetupMs + (140 - kSetupMs) * 1000 / 196'608).epsilon(1e-12));
     CHECK(time.communication_ms == 0);
