@@ -27,8 +27,7 @@
 namespace raya {
 namespace {
 
-// Longest time of a check before it counts as hung: about twice the build time of the slowest kernel in
-// docs/portability.md.
+// A check that takes longer counts as hung. This time includes the builds of its kernels.
 constexpr double kDefaultTimeout_s = 600;
 
 struct VerifyCommand {

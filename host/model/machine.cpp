@@ -11,6 +11,7 @@
 #include "host/error.hpp"
 #include "host/model/budget.hpp"
 #include "host/model/t805.hpp"
+#include "host/model/time_model.hpp"
 
 namespace raya {
 namespace {
@@ -154,7 +155,7 @@ constexpr RingSources kComparedArraySources = {.pes = "",
                                                .gather = "[P] PEs hold the frame buffer",
                                                .display = "[P] PEs hold the frame buffer"};
 
-// Ishii, Sato et al., "Cellular array processor CAP and applications", 1988: 256 cells; an interface chip with two
+// "Cellular Array Processor CAP and Applications", doi:10.1007/BF00932066, 1989 (abstract): 256 cells; an interface chip with two
 // buses for broadcasts, 2 MB/s each, and six serial ports, 15 Mbit/s each; every cell holds and displays its part of
 // the image.
 Machine cap() {
@@ -199,7 +200,7 @@ Machine links() {
     machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kInfiniteRate;
     const MachineClock& c = machine.clock;
     const double request_ms = 2 * c.rotation_sync_ms + 1e3 * 3 / c.link_words_per_s;
-    const double cycle_ms = 1e-6 * c.cycle_ns * c.cycle_factor;
+    const double cycle_ms = compute_ms(c, 1);
     machine.dynamic = DynamicPlan{.root_cycles = static_cast<std::uint64_t>(std::lround(request_ms / cycle_ms))};
     RingSources sources = kComparedArraySources;
     sources.pes = "[P] up to 256 node computers and a root";
@@ -230,7 +231,7 @@ Machine torus() {
         {"reflections and refractions", fmt::format("at most {}", machine.bounces),
          "[?] as the SPA; the paper traces shadow rays only"},
         {"number format", format_name(machine.format), "[T] IEEE single precision"},
-        {"links of a node", "6", "[P] a torus; [?] six links, as a T805 has four (--links 2d: four)"},
+        {"links of a node", "6", "[P] a torus; [?] six links, as a T805 has four (--links torus2d: four)"},
         {"cycle of a node", fmt::format("{:g} ns", kT805CycleNs), "[T] the 25 MHz part"},
         {"addition, multiplication, division, square root",
          fmt::format("{}, {}, {}, {} cycles", kT805AdditionCycles, kT805MultiplicationCycles, kT805DivisionCycles,

@@ -117,8 +117,7 @@ std::string tap_report(const std::vector<DeviceChecks>& devices) {
     for (const DeviceChecks& device : devices)
         for (const Check& check : device.checks) {
             const Verdict& v = check.verdict;
-            const bool has_failed = v.outcome == Outcome::kFail || v.outcome == Outcome::kExpectedFail;
-            lines += fmt::format("{} {} - {} {}{}", has_failed ? "not ok" : "ok", ++number, tap_text(check.layer),
+            lines += fmt::format("{} {} - {} {}{}", has_failed(v.outcome) ? "not ok" : "ok", ++number, tap_text(check.layer),
                                  tap_text(check.name), devices.size() > 1 ? " on " + tap_text(device.name) : "");
             if (v.outcome == Outcome::kSkip) lines += " # SKIP " + tap_text(v.result);
             if (v.outcome == Outcome::kExpectedFail || v.outcome == Outcome::kUnexpectedPass)

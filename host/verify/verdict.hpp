@@ -19,6 +19,8 @@ enum class Outcome {
     kUnexpectedPass  // passed, although VerifySettings::expected_failures lists the check
 };
 
+inline bool has_failed(Outcome outcome) { return outcome == Outcome::kFail || outcome == Outcome::kExpectedFail; }
+
 /// Details of a failed check. Unknown members are empty.
 struct Fault {
     std::string where{};                  // first wrong operation, ray, word or pixel

@@ -15,8 +15,6 @@
 namespace raya {
 namespace {
 
-bool has_failed(Outcome outcome) { return outcome == Outcome::kFail || outcome == Outcome::kExpectedFail; }
-
 bool contains_any(const std::string& message, const std::vector<const char*>& texts) {
     return std::any_of(texts.begin(), texts.end(),
                        [&](const char* text) { return message.find(text) != std::string::npos; });

@@ -56,8 +56,11 @@ class Judgement:
 
 
 def judged(key, test, ensemble="", reason=""):
-    """Returns the judgement of a claim. The test counts only if the claim's kind has a verdict."""
-    return Judgement(CLAIMS[key], ensemble, reason, test if CLAIMS[key].kind in ("test", "counted") else None)
+    """Returns the judgement of a claim. test: None if the claim is derived or untestable."""
+    claim = CLAIMS[key]
+    if test is not None and claim.kind not in ("test", "counted"):
+        raise ValueError(f"claim '{key}' is {claim.kind}: it takes no test")
+    return Judgement(claim, ensemble, reason, test)
 
 
 def undecided_claims(study, judgements):

