@@ -5,7 +5,7 @@ import copy, random, re
 OPTIONAL = {"tune.json: results[].configuration.local_words", "tune.json: results[].configuration.batch",
             "tune.json: results[].configuration.lanes", "tune.json: results[].configuration.group"}
 OPEN = re.compile(r"study\.json: (settings|tables\[\]\.rows\[\])")  # objects that accept any member, and lists of strings and numbers
-SIGNED = "length_exponent"  # this member may be negative; it is 0 in the test
+SIGNED = {"length_exponent", "paper", "ours", "ratio"}  # these members may be negative, also if they are not in the test's reports
 
 
 def object_kind(value):
@@ -65,7 +65,7 @@ class Damage:
             value[key] = self.random.choice([1, "text", None])
         elif kind == "other type" and not open_ended and value is not None:
             holder[key] = self.value_of_other_type(value)
-        elif kind == "negative" and type(value) is int and path not in self.negative and not open_ended and key != SIGNED:
+        elif kind == "negative" and type(value) is int and path not in self.negative and not open_ended and key not in SIGNED:
             holder[key] = -1 - value
         else:
             return None
