@@ -33,7 +33,8 @@ std::runtime_error system_error(const char* what) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);  // inherited through exec
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() == parent) {
-        ::fcntl(pipe, F_SETFD, 0);  // stays open through exec
+        ::close_range(STDERR_FILENO + 1, ~0u, CLOSE_RANGE_CLOEXEC);  // MPI's sockets belong to the parent
+        ::fcntl(pipe, F_SETFD, 0);                                   // stays open through exec
         ::execv(kOwnProgram, arguments);
     }
     ::_exit(kNotStarted);

@@ -27,6 +27,12 @@ std::string lower_case(std::string text) {
     return text;
 }
 
+std::string pci_address_of(const cl::Device& device) {
+    cl_device_pci_bus_info_khr pci{};
+    if (::clGetDeviceInfo(device(), CL_DEVICE_PCI_BUS_INFO_KHR, sizeof pci, &pci, nullptr) != CL_SUCCESS) return {};
+    return fmt::format("{:04x}:{:02x}:{:02x}.{:x}", pci.pci_domain, pci.pci_bus, pci.pci_device, pci.pci_function);
+}
+
 /// Returns DeviceInfo::max_loop_iterations for a device of this name. Mesa's llvmpipe has a limit that no query reports
 /// (tests/portability/nested_loops.cl). On other devices the kernels detect loops that ended early
 /// (kernels/shared/loop_canary.clh).
@@ -142,6 +148,7 @@ DeviceInfo device_info(const cl::Device& device) {
         info.version = device.getInfo<CL_DEVICE_VERSION>();
         info.driver = device.getInfo<CL_DRIVER_VERSION>();
         info.type = type_name(device.getInfo<CL_DEVICE_TYPE>());
+        info.pci_address = pci_address_of(device);
         info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
         info.local_memory_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
         info.local_memory_is_dedicated = device.getInfo<CL_DEVICE_LOCAL_MEM_TYPE>() == CL_LOCAL;

@@ -135,16 +135,17 @@ void silence_signals_of_other_ranks() {
     if (launch && launch->rank != 0) suppress_interrupt_message();
 }
 
-// Refuses several ranks for all commands except render and ping, because the other commands would run once in every
-// process.
+// Refuses several ranks for all commands except render, verify and ping, because the other commands would run once in
+// every process.
 void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
     if (!ranks.has_several()) return;
     for (CLI::App* command : program.get_subcommands({}))
-        if (command->get_name() != "render" && command->get_name() != "ping")
-            command->preparse_callback([name = command->get_name()](std::size_t) {
-                throw UserError(fmt::format(
-                    "{} runs in one process: only render and ping support several ranks; start it without mpirun",
-                    name));
+        if (const std::string name = command->get_name(); name != "render" && name != "verify" && name != "ping")
+            command->preparse_callback([name](std::size_t) {
+                throw UserError(
+                    fmt::format("{} runs in one process: only render, verify and ping support several ranks; start it "
+                                "without mpirun",
+                                name));
             });
 }
 
@@ -190,7 +191,7 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     add_tune_command(program);
     add_study_command(program);
     add_page_command(program);
-    add_verify_command(program);
+    add_verify_command(program, ranks);
     add_ping_command(program, ranks);
     add_manual_command(program);
     add_completion_command(program);

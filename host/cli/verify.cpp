@@ -18,6 +18,7 @@
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/scene_input.hpp"
+#include "host/cli/verify_ranks.hpp"
 #include "host/error.hpp"
 #include "host/model/unit_text.hpp"
 #include "host/verify/ci_reports.hpp"
@@ -87,8 +88,8 @@ void list_checks(const VerifyCommand& command, const VerifySettings& settings) {
             fmt::print("{}{}\n", all ? device_info(device).name + ": " : "", name);
 }
 
-// Prints, for each check that failed in a soak test, how often it failed and when it failed first.
-void print_soak_failures(const std::vector<Check>& checks, std::uint64_t seed) {
+// Returns, for each check that failed in a soak test, a line with how often it failed and when it failed first.
+std::string soak_lines(const std::vector<Check>& checks, std::uint64_t seed) {
     struct Count {
         std::size_t runs = 0, failures = 0;
         double first_s = 0;  // sum of the times of the checks up to the first failure
@@ -101,14 +102,15 @@ void print_soak_failures(const std::vector<Check>& checks, std::uint64_t seed) {
         ++count.runs;
         if (check.verdict.outcome == Outcome::kFail && count.failures++ == 0) count.first_s = seconds;
     }
+    std::string lines;
     for (const auto& [name, count] : counts)
         if (count.failures > 0)
-            fmt::print("{}: failed {} of {}, first after {:.1f} s\n", name, count.failures, counted(count.runs, "time"),
-                       count.first_s);
-    fmt::print("random checks with --seed {}\n", seed);
+            lines += fmt::format("{}: failed {} of {}, first after {:.1f} s\n", name, count.failures,
+                                 counted(count.runs, "time"), count.first_s);
+    return lines + fmt::format("random checks with --seed {}\n", seed);
 }
 
-// Verifies device number `index` of those that --device selects, and prints each check. Sets `device_count` to the
+// Verifies the device that --device and `index` select (supervise()), and prints each check. Sets `device_count` to the
 // number of selected devices.
 DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, const VerifySettings& settings,
                            std::size_t& device_count) {
@@ -132,36 +134,37 @@ DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, cons
             },
         .finished =
             [&](const Check& check) {
-                const Outcome outcome = check.verdict.outcome;
                 const bool prints_all = !quiet && settings.soak_s == 0;
-                if (prints_all || outcome == Outcome::kFail || outcome == Outcome::kUnexpectedPass)
-                    print(check_lines(check));
+                if (prints_all || is_unwanted(check.verdict.outcome)) print(check_lines(check));
             }};
     DeviceChecks result = supervise(command.device, index, settings, sink, device_count);
-    if (settings.soak_s > 0) print_soak_failures(result.checks, settings.seed);
+    if (settings.soak_s > 0) print(soak_lines(result.checks, settings.seed));
     if (!quiet || device_count == 1 || !result.all_passed())
         print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
     return result;
 }
 
+// Verifies the device of every rank. Prints failed checks, and a line for each rank.
+std::vector<DeviceChecks> verify_on_ranks(const VerifyCommand& command, const VerifySettings& settings, Ranks& ranks) {
+    if (command.device == "all")
+        throw UserError("--device all: each rank checks one device; leave it out, or start raya without mpirun");
+    const bool quiet = is_quiet();
+    return check_on_ranks(ranks, [&](const PrintLines& print) {
+        const SupervisorSink sink{.finished = [&](const Check& check) {
+            if (is_unwanted(check.verdict.outcome)) print(check_lines(check));
+        }};
+        std::size_t device_count = 1;
+        DeviceChecks result = supervise(command.device, ranks.rank_on_host(), settings, sink, device_count);
+        if (settings.soak_s > 0) print(soak_lines(result.checks, settings.seed));
+        if (!quiet || !result.all_passed())
+            print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
+        return result;
+    });
+}
+
 Json report_of(const std::vector<DeviceChecks>& device_checks, Depth depth) {
     Json devices = Json::array();
-    for (const DeviceChecks& device : device_checks) {
-        Json checks = Json::array();
-        for (const Check& check : device.checks) checks.push_back(to_json(check));
-        devices.push_back({{"name", device.name},
-                           {"platform", device.platform},
-                           {"version", device.version},
-                           {"driver", device.driver},
-                           {"right", device.all_passed()},
-                           {"passed", count_of(device.checks, Outcome::kPass)},
-                           {"failed", count_of(device.checks, Outcome::kFail)},
-                           {"skipped", count_of(device.checks, Outcome::kSkip)},
-                           {"failed_as_expected", count_of(device.checks, Outcome::kExpectedFail)},
-                           {"passed_unexpectedly", count_of(device.checks, Outcome::kUnexpectedPass)},
-                           {"seconds", device.seconds},
-                           {"checks", checks}});
-    }
+    for (const DeviceChecks& device : device_checks) devices.push_back(to_json(device));
     return {{"kind", kVerifyReportKind},
             {"program", name_and_version()},
             {"depth", depth_name(depth)},
@@ -178,29 +181,35 @@ void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
     fmt::print("{}: {}\n", counted(device_checks.size(), "device"), closing_text(checks, seconds));
 }
 
-void run_verify(const VerifyCommand& command) {
+// Verifies one device after another.
+std::vector<DeviceChecks> verify_devices(const VerifyCommand& command, const VerifySettings& settings) {
+    std::vector<DeviceChecks> device_checks;
+    for (std::size_t device_count = 1; device_checks.size() < device_count;)
+        device_checks.push_back(verify_device(command, device_checks.size(), settings, device_count));
+    return device_checks;
+}
+
+void run_verify(const VerifyCommand& command, Ranks& ranks) {
     if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
     if (!command.page.empty()) check_page_name("--page", command.page);
     const VerifySettings settings = settings_of(command);
-    if (command.list) return list_checks(command, settings);
+    if (command.list) return ranks.is_first() ? list_checks(command, settings) : void();
     Warnings warnings;
-    warn_of_build_options(warnings);
-    std::vector<DeviceChecks> device_checks;
-    bool all_passed = true;
-    for (std::size_t device_count = 1; device_checks.size() < device_count;) {
-        device_checks.push_back(verify_device(command, device_checks.size(), settings, device_count));
-        all_passed = all_passed && device_checks.back().all_passed();
-    }
+    if (ranks.is_first()) warn_of_build_options(warnings);
+    const std::vector<DeviceChecks> device_checks =
+        ranks.has_several() ? verify_on_ranks(command, settings, ranks) : verify_devices(command, settings);
+    if (!ranks.is_first()) return;
     if (device_checks.size() > 1) print_device_totals(device_checks);
     write_report_and_page({command.report, command.page}, report_of(device_checks, command.depth()));
     if (!command.junit.empty()) write_whole_file(command.junit, junit_report(device_checks));
     if (!command.tap.empty()) write_whole_file(command.tap, tap_report(device_checks));
-    if (!all_passed) throw CheckFailure{};
+    for (const DeviceChecks& device : device_checks)
+        if (!device.all_passed()) throw CheckFailure{};
 }
 
 }  // namespace
 
-void add_verify_command(CLI::App& program) {
+void add_verify_command(CLI::App& program, Ranks& ranks) {
     CLI::App* command = program.add_subcommand(
         "verify", "Check arithmetic, hits, machines and images of a device, its driver and its compiler bit for bit");
     add_examples(*command, {{"raya verify", "Run the default checks and print a line for each check"},
@@ -252,7 +261,9 @@ void add_verify_command(CLI::App& program) {
         "failures do not count; if one passes, the exit code is 4");
     add_device_option(*command, options->device);
     command->get_option("--device")
-        ->description(command->get_option("--device")->get_description() + "; all: every usable device in turn");
+        ->description(command->get_option("--device")->get_description() +
+                      "; all: every usable device in turn; under "
+                      "mpirun each rank checks one device");
     group.next(kKernels);
     add_file(*command, FileUse::kKernelFolder, "--kernel-dir", options->kernel_dir, "DIR",
              "Read the kernels from this folder, for kernel development");
@@ -264,7 +275,7 @@ void add_verify_command(CLI::App& program) {
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
              "Write all checks, and the first failure in full, as an HTML page; raya page makes the same page from a "
              "report");
-    command->callback([options] { run_verify(*options); });
+    command->callback([options, &ranks] { run_verify(*options, ranks); });
 }
 
 }  // namespace raya

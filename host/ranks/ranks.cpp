@@ -176,8 +176,11 @@ int Ranks::abort_all(const std::string& message, int code) {
 
 int Ranks::close(int code) {
     const std::vector<int> codes = all_gather(code);
+    const int highest_code = *std::max_element(codes.begin(), codes.end());
+    // As soon as a rank has ended with another code than 0, mpirun interrupts the others.
+    if (has_several() && highest_code != 0) suppress_interrupt_message();
     transport_->close();
-    return *std::max_element(codes.begin(), codes.end());
+    return highest_code;
 }
 
 RankClock rank_clock(Ranks& ranks, const std::function<std::uint64_t()>& now) {

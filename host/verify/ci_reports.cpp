@@ -51,8 +51,6 @@ std::string tap_text(const std::string& text) {
     return all;
 }
 
-bool is_unwanted(Outcome outcome) { return outcome == Outcome::kFail || outcome == Outcome::kUnexpectedPass; }
-
 bool is_left_out(Outcome outcome) { return outcome == Outcome::kSkip || outcome == Outcome::kExpectedFail; }
 
 std::string junit_case(const Check& check) {
@@ -99,10 +97,11 @@ std::string junit_report(const std::vector<DeviceChecks>& devices) {
     std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"raya verify\">\n";
     for (const DeviceChecks& device : devices) {
         text += fmt::format(
-            "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\" time=\"{:.3f}\">\n"
+            "  <testsuite name=\"{}\"{} tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\" time=\"{:.3f}\">\n"
             "    <properties>\n      <property name=\"platform\" value=\"{}\"/>\n"
             "      <property name=\"driver\" value=\"{}\"/>\n    </properties>\n",
-            xml_text(device.name), device.checks.size(), sum_of(device, Outcome::kFail, Outcome::kUnexpectedPass),
+            xml_text(device.title()), device.rank ? fmt::format(" hostname=\"{}\"", xml_text(device.host)) : "",
+            device.checks.size(), sum_of(device, Outcome::kFail, Outcome::kUnexpectedPass),
             sum_of(device, Outcome::kSkip, Outcome::kExpectedFail), device.seconds, xml_text(device.platform),
             xml_text(device.driver));
         for (const Check& check : device.checks) text += junit_case(check);
@@ -117,8 +116,9 @@ std::string tap_report(const std::vector<DeviceChecks>& devices) {
     for (const DeviceChecks& device : devices)
         for (const Check& check : device.checks) {
             const Verdict& v = check.verdict;
-            lines += fmt::format("{} {} - {} {}{}", has_failed(v.outcome) ? "not ok" : "ok", ++number, tap_text(check.layer),
-                                 tap_text(check.name), devices.size() > 1 ? " on " + tap_text(device.name) : "");
+            lines +=
+                fmt::format("{} {} - {} {}{}", has_failed(v.outcome) ? "not ok" : "ok", ++number, tap_text(check.layer),
+                            tap_text(check.name), devices.size() > 1 ? " on " + tap_text(device.title()) : "");
             if (v.outcome == Outcome::kSkip) lines += " # SKIP " + tap_text(v.result);
             if (v.outcome == Outcome::kExpectedFail || v.outcome == Outcome::kUnexpectedPass)
                 lines += " # TODO " + tap_text(v.result);

@@ -60,8 +60,8 @@ struct SelectedDevices {
 };
 
 // Selects devices as described at supervise(). Throws DeviceError if no device matches.
-SelectedDevices selected_devices(const std::string& selector) {
-    if (selector != "all") return {{choose_device(selector)}, {}};
+SelectedDevices selected_devices(const std::string& selector, std::size_t index) {
+    if (selector != "all") return {{choose_device(selector, index)}, {}};
     SelectedDevices selected;
     for (const cl::Device& device : all_devices()) {
         const DeviceInfo info = device_info(device);
@@ -180,10 +180,7 @@ class Supervision {
     void take_device(const Json& line) {
         if (devices_ > 0) return;  // already reported by the first process
         devices_ = line.at("devices").integer();
-        all_.name = line.at("name").text();
-        all_.platform = line.at("platform").text();
-        all_.version = line.at("version").text();
-        all_.driver = line.at("driver").text();
+        all_ = device_checks_of(line.at("device"));
         if (sink_.device) sink_.device(all_, line.at("left_out").strings());
     }
 
@@ -269,18 +266,15 @@ DeviceChecks supervise(const std::string& selector, std::size_t index, const Ver
 
 void run_checks(int pipe, const Json& request) {
     const VerifySettings settings = settings_of(request);
+    const std::string& selector = request.at("device").text();
     const std::size_t index = request.at("index").integer();
-    const SelectedDevices selected = selected_devices(request.at("device").text());
-    if (index == 0 && settings.done == 0)
+    const SelectedDevices selected = selected_devices(selector, index);
+    if (settings.done == 0)
         for (const cl::Device& device : selected.devices) refuse_empty_selection(device, settings);
-    const cl::Device& device = selected.devices.at(index);
-    const DeviceInfo info = device_info(device);
+    const cl::Device& device = selected.devices.at(selector == "all" ? index : 0);
     send_line(pipe, {{"devices", selected.devices.size()},
                      {"left_out", selected.left_out},
-                     {"name", info.name},
-                     {"platform", info.platform},
-                     {"version", info.version},
-                     {"driver", info.driver}});
+                     {"device", to_json(device_checks_of(device_info(device)))}});
     const CheckSink sink{.started =
                              [&](const std::string& layer, const std::string& name) {
                                  send_line(pipe, {{"started", {{"layer", layer}, {"name", name}}}});

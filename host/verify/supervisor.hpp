@@ -1,9 +1,9 @@
 // Runs a device's checks in a child process, because a crash in a driver ends the process. After a crash another child
 // process continues with the next check. The child writes one JSON object per line:
 //
-//     {"devices": N, "left_out": [TEXT, ...], "name": ..., "platform": ..., "version": ..., "driver": ...}
+//     {"devices": N, "left_out": [TEXT, ...], "device": {...}}
 //                           the first line: number of selected devices, a text for each unusable device, and
-//                           the device that is checked
+//                           the device that is checked, as in reports, without checks
 //     {"started": {"layer": LAYER, "name": NAME}}    a check starts
 //     {"check": {...}}      the check is done; the object is that of to_json() in verify.hpp
 //     {"ended": true}       all checks are done
@@ -14,22 +14,10 @@
 #include <string>
 #include <vector>
 
+#include "host/verify/device_checks.hpp"
 #include "host/verify/verify.hpp"
 
 namespace raya {
-
-/// A device and the results of its checks.
-struct DeviceChecks {
-    std::string name, platform, version, driver;
-    std::vector<Check> checks;
-    double seconds = 0;  // sum of the checks' times
-
-    /// Returns true if checks ran and each had the expected outcome.
-    bool all_passed() const {
-        return count_of(checks, Outcome::kFail) + count_of(checks, Outcome::kUnexpectedPass) == 0 &&
-               count_of(checks, Outcome::kPass) + count_of(checks, Outcome::kExpectedFail) > 0;
-    }
-};
 
 /// Callbacks of supervise().
 struct SupervisorSink {
@@ -41,11 +29,11 @@ struct SupervisorSink {
     std::function<void(const Check&)> finished{};
 };
 
-/// Checks device number `index`, from 0, of the devices that `selector` selects: "all" selects every usable device, any
-/// other text one device by the rules of choose_device(). If the child process ends early, or a check takes longer than
-/// settings.timeout_s, the running check counts as failed, and the next checks run in a new process. Sets
-/// `devices` to the number of selected devices. Throws the UserError or DeviceError that the child process reports, and
-/// DeviceError if the driver ends the process before the first check.
+/// Checks the device that `selector` and `index` select: of "all", usable device number `index`, from 0; of any other
+/// text, choose_device(selector, index). If the child process ends early, or a check takes longer than
+/// settings.timeout_s, the running check counts as failed, and the next checks run in a new process. Sets `devices` to
+/// the number of usable devices for "all", else to 1. Throws the UserError or DeviceError that the child process
+/// reports, and DeviceError if the driver ends the process before the first check.
 DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink, std::size_t& devices);
 

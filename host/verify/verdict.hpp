@@ -21,6 +21,9 @@ enum class Outcome {
 
 inline bool has_failed(Outcome outcome) { return outcome == Outcome::kFail || outcome == Outcome::kExpectedFail; }
 
+/// Returns true for an outcome that causes exit code 4.
+inline bool is_unwanted(Outcome outcome) { return outcome == Outcome::kFail || outcome == Outcome::kUnexpectedPass; }
+
 /// Details of a failed check. Unknown members are empty.
 struct Fault {
     std::string where{};                  // first wrong operation, ray, word or pixel

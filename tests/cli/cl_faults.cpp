@@ -11,6 +11,7 @@
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 exit"   the third call ends the program with exit code 1
 //   RAYA_FAULT="clFinish 1 slow"              the first and all later calls take 2.5 seconds longer
 //   RAYA_FAULT="clGetDeviceInfo 4100 8"       the query 0x1004 (CL_DEVICE_MAX_WORK_GROUP_SIZE) returns 8
+//   RAYA_FAULT="clGetDeviceInfo 16655 59"     the query 0x410F (CL_DEVICE_PCI_BUS_INFO_KHR) returns the domain 59
 //   RAYA_FAULT="clGetKernelWorkGroupInfo 4528 8"  the query 0x11B0 (CL_KERNEL_WORK_GROUP_SIZE) returns 8
 //   RAYA_FAULT="new 1000000 0"                allocations by operator new of 1,000,000 bytes or more fail
 #include <CL/cl.h>
@@ -114,12 +115,13 @@ size_t displaced_offset(cl_mem buffer, size_t offset, size_t size) {
     return offset + 2 * size <= bytes ? offset + size : offset >= size ? offset - size : offset;
 }
 
-/// Replaces the answer to `query` if the injected fault names this query.
-void replace_answer(const char* call, cl_uint query, size_t size, void* value) {
+/// If the injected fault names this query, replaces the driver's answer and returns CL_SUCCESS; else returns `error`.
+cl_int replace_answer(const char* call, cl_uint query, size_t size, void* value, cl_int error) {
     const Fault& fault = injected_fault();
-    if (fault.call != call || static_cast<int>(query) != fault.number || value == nullptr) return;
+    if (fault.call != call || static_cast<int>(query) != fault.number || value == nullptr) return error;
     const size_t answer = static_cast<size_t>(fault.result);
     std::memcpy(value, &answer, std::min(size, sizeof answer));
+    return CL_SUCCESS;
 }
 
 /// Instead of a copy, enqueues a read of one byte, so that `event` completes and has profiling times. Discards the
@@ -214,16 +216,14 @@ cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info query, si
                                    size_t* needed_bytes) {
     const cl_int error =
         driver_function<decltype(clGetDeviceInfo)>("clGetDeviceInfo")(device, query, size, value, needed_bytes);
-    replace_answer("clGetDeviceInfo", query, size, value);
-    return error;
+    return replace_answer("clGetDeviceInfo", query, size, value, error);
 }
 
 cl_int CL_API_CALL clGetKernelWorkGroupInfo(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info query,
                                             size_t size, void* value, size_t* needed_bytes) {
     const cl_int error = driver_function<decltype(clGetKernelWorkGroupInfo)>("clGetKernelWorkGroupInfo")(
         kernel, device, query, size, value, needed_bytes);
-    replace_answer("clGetKernelWorkGroupInfo", query, size, value);
-    return error;
+    return replace_answer("clGetKernelWorkGroupInfo", query, size, value, error);
 }
 
 cl_int CL_API_CALL clFinish(cl_command_queue queue) { return call_or_fail<decltype(clFinish)>("clFinish", queue); }

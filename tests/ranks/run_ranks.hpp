@@ -58,6 +58,12 @@ inline std::string variable_of(const std::string& environment, const std::string
     return position == environment.npos ? "" : std::string(environment.c_str() + position + name.size() + 1);
 }
 
+/// Returns the contents of a file of /proc/PID/.
+inline std::string process_file(const std::filesystem::path& folder, const char* name) {
+    std::ifstream file(folder / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
 /// Returns the live processes whose environment contains `mark`, with their environments. Zombies are omitted, because
 /// their environment is empty.
 inline std::vector<std::pair<pid_t, std::string>> marked_processes(const std::string& mark) {
@@ -66,19 +72,21 @@ inline std::vector<std::pair<pid_t, std::string>> marked_processes(const std::st
     for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
         const std::string name = entry.path().filename();
         if (name.find_first_not_of("0123456789") != name.npos) continue;
-        std::ifstream file(entry.path() / "environ", std::ios::binary);
-        const std::string environment{std::istreambuf_iterator<char>(file), {}};
+        const std::string environment = process_file(entry.path(), "environ");
         if (environment.find(mark) != environment.npos) found.emplace_back(std::stoi(name), environment);
     }
     return found;
 }
 
+/// Returns the processes of the ranks, without the child processes in which `raya verify` runs its checks.
 inline std::vector<RankProcess> rank_processes(const std::string& mark, const std::string& program) {
     std::vector<RankProcess> ranks;
     for (const auto& [process, environment] : marked_processes(mark)) {
         std::error_code error;
-        const auto exe = std::filesystem::read_symlink("/proc/" + std::to_string(process) + "/exe", error);
+        const std::filesystem::path folder = "/proc/" + std::to_string(process);
+        const auto exe = std::filesystem::read_symlink(folder / "exe", error);
         if (error || exe != std::filesystem::canonical(program)) continue;
+        if (process_file(folder, "cmdline").find("--worker") != std::string::npos) continue;
         std::string rank = variable_of(environment, "OMPI_COMM_WORLD_RANK");
         if (rank.empty()) rank = variable_of(environment, "PMI_RANK");
         if (!rank.empty()) ranks.push_back({process, static_cast<std::uint32_t>(std::stoul(rank))});

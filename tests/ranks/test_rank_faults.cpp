@@ -1,22 +1,14 @@
 // Failures of one rank, and failures of all ranks at the start. raya prints one message, and no output file and no
 // process remains. The exit code is not 0. If mpirun forwards the exit code, it is that of a single process.
-#include <sys/stat.h>
-
 #include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
-#include "tests/ranks/run_ranks.hpp"
+#include "tests/ranks/rank_script.hpp"
 #include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
 
 constexpr double kMaxEnd_s = 10;  // maximum time from the fault to the end of all processes
-
-Arguments launch_arguments(const Mpi& mpi, std::uint32_t ranks, const Arguments& program_arguments) {
-    Arguments arguments = {"-n", std::to_string(ranks), mpi.program};
-    arguments.insert(arguments.end(), program_arguments.begin(), program_arguments.end());
-    return arguments;
-}
 
 Arguments render_arguments(const ScratchFolder& outputs, const Arguments& options = {}) {
     Arguments arguments = {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--quiet", "--lanes", "4"};
@@ -41,32 +33,6 @@ void check_message(const ScratchFolder& outputs, const RanksOutcome& run, int co
     CHECK(run.messages == 1);
     for (const std::string& part : message_parts) CHECK_THAT(run.err, Catch::Contains(part));
     check_ended(outputs, run, 1);
-}
-
-/// A shell script that runs a program. On one rank it evaluates a shell command before it runs the program.
-class RankScript {
-  public:
-    RankScript() {
-        std::ofstream(script_) << "#!/bin/sh\nonly_rank=$1; command=$2; shift 2\n"
-                                  "[ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = \"$only_rank\" ] && eval \"$command\"\n"
-                                  "exec \"$@\"\n";
-        ::chmod(script_.c_str(), 0755);
-    }
-
-    Arguments arguments(const Mpi& mpi, std::uint32_t ranks, std::uint32_t rank, const std::string& command,
-                        const Arguments& program_arguments) const {
-        Arguments launched = {"-n", std::to_string(ranks), script_, std::to_string(rank), command, mpi.program};
-        launched.insert(launched.end(), program_arguments.begin(), program_arguments.end());
-        return launched;
-    }
-
-  private:
-    ScratchFolder folder_;
-    std::string script_ = folder_ / "one_rank.sh";
-};
-
-std::string preload_command(const std::string& library, const std::string& variable, const std::string& value) {
-    return "export LD_PRELOAD=" + library + " " + variable + "='" + value + "'";
 }
 
 // Returns arguments of a render that has not ended when run_ranks() sends a signal.
@@ -101,7 +67,6 @@ TEST_CASE("mpirun: an error of all ranks is reported once, with rank and host", 
         {2, render_arguments(outputs, {"--device", "nosuch"}), 3, {"no OpenCL device matches"}},
         {2, {"devices"}, 2, {"devices runs in one process"}},
         {2, {"bench"}, 2, {"bench runs in one process"}},
-        {2, {"verify", "--quick"}, 2, {"verify runs in one process"}},
         {2, {"generate", "uniform", "9", "-o", outputs / "u.nff"}, 2, {"generate runs in one process"}}};
     for (const Mpi& mpi : installed_mpis())
         for (const Case& c : cases) {

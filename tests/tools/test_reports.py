@@ -27,12 +27,15 @@ SCENES = ROOT / "scenes"
 RARE = {
     "render.json: measured.earlier_s": "resumed renders: tests/cli/test_checkpoint.cpp",
     "bench.json: rows[].no_roofline": "devices that do not time their commands",
+    "verify.json: devices[].pci_address": "GPUs: tests/ranks/test_verify_on_ranks.cpp",
     "tune.json: results[].configuration.trees": "a parameter of the grid, whose search takes long",
     "tune.json: results[].configuration.beams": "a parameter of the grid",
     "tune.json: results[].configuration.registers": "NVIDIA only",
     "tune.json: results[].configuration.link_exchange": "a parameter of the torus, whose search takes long",
 }
-MPI_MEMBERS = ("ping.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.")  # these members need MPI
+# These members need MPI.
+MPI_MEMBERS = ("ping.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.", "verify.json: devices[].rank",
+               "verify.json: devices[].host")
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 # (kernel file, text, faulty replacement): a mutant, for which a check of verify must fail.
 FAULT = ("shared/mapping.h", "if (m.kind == RAYA_ROWS) return row % m.pes;", "if (m.kind == RAYA_ROWS) return (row + 1) % m.pes;")
@@ -159,6 +162,8 @@ class Reports:
         self.tune(scene)
         check = ["verify", "--brief", "--lanes", "1", "--only", "machine mapping: rows", "--report", "r.json"]
         self.make("verify", *check)
+        if self.mpirun:
+            self.make("verify", *check, launcher=[self.mpirun, "-n", "2"])
         self.run(self.patch_kernels, "kernels", *FAULT)
         self.make("verify", *check, "--kernel-dir", "kernels", code=4)
         for arguments in ((self.odd_scene(), "--accel", "grid"), (SCENES / "centre.nff", "--offset", "3")):
