@@ -36,13 +36,13 @@ void add_checkpoint_options(CLI::App& command, CheckpointOptions& options) {
     const OptionGroup group(command, "Checkpoints");
     add_file(command, FileUse::kWritten, "--checkpoint", options.file, "FILE.rst",
              "Save the progress of a long render to this file, for --resume; the file is removed when the render is "
-             "complete. For ring machines and one process; the image and its hash do not change");
+             "complete. The image and its hash do not change; the number of MPI ranks may");
     command.add_flag("--resume", options.resume,
                      "Continue the same render from the file of --checkpoint; start anew if this file does not exist");
     add_value(
         command, "--checkpoint-every", options.every_s,
         "Minimum seconds between two checkpoints, 0..86400; raya waits longer if saving would take over 5 % of the "
-        "time; 0: a checkpoint after every band of pixels")
+        "time; 0: a checkpoint after every band of pixels, or in every superstep")
         ->type_name("SECONDS")
         ->capture_default_str();
 }
@@ -72,33 +72,30 @@ void check_checkpoint_options(const CLI::App& command, const CheckpointOptions& 
 CheckpointFile::CheckpointFile(const CheckpointOptions& options) : options_(options) {
     callbacks_.band_s = std::clamp(options.every_s / 4, kMinBandS, kMaxBandS);
     callbacks_.due = [this] { return due(); };
-    callbacks_.save = [this](const RingState& state, const StateSettings& settings) { save(state, settings); };
-    callbacks_.resume = [this](const StateSettings& settings, const RingState& expected_sizes) {
-        return load(settings, expected_sizes);
-    };
+    callbacks_.save = [this](const std::string& bytes) { save(bytes); };
+    if (options.resume) callbacks_.resume = [this](const auto& read) { load(read); };
 }
 
-bool CheckpointFile::due() const {
+bool CheckpointFile::due() {
     const double elapsed_s = seconds_since(last_save_end_);
+    due_at_ = Clock::now();
     return elapsed_s >=
            std::max(options_.every_s, options_.every_s > 0 ? last_save_duration_s_ / kMaxSaveFraction : 0.0);
 }
 
-void CheckpointFile::save(const RingState& state, const StateSettings& settings) {
-    const Clock::time_point start = Clock::now();
-    write_whole_file(options_.file, state_bytes(state, settings));
+void CheckpointFile::save(const std::string& bytes) {
+    write_whole_file(options_.file, bytes);
     last_save_end_ = Clock::now();
-    last_save_duration_s_ = std::chrono::duration<double>(last_save_end_ - start).count();
+    last_save_duration_s_ = std::chrono::duration<double>(last_save_end_ - due_at_).count();
 }
 
-std::optional<RingState> CheckpointFile::load(const StateSettings& settings, const RingState& expected_sizes) const {
-    if (!options_.resume || !fs::exists(options_.file)) return {};
+void CheckpointFile::load(const std::function<RenderedPart(std::string_view bytes)>& read) const {
+    if (!fs::exists(options_.file)) return;
     try {
-        const RingState state = read_state(read_file(options_.file), settings, expected_sizes);
+        const RenderedPart part = read(read_file(options_.file));
         if (!is_quiet())
             print_log(fmt::format("raya: {}: continuing at {:.1f} %; the runs so far took {:.1f} s\n", options_.file,
-                                  100 * state.fraction, state.seconds));
-        return state;
+                                  100 * part.fraction, part.seconds));
     } catch (const UnreadableFile& why) {
         throw UserError(fmt::format("--resume: {}: {}", options_.file, why.what()));
     } catch (const UserError& why) {

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
+#include "host/base/checkpoint.hpp"
 #include "host/base/clock.hpp"
-#include "host/ring/ring_state.hpp"
 
 namespace CLI {
 class App;
@@ -30,20 +30,21 @@ class CheckpointFile {
     explicit CheckpointFile(const CheckpointOptions& options);
 
     /// Returns the callbacks with which the renderer saves and loads checkpoints; null without --checkpoint.
-    const RingCheckpointing* checkpointing() const { return options_.file.empty() ? nullptr : &callbacks_; }
+    const Checkpointing* checkpointing() const { return options_.file.empty() ? nullptr : &callbacks_; }
 
     /// Removes the checkpoint. Call remove() after all outputs of the render are written.
     void remove() const;
 
   private:
-    bool due() const;  // returns true if the next checkpoint is due
-    void save(const RingState& state, const StateSettings& settings);
-    std::optional<RingState> load(const StateSettings& settings, const RingState& expected_sizes) const;
+    bool due();  // returns true if the next checkpoint is due
+    void save(const std::string& bytes);
+    void load(const std::function<RenderedPart(std::string_view bytes)>& read) const;
 
     const CheckpointOptions& options_;
-    RingCheckpointing callbacks_;
+    Checkpointing callbacks_;
     Clock::time_point last_save_end_ = Clock::now();  // before the first save: time of construction
-    double last_save_duration_s_ = 0;                 // seconds
+    Clock::time_point due_at_;                        // time of the last call of due(), which precedes a save
+    double last_save_duration_s_ = 0;                 // of collecting and writing the state, seconds
 };
 
 }  // namespace raya

@@ -5,7 +5,6 @@
 #include "host/base/json.hpp"
 #include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
-#include "host/cl/measure.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/page.hpp"
 #include "host/error.hpp"
@@ -66,28 +65,6 @@ SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options
     return input;
 }
 
-void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Device& device, const NumberFormat& format,
-                 const std::vector<KernelWork>& works, Warnings& warnings) {
-    report.measured.builds = recorder.builds();
-    if (!report.ranks.empty()) {  // `works` covers all ranks, but the times of commands cover only rank 0
-        report.measured.roofline.emplace().unavailable = "the roofline is for a single device; start a single rank";
-        return;
-    }
-    try {
-        const DevicePeak peak =
-            recorder.spans().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
-        report.measured.roofline = roofline(peak, works, report.measured.commands);
-        constexpr double kMaxScatter = 0.15;  // limit for (best - worst) / best of the samples of the peak
-        if (peak.scatter > kMaxScatter)
-            warnings.add(
-                fmt::format("three measurements of the device's peak differ by {:.0f} %: another program uses the "
-                            "device; fractions of the peak are unreliable",
-                            100 * peak.scatter));
-    } catch (const DeviceError& error) {  // not rethrown: the render's figures are valid without a roofline
-        report.measured.roofline.emplace().unavailable = error.what();
-    }
-}
-
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image) {
     const Tone tone = tone_of(command.tone, command.image);
     const Image preview = preview_of(tone == Tone{} ? image : as_displayed(image, tone));
@@ -122,8 +99,9 @@ void write_report(const RenderCommand& command, const RenderReport& report) {
     if (!is_quiet() && command.summary) fmt::print("{}", printable(summary_text(report)));
     if (!command.profile || !command.prints_profile) return;
     const auto& measured = report.measured;
-    fmt::print("\n{}\n{}", profile_table(measured.build_s, measured.builds, measured.commands),
-               roofline_table(*measured.roofline));
+    fmt::print("\n{}\n", profile_table(measured.build_s, measured.builds, measured.commands));
+    if (report.ranks.empty()) fmt::print("{}", roofline_table(*measured.roofline));
+    for (const std::string& text : report.rank_rooflines) fmt::print("{}", text);
 }
 
 }  // namespace raya

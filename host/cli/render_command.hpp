@@ -125,10 +125,6 @@ RenderReport begin_report(const RenderCommand& command, const SceneInput& input,
     return report;
 }
 
-/// Adds the build times and the roofline of all kernels, for --profile and --page. Measures the peak of `device`.
-void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Device& device, const NumberFormat& format,
-                 const std::vector<KernelWork>& works, Warnings& warnings);
-
 /// Returns the metadata of a render's image files.
 ImageAttributes image_attributes(const RenderReport& report, const std::string& scene);
 

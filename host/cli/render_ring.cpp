@@ -95,20 +95,15 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     run.progress.stage("rendering");
     const CheckpointFile checkpoint(command.checkpoint);
     RingResult result = renderer.render(run.progress.callback(), checkpoint.checkpointing());
-    const std::vector<Json> rank_figures = rank_reports(ranks, session, "pes", result);
-    recorder.gather(session, ranks);
-    if (!ranks.is_first()) return {};
-    run.progress.stage("writing");
-    RenderReport report = make_report(command, input, settings, session.device(), result);
-    report.ranks = rank_figures;
-    report.measured.earlier_s = result.earlier_s;
-    recorder.spans().during("write images",
-                            [&] { write_images(command, result, image_attributes(report, scene.name)); });
-    if (command.needs_roofline()) {
-        run.progress.stage("measuring the device's peak");
-        add_profile(report, recorder, run.device(), settings.format, ring_kernel_work(settings, result),
-                    input.warnings);
+    RenderReport report;
+    if (ranks.is_first()) {
+        run.progress.stage("writing");
+        report = make_report(command, input, settings, session.device(), result);
+        recorder.spans().during("write images",
+                                [&] { write_images(command, result, image_attributes(report, scene.name)); });
     }
+    add_measured(report, command, run, rank_work("pes", settings.format, result, ring_kernel_work(settings, result)));
+    if (!ranks.is_first()) return {};
     run.progress.end();
     report.warnings = input.warnings.texts();
     recorder.spans().during("write report", [&] { write_report(command, report); });

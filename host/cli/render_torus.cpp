@@ -35,7 +35,8 @@ struct TorusOutputs {
     std::optional<HistoryRecorder> history;
 };
 
-TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progress, TorusOutputs& outputs) {
+TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progress, TorusOutputs& outputs,
+                                 const Checkpointing* checkpointing) {
     RenderObservers observers;
     if (outputs.trace || outputs.keep_packets)
         observers.supersteps = [&](const SuperstepDetail& step) {
@@ -53,14 +54,15 @@ TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progre
     if (!outputs.packets && !outputs.keep_packets) observers.packets_every = TorusTrace::kPacketsEvery;
     if (outputs.history) observers.work = [&](const NodeWork& work) { outputs.history->add(work); };
     progress.stage("rendering");
-    return renderer.render(progress.callback(), observers);
+    return renderer.render(progress.callback(), observers, checkpointing);
 }
 
 // Renders the image. After a deadlock, searches for a sufficient queue length and throws TorusDeadlock with this
 // length.
-TorusResult render_or_find_queue(TorusRenderer& renderer, RenderProgress& progress, TorusOutputs& outputs) {
+TorusResult render_or_find_queue(TorusRenderer& renderer, RenderProgress& progress, TorusOutputs& outputs,
+                                 const Checkpointing* checkpointing) {
     try {
-        return render_with_progress(renderer, progress, outputs);
+        return render_with_progress(renderer, progress, outputs, checkpointing);
     } catch (const TorusDeadlock& deadlock) {
         progress.stage("searching for a sufficient queue length");
         const QueueSearchResult search = find_longer_queue(deadlock.figures.queue, renderer.queue_trial());
@@ -115,6 +117,14 @@ void refuse_history_with_ranks(const TorusSettings& settings, const Ranks& ranks
         throw UserError("--async and --replay record every packet in one process; start raya without mpirun");
 }
 
+void refuse_checkpoint_with_records(const RenderCommand& command, const RenderRecorder& recorder,
+                                    const TorusSettings& settings) {
+    if (!command.checkpoint.file.empty() && (!command.torus.packets.empty() || recorder.traces() || settings.history))
+        throw UserError(
+            "--checkpoint with --machine torus: a checkpoint does not contain what --packets, --trace, --async and "
+            "--replay record; leave out one or the other");
+}
+
 void write_replay(const ReplayFiles& files, const raya_torus& torus, const History& history) {
     write_whole_file(files.platform, simgrid_platform(torus, {}));
     write_whole_file(files.replay, simgrid_replay(torus, history, {}));
@@ -156,32 +166,32 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
     TorusSettings settings = torus_settings(run.options, command.torus, scene);
     settings.pixels = command.pixels;
     refuse_history_with_ranks(settings, ranks);
+    refuse_checkpoint_with_records(command, recorder, settings);
     Session& session = run.session();
     TorusRenderer renderer(session, scene, settings, ranks);
     if (ranks.is_first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     TorusOutputs outputs(command, recorder, settings);
-    TorusResult result = render_or_find_queue(renderer, run.progress, outputs);
-    const std::vector<Json> rank_figures = rank_reports(ranks, session, "nodes", result);
-    recorder.gather(session, ranks);
-    if (!ranks.is_first()) return {};
-    run.progress.stage("writing");
-    RenderReport report = make_report(command, input, settings, session.device(), result);
-    report.ranks = rank_figures;
+    const CheckpointFile checkpoint(command.checkpoint);
+    TorusResult result = render_or_find_queue(renderer, run.progress, outputs, checkpoint.checkpointing());
+    RenderReport report;
     std::optional<History> history;
-    if (outputs.history) {
-        run.progress.stage("simulating");
-        history = outputs.history->finish();
-        add_asynchronous_time(*report.torus, command, settings, *history, recorder.spans());
+    if (ranks.is_first()) {
+        run.progress.stage("writing");
+        report = make_report(command, input, settings, session.device(), result);
+        if (outputs.history) {
+            run.progress.stage("simulating");
+            history = outputs.history->finish();
+            add_asynchronous_time(*report.torus, command, settings, *history, recorder.spans());
+        }
+        write_images(command, result, report, scene, outputs, recorder.spans());
     }
-    write_images(command, result, report, scene, outputs, recorder.spans());
-    if (command.needs_roofline()) {
-        run.progress.stage("measuring the device's peak");
-        add_profile(report, recorder, run.device(), settings.format, torus_kernel_work(settings, result),
-                    input.warnings);
-    }
+    add_measured(report, command, run,
+                 rank_work("nodes", settings.format, result, torus_kernel_work(settings, result)));
+    if (!ranks.is_first()) return {};
     run.progress.end();
     report.warnings = input.warnings.texts();
     recorder.spans().during("write report", [&] { write_report(command, report); });
+    checkpoint.remove();
     const ProgressBar tracing(recorder.traces(), "writing the trace");
     recorder.write(session, [&](TraceFile& file) { outputs.trace->add_to(file, result, command.trace.pes); });
     return Render{.report = std::move(report),

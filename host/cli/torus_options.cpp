@@ -91,7 +91,7 @@ constexpr const char* kNoPixels =
     "its nodes hold voxels of the scene, not pixels; leave it out: --nodes and --voxels set what a node holds";
 constexpr const char* kNoNeighbours =
     "its nodes hold no pixels to compare with their neighbours; leave it out, or choose a ring: --machine grande";
-constexpr std::array<InapplicableOption, 12> kRingOnlyOptions = {
+constexpr std::array<InapplicableOption, 11> kRingOnlyOptions = {
     {{"--mapping", kNoPixels},
      {"--offset", kNoPixels},
      {"--fold", kNoPixels},
@@ -103,10 +103,7 @@ constexpr std::array<InapplicableOption, 12> kRingOnlyOptions = {
      {"--mask", kNoNeighbours},
      {"--cost",
       "several nodes work for a pixel, so that no node has its cost; leave it out, or choose a ring: --machine grande"},
-     {"--accel", "its voxels are the grid; refine it with --voxels AxBxC"},
-     {"--checkpoint",
-      "its packets are in flight between nodes at any time; leave it out, or choose a ring, whose image is the same: "
-      "--machine grande"}}};
+     {"--accel", "its voxels are the grid; refine it with --voxels AxBxC"}}};
 
 constexpr const char* kNoNodes =
     "that machine is a ring of PEs without voxels; leave it out, or choose --machine torus";

@@ -72,11 +72,11 @@ void fail_shared_devices(std::vector<DeviceChecks>& devices) {
         if (device.pci_address.empty()) continue;
         const auto [first, is_new] = first_ranks.try_emplace({device.host, device.pci_address}, *device.rank);
         if (is_new) continue;
-        device.checks.push_back(run_check("device", "of this rank only", [&] {
-            return failed(fmt::format("rank {} has checked the same device", first->second),
-                          {.where = "a device of " + device.host + " is missing, or the host has too many ranks",
-                           .remedies = {"raya devices lists the devices of the host; start as many ranks"}});
-        }));
+        const Verdict verdict =
+            failed(fmt::format("rank {} has checked the same device", first->second),
+                   {.where = "a device of " + device.host + " is missing, or the host has too many ranks",
+                    .remedies = {"raya devices lists the devices of the host; start as many ranks"}});
+        device.checks.push_back({"device", "of this rank only", 0, verdict});
         fmt::print("rank {} on {}: {}", *device.rank, device.host, check_lines(device.checks.back()));
     }
 }

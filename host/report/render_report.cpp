@@ -117,10 +117,7 @@ Json measured_json(const RenderReport& report) {
     if (!report.ranks.empty()) json["ranks"] = report.ranks;
     if (!m.roofline) return json;
     json["builds"] = builds_json(m.builds);
-    if (!m.roofline->unavailable.empty()) json["no_roofline"] = m.roofline->unavailable;
-    if (!m.roofline->unavailable.empty()) return json;
-    json["peak"] = peak_json(m.roofline->peak);
-    json["roofline"] = roofline_json(*m.roofline);
+    add_to(json, *m.roofline);
     return json;
 }
 

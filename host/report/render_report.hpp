@@ -88,7 +88,8 @@ struct RenderReport {
     ModelledTime modelled;             // ring machine only
     std::optional<TorusReport> torus;  // torus machine only; replaces antialias, accel, communication and modelled
 
-    std::vector<Json> ranks;  // device, times and messages of each MPI rank; empty for one rank
+    std::vector<Json> ranks;  // device, times, messages and roofline of each MPI rank; empty for one rank
+    std::vector<std::string> rank_rooflines;  // with --profile or --page: roofline of each rank, as text
 
     struct {
         double build_s = 0, render_s = 0;

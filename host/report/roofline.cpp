@@ -59,19 +59,25 @@ std::vector<std::string> cells_of(const RooflineRow& r) {
             r.format_fraction ? percent_text(*r.format_fraction) : "-"};
 }
 
-std::string peak_lines(const DevicePeak& p) {
+std::string peak_line(const DevicePeak& p) {
     return fmt::format(
         "peak    {:.2f} Gop/s multiply-adds in fp32; in {}: {:.2f} multiply-adds, {:.2f} divisions, {:.2f} square "
         "roots; "
-        "{:.2f} GB/s copied\n"
+        "{:.2f} GB/s copied{}\n",
+        1e-9 * p.fp32_per_s, p.format, 1e-9 * p.multiply_per_s, 1e-9 * p.divide_per_s, 1e-9 * p.sqrt_per_s,
+        1e-9 * p.copy_bytes_per_s,
+        p.scatter > kMaxScatter ? fmt::format("; unreliable, measurements differ by {:.0f} %", 100 * p.scatter) : "");
+}
+
+std::string legend_lines(const DevicePeak& p) {
+    return fmt::format(
         "        measured in this run by small programs; copies of {} MB, each byte counted as read and as written\n"
         "        (the table of commands counts it once)\n"
         "op      an addition, multiplication, comparison, multiply-add, division or square root in the budgets of "
         "the counted events\n"
         "MB      the minimum that the kernel has to read and write. The roof is compute above {:.2f} op/byte, "
         "otherwise bandwidth\n",
-        1e-9 * p.fp32_per_s, p.format, 1e-9 * p.multiply_per_s, 1e-9 * p.divide_per_s, 1e-9 * p.sqrt_per_s,
-        1e-9 * p.copy_bytes_per_s, p.copy_bytes >> 20, p.fp32_per_s / p.copy_bytes_per_s);
+        p.copy_bytes >> 20, p.fp32_per_s / p.copy_bytes_per_s);
 }
 
 std::string format_remark(const DevicePeak& p) {
@@ -117,12 +123,13 @@ Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
     return all;
 }
 
-std::string roofline_table(const Roofline& roofline) {
+std::string roofline_table(const Roofline& roofline, bool legend) {
     if (!roofline.unavailable.empty()) return "no roofline: " + roofline.unavailable + "\n";
     std::vector<std::vector<std::string>> rows = {
         {"kernel", "Mrays/s", "Gop", "Gop/s", "MB", "GB/s", "op/byte", "bound", "% of roof", "% of format"}};
     for (const RooflineRow& row : roofline.rows) rows.push_back(cells_of(row));
-    std::string text = text_table(rows) + peak_lines(roofline.peak) + format_remark(roofline.peak);
+    std::string text = text_table(rows) + peak_line(roofline.peak);
+    if (legend) text += legend_lines(roofline.peak) + format_remark(roofline.peak);
     for (const RooflineRow& row : roofline.rows) text += verdict(row, roofline.peak);
     return text;
 }
@@ -155,6 +162,15 @@ Json roofline_json(const Roofline& roofline) {
                         {"share_of_format", r.format_fraction ? Json(*r.format_fraction) : Json()}});
     }
     return rows;
+}
+
+void add_to(Json& json, const Roofline& roofline) {
+    if (!roofline.unavailable.empty()) {
+        json["no_roofline"] = roofline.unavailable;
+        return;
+    }
+    json["peak"] = peak_json(roofline.peak);
+    json["roofline"] = roofline_json(roofline);
 }
 
 }  // namespace raya

@@ -43,6 +43,9 @@ struct RooflineRow {
     std::optional<double> format_fraction{};  // time at the format's peak rates divided by `seconds`; empty: unknown
 };
 
+/// Limit of DevicePeak::scatter, above which the peak is unreliable.
+inline constexpr double kMaxScatter = 0.15;
+
 struct Roofline {
     DevicePeak peak{};
     std::vector<RooflineRow> rows{};
@@ -53,10 +56,14 @@ struct Roofline {
 Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
                   const std::vector<LabelSummary>& commands);
 
-/// Returns the table, the peak, the meaning of the columns, and for each kernel its bound and fraction of the roof.
-std::string roofline_table(const Roofline& roofline);
+/// Returns the table, the peak, for each kernel its bound and fraction of the roof, and with `legend` the meaning of
+/// the columns.
+std::string roofline_table(const Roofline& roofline, bool legend = true);
 
 Json peak_json(const DevicePeak& peak);
 Json roofline_json(const Roofline& roofline);
+
+/// Adds the members `peak` and `roofline`, or `no_roofline` with the reason, to an object of a report.
+void add_to(Json& json, const Roofline& roofline);
 
 }  // namespace raya

@@ -158,6 +158,7 @@ void RingRenderer::collect_marks(RingResult& result) {
     if (ranks_.is_first()) result.mask = black_image(settings_.mapping);
     std::vector<std::uint8_t> marks(contrast_->marks().size());
     session_.read("read marks", contrast_->marks(), marks);
+    for (const std::uint8_t mark : marks) result.rank_recomputed += mark;
     collect(marks, window_, [&](const PeSegment& pes, std::span<const std::uint8_t> rank_marks) {
         const PixelRange share{0, 0, share_pixels_};
         for_each_pixel(settings_.mapping, pes, share, [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
@@ -182,6 +183,7 @@ void RingRenderer::collect_events(RingResult& result) {
             events[event] += counts[n];
             loads[pe] += cycles[event] * counts[n];
         }
+        result.phases[i].rank_events = events;
         if (i == 0) check_all_traced(events, settings_.mapping, pes_, session_.device());
         add_events(ranks_.all_gather(events), result.phases[i].events, result.all.events);
         collect(loads, 1, [&](const PeSegment&, std::span<const std::uint64_t> rank_loads) {

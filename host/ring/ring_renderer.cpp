@@ -23,11 +23,10 @@ PeSegment checked_segment(const raya_mapping& m, const Ranks& ranks) {
 
 // Returns the number of pixels of each PE that the device holds at a time. For large images the device holds only a
 // part (a window) of each PE's block, to save memory on device and host. Anti-aliasing needs all pixels on the device.
-// The result must be the same in all ranks, so it is computed from the maximum number of PEs of a rank.
-std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings, std::uint32_t ranks) {
+// The number does not depend on the number of ranks, so that a checkpoint can be resumed with other ranks.
+std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings) {
     if (settings.antialias.method != AntialiasMethod::kNone) return memory.block_pixels;
-    const std::uint32_t pes = (settings.mapping.pes + ranks - 1) / ranks;  // maximum number of PEs of a rank
-    const std::uint64_t max_pixels = std::max<std::uint64_t>(1, settings.device_pixels / pes);
+    const std::uint64_t max_pixels = std::max<std::uint64_t>(1, settings.device_pixels / settings.mapping.pes);
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(memory.block_pixels, max_pixels));
 }
 
@@ -41,7 +40,7 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
       job_(make_ring_job(session, scene, settings_, ranks)),
       share_pixels_(largest_share(settings_.mapping)),
       memory_(plan_pe_memory(settings_.machine, pe_demand(settings_, scene.name, job_.job.words().size()))),
-      window_(device_window(memory_, settings_, ranks.count())),
+      window_(device_window(memory_, settings_)),
       bus_(session, communication_, settings_.mapping.pes, ranks),
       broadcast_(session.buffer<std::uint32_t>("broadcast words", job_.job.words().size())),
       pixels_(session.buffer<float>("pixel blocks", 3ull * pes_.count * window_)),
@@ -86,7 +85,7 @@ void RingRenderer::build_exchange(KernelOptions options) {
     counters_.push_back(tracer_->make_counters(kSupersamplePass));
 }
 
-RingResult RingRenderer::render(const ProgressCallback& progress, const RingCheckpointing* checkpointing) {
+RingResult RingRenderer::render(const ProgressCallback& progress, const Checkpointing* checkpointing) {
     session_.clear_profile();
     communication_ = {};
     const SpanLog::Span rendering = session_.span("render");
@@ -190,6 +189,7 @@ void RingRenderer::describe(RingResult& result) {
     result.pe_memory = memory_;
     if (settings_.accel.kind != AccelKind::kNone) result.accel = job_.accel;
     result.words_local = tracer_->options().words_local;
+    result.first_pe = pes_.first;
     result.parts_of_rank = pes_.count;
     result.lanes = settings_.kernels.lanes;
     result.group_size = settings_.kernels.group_size;

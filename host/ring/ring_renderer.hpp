@@ -30,10 +30,9 @@ class RingRenderer {
     RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks = Ranks::single());
 
     /// Renders one image. May be called repeatedly. In ranks other than 0 the result covers only this rank and has no
-    /// image. With `checkpointing`, which requires a single rank, the image is traced in bands, and a checkpoint may be
-    /// saved after each band. A resumed render returns the same image and counts as an uninterrupted one; its times are
-    /// the sums over all runs.
-    RingResult render(const ProgressCallback& progress = {}, const RingCheckpointing* checkpointing = nullptr);
+    /// image. With `checkpointing` the image is traced in bands, and a checkpoint may be saved after each band. A
+    /// resumed render returns the same image and counts as an uninterrupted one; its times are the sums over all runs.
+    RingResult render(const ProgressCallback& progress = {}, const Checkpointing* checkpointing = nullptr);
 
     /// Returns the power of two by which the scene's lengths are multiplied.
     const LengthScale& scale() const { return job_.scale; }
@@ -54,6 +53,13 @@ class RingRenderer {
     RingState host_state(const RingResult& result) const;
     RingState checkpoint_state(const RingResult& result);
     void resume(RingResult& result);
+    void restore(RingState& state, RingResult& result);
+    template <class T>
+    void gather_pes(std::vector<T>& elements);
+    template <class T>
+    void scatter_pes(std::vector<T>& elements, std::size_t per_pe);
+    template <class T>
+    std::vector<T> read_pes(const Buffer<T>& buffer);
     void save_checkpoint(std::uint32_t pass, PixelRange range, RingResult& result);
     void place_gathered_and_allocate(RingResult& result);
     void gather(PixelRange range, RingResult& result);
@@ -91,7 +97,7 @@ class RingRenderer {
     std::unique_ptr<RingContrast> contrast_;
 
     // State of a render with checkpoints.
-    const RingCheckpointing* checkpointing_ = nullptr;
+    const Checkpointing* checkpointing_ = nullptr;
     std::optional<RingState> resumed_;  // the loaded checkpoint; empty once its window has been traced and gathered
     std::uint32_t band_ = 0;            // length of the next band, in pixels of each PE's share
     double earlier_s_ = 0;              // seconds of earlier runs

@@ -16,19 +16,41 @@ std::uint64_t launches_of(const RingResult& result, const std::string& label) {
 
 // Returns the bytes of all launches with this label, except those of pixels: the job's words, if PEs copy them, and the
 // counters, which are read and written.
-std::uint64_t launch_bytes(const RingSettings& s, const RingResult& r, const std::string& label) {
-    const std::uint64_t words = r.words_local ? r.communication.broadcast_words * s.mapping.pes : 0;
-    const std::uint64_t counters = std::uint64_t{s.mapping.pes} * r.group_size * RAYA_EVENTS;
+std::uint64_t launch_bytes(const RingResult& r, const std::string& label) {
+    const std::uint64_t words = r.words_local ? r.communication.broadcast_words * r.parts_of_rank : 0;
+    const std::uint64_t counters = std::uint64_t{r.parts_of_rank} * r.group_size * RAYA_EVENTS;
     return launches_of(r, label) * (sizeof(std::uint32_t) * words + 2 * sizeof(std::uint64_t) * counters);
 }
 
-KernelWork trace_work(const RingSettings& s, const RingResult& r, const Phase& phase, bool first_pass) {
-    const std::uint64_t pixels = std::uint64_t{s.mapping.width} * s.mapping.height;
-    KernelWork work = work_of(phase.name, phase.events);
-    const std::uint64_t written_bytes = (kColourBytes + sizeof(std::uint64_t)) * (first_pass ? pixels : r.recomputed);
-    const std::uint64_t read_bytes = first_pass ? 0 : pixels + kColourBytes * r.recomputed;
-    work.bytes = launch_bytes(s, r, phase.name) + written_bytes + read_bytes;
+// `pixels`: number of pixels of this rank.
+KernelWork trace_work(const RingResult& r, const Phase& phase, std::uint64_t pixels, bool first_pass) {
+    KernelWork work = work_of(phase.name, phase.rank_events);
+    const std::uint64_t written_bytes =
+        (kColourBytes + sizeof(std::uint64_t)) * (first_pass ? pixels : r.rank_recomputed);
+    const std::uint64_t read_bytes = first_pass ? 0 : pixels + kColourBytes * r.rank_recomputed;
+    work.bytes = launch_bytes(r, phase.name) + written_bytes + read_bytes;
     return work;
+}
+
+// Numbers of this rank's pixels, and of pairs of such a pixel and its left or right neighbour, and of such a pixel and
+// its upper or lower neighbour.
+struct RankPixels {
+    std::uint64_t pixels = 0, horizontal_pairs = 0, vertical_pairs = 0;
+};
+
+RankPixels pixels_of_rank(const raya_mapping& m, const RingResult& r) {
+    RankPixels own;
+    for (std::uint32_t i = 0; i < r.parts_of_rank; ++i) own.pixels += raya_share_size(raya_share_of(m, r.first_pe + i));
+    const auto is_own = [&](std::uint32_t row, std::uint32_t column) {
+        const std::uint32_t pe = raya_owner(m, row, column);
+        return pe >= r.first_pe && pe < r.first_pe + r.parts_of_rank;
+    };
+    own.horizontal_pairs = own.vertical_pairs = 2 * own.pixels;  // less those of pixels at the image's borders
+    for (std::uint32_t row = 0; row < m.height; ++row)
+        own.horizontal_pairs -= is_own(row, 0) + is_own(row, m.width - 1);
+    for (std::uint32_t column = 0; column < m.width; ++column)
+        own.vertical_pairs -= is_own(0, column) + is_own(m.height - 1, column);
+    return own;
 }
 
 // Returns the work of a kernel that, for each of `pixels` pixels, does `operations` operations on each of three colour
@@ -59,19 +81,17 @@ double trace_seconds(const RingResult& result) {
 
 std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const RingResult& result) {
     std::vector<KernelWork> works;
+    const RankPixels own = pixels_of_rank(settings.mapping, result);
     for (std::size_t i = 0; i < result.phases.size(); ++i)
-        works.push_back(trace_work(settings, result, result.phases[i], i == 0));
-    const std::uint64_t width = settings.mapping.width, height = settings.mapping.height;
-    // Numbers of pairs of a pixel and its left or right neighbour, and of a pixel and its upper or lower neighbour.
-    const std::uint64_t horizontal = 2 * (width - 1) * height, vertical = 2 * width * (height - 1);
+        works.push_back(trace_work(result, result.phases[i], own.pixels, i == 0));
     if (settings.antialias.method == AntialiasMethod::kFilter) {
-        works.push_back(neighbour_work("filter.sum_rows", horizontal, 1, 3));
-        works.push_back(neighbour_work("filter.sum_columns", vertical, 1, 3));
-        works.push_back(neighbour_work("filter.take_means", width * height, 1, 2));
+        works.push_back(neighbour_work("filter.sum_rows", own.horizontal_pairs, 1, 3));
+        works.push_back(neighbour_work("filter.sum_columns", own.vertical_pairs, 1, 3));
+        works.push_back(neighbour_work("filter.take_means", own.pixels, 1, 2));
     }
     // Operations per component, as in compare_cycles(): 4 to clamp both colours to 0..1, 1 difference, 1 comparison.
     if (settings.antialias.method == AntialiasMethod::kSupersample)
-        works.push_back(neighbour_work("supersample.compare", horizontal + vertical, 4 + 1 + 1, 2));
+        works.push_back(neighbour_work("supersample.compare", own.horizontal_pairs + own.vertical_pairs, 4 + 1 + 1, 2));
     return works;
 }
 

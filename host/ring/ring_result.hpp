@@ -25,8 +25,8 @@ inline constexpr const char *kTracePass = "trace", *kSupersamplePass = "supersam
 
 /// Counts of one phase of a render.
 struct Phase {
-    std::string name;  // kTracePass, kSupersamplePass
-    EventCounts events{};
+    std::string name;                        // kTracePass, kSupersamplePass
+    EventCounts events{}, rank_events{};     // of all ranks; of this rank
     Load load;                               // modelled cycles of each PE, from the PE's counters
     std::optional<CostImage> recorded_cost;  // only with RingSettings::record_costs
 
@@ -40,12 +40,14 @@ struct RingResult {
     Phase all;                  // sums over the phases; without recorded_cost if there is only one phase (see cost())
     Image mask;                 // 1 for supersampled pixels, else 0; empty without supersampling
     std::uint64_t recomputed = 0;           // number of supersampled pixels
+    std::uint64_t rank_recomputed = 0;      // number of supersampled pixels of this rank's PEs
     std::optional<std::uint64_t> requests;  // number of requests in a simulated dynamic distribution
     Communication communication;
     LengthScale scale;
     PeMemory pe_memory;
     std::optional<AccelSummary> accel;  // summary of the grid or BVH
     bool words_local = true;            // in each launch the PEs copied the job's words into local memory
+    std::uint32_t first_pe = 0;         // of this rank
     std::uint32_t parts_of_rank = 0;    // number of PEs of this rank
     RankTraffic traffic;                // traffic of this rank during the render
     std::uint32_t lanes = 0, group_size = 0;
@@ -64,8 +66,8 @@ struct RingResult {
 /// commands.
 double trace_seconds(const RingResult& result);
 
-/// Returns the arithmetic operations and memory traffic of each kernel, by label, including kernels that did not run.
-/// The bytes are lower bounds:
+/// Returns the arithmetic operations and memory traffic of each kernel of this rank, by label, including kernels that
+/// did not run. The bytes are lower bounds:
 ///   - trace, supersample: each launch reads the job's words once for every PE that copies them, and reads and writes
 ///     the counters. It writes 12 bytes of colour and 8 bytes of cycles for each traced pixel. Supersampling also reads
 ///     a mark of each pixel and the colour of each marked pixel. Words that a kernel reads without copying (--accel

@@ -43,8 +43,8 @@ void LinkExchange::clear() {
     session_.copy_blocks("clear mailboxes", flag_buffer_, zeros, inboxes_, boxes, 1, flag_buffer_.size());
     session_.copy_blocks("clear mailboxes", flag_buffer_, zeros, outboxes_, boxes, 1, outboxes);
     visited_.assign(outboxes, 0);
-    packets_.assign(std::size_t{RAYA_LINKS} * raya_nodes(torus_), 0);
-    moved_packets_ = 0;
+    counts_.messages.assign(std::size_t{RAYA_LINKS} * raya_nodes(torus_), 0);
+    counts_.packets = counts_.messages;
 }
 
 void LinkExchange::use_kernel(const ExchangeKernel& kernel, std::uint32_t group_size, Buffer<std::uint32_t>& status) {
@@ -79,9 +79,10 @@ void LinkExchange::count_transfers(const NodeStatus& status, std::uint32_t link,
         if (packets == 0 || inbox_occupied(status, link, node)) continue;
         if (distribution_.has(node)) sent_flags_[std::size_t{link} * nodes_ + distribution_.slot_of(node)] = 1;
         const std::uint64_t messages = class_.charged_status ? status.at(node, *class_.charged_status) : packets;
-        packets_[std::size_t{node} * RAYA_LINKS + link] += messages;
-        words[std::size_t{node} * RAYA_LINKS + link] += messages * class_.charged_words;
-        moved_packets_ += packets;
+        const std::size_t i = std::size_t{node} * RAYA_LINKS + link;
+        words[i] += messages * class_.charged_words;
+        counts_.messages[i] += messages;
+        counts_.packets[i] += packets;
     }
 }
 
@@ -245,6 +246,22 @@ void LinkExchange::visit_new_packets(const NodeStatus& status,
             for (std::size_t i = 0; i < words.size(); i += class_.packet_words) visit(node, head_at(&words[i]));
         }
     }
+}
+
+std::uint64_t LinkExchange::sent_packets() const {
+    std::uint64_t packets = 0;
+    for (const std::uint32_t node : distribution_.own_nodes())
+        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+            packets += counts_.packets[std::size_t{node} * RAYA_LINKS + link];
+    return packets;
+}
+
+std::uint64_t LinkExchange::received_packets() const {
+    std::uint64_t packets = 0;
+    for (const std::uint32_t node : distribution_.own_nodes())
+        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+            packets += counts_.packets[std::size_t{raya_link_end(torus_, node, link ^ 1u)} * RAYA_LINKS + link];
+    return packets;
 }
 
 }  // namespace raya

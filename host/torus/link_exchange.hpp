@@ -4,13 +4,16 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/cl/commands.hpp"
 #include "host/cl/kernels.hpp"
 #include "host/ranks/transport.hpp"
 #include "host/torus/node_distribution.hpp"
+#include "host/torus/torus_state.hpp"
 #include "kernels/shared/traffic.h"
 
 namespace raya {
@@ -53,8 +56,8 @@ class LinkExchange {
     /// transfers the packets of all links in one launch, labelled PacketClass::label. Buffer copies take one command
     /// for each link direction, labelled "LABEL +x", "LABEL -x", ... A direction takes several commands if some of its
     /// inboxes are not empty, or if the lengths of the outboxes differ so much that one command with the maximum length
-    /// would take longer. Adds the number of words charged for each link to `words`, [node][link]. `status`, `words`,
-    /// packets() and moved_packets() cover all nodes of all ranks.
+    /// would take longer. Adds the number of words charged for each link to `words`, [node][link]. `status`, `words`
+    /// and counts() cover all nodes of all ranks.
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
     /// Transfers between ranks, in the same superstep as an exchange(). begin_transfers() appends the messages to `out`
@@ -69,11 +72,19 @@ class LinkExchange {
     /// [link][slot]: 1 if the outbox was transferred.
     const Buffer<std::uint32_t>& sent_flags() const { return flag_buffer_; }
 
-    /// [node][link]: number of messages (charged packets) sent since clear().
-    const std::vector<std::uint64_t>& packets() const { return packets_; }
+    /// Counts since clear().
+    const LinkCounts& counts() const { return counts_; }
+    void set_counts(LinkCounts counts) { counts_ = std::move(counts); }
 
-    /// Number of packets sent over all links since clear(), including packets that are not charged.
-    std::uint64_t moved_packets() const { return moved_packets_; }
+    /// Return the numbers of packets that this rank's nodes have sent and received since clear().
+    std::uint64_t sent_packets() const;
+    std::uint64_t received_packets() const;
+
+    /// Appends to `words` the packets in the outboxes and inboxes of a node of this rank, as counted in `status`.
+    void read_boxes(const NodeStatus& status, std::uint32_t node, std::vector<std::uint32_t>& words);
+    /// Inverse of read_boxes(), after clear(): writes the first words of `words`, and returns the remaining ones.
+    std::span<const std::uint32_t> write_boxes(const NodeStatus& status, std::uint32_t node,
+                                               std::span<const std::uint32_t> words);
 
     /// Calls `visit`, unless it is empty, with the node and the head of every packet that was put into an outbox of
     /// this rank since the last call of visit_new_packets().
@@ -86,6 +97,8 @@ class LinkExchange {
     struct CopyRange {
         std::uint32_t first_slot, end_slot, packets;
     };
+    template <class Visit>
+    void for_each_box(const NodeStatus& status, std::uint32_t node, Visit&& visit);
     void count_transfers(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words);
     void copy_mailboxes(const NodeStatus& status, std::uint32_t link);
     void launch_kernel();
@@ -128,8 +141,7 @@ class LinkExchange {
     std::vector<std::uint32_t> sent_flags_;    // next contents of flag_buffer_
     std::vector<std::uint32_t> device_flags_;  // present contents of flag_buffer_
     std::vector<std::uint32_t> visited_;       // [link][slot]: number of packets in the outbox already visited
-    std::vector<std::uint64_t> packets_;
-    std::uint64_t moved_packets_ = 0;
+    LinkCounts counts_;
     const std::vector<RankLink> rank_links_;  // sorted by link, then by sender
     std::vector<LinkMessage> outgoing_, incoming_;
     std::optional<Readback<std::uint32_t>> outgoing_words_;  // words of the messages outgoing_, concatenated

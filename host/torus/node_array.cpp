@@ -38,22 +38,6 @@ bool any_node_has(std::span<const std::uint32_t> status, std::size_t word) {
     return false;
 }
 
-// Reorders [rank][slot][elements_per_node] to [node][elements_per_node].
-template <class T>
-std::vector<T> in_order_of_nodes(const NodeDistribution& distribution, std::uint32_t ranks,
-                                 const std::vector<T>& by_rank, std::size_t elements_per_node) {
-    if (ranks == 1) return by_rank;
-    std::vector<T> by_node(by_rank.size());
-    auto source = by_rank.begin();
-    for (std::uint32_t rank = 0; rank < ranks; ++rank)
-        for (const std::uint32_t node : distribution.nodes_of(rank)) {
-            std::copy_n(source, elements_per_node,
-                        by_node.begin() + static_cast<std::ptrdiff_t>(elements_per_node * node));
-            source += static_cast<std::ptrdiff_t>(elements_per_node);
-        }
-    return by_node;
-}
-
 }  // namespace
 
 NodeArray::NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories,
@@ -223,9 +207,9 @@ void NodeArray::finish_exchange() {
 }
 
 std::vector<std::uint64_t> NodeArray::link_packets() const {
-    std::vector<std::uint64_t> packets = ray_links_.packets();
-    for (std::size_t i = 0; i < packets.size(); ++i) packets[i] += return_links_.packets()[i];
-    return packets;
+    std::vector<std::uint64_t> messages = ray_links_.counts().messages;
+    for (std::size_t i = 0; i < messages.size(); ++i) messages[i] += return_links_.counts().messages[i];
+    return messages;
 }
 
 NodeStatus NodeArray::read_status() {
@@ -234,17 +218,10 @@ NodeStatus NodeArray::read_status() {
     if (any_node_has(own_status, RAYA_STATUS_CUT))
         throw truncated_loops_error("read status", session_.device().name, kTruncatedLoopRemedy);
     const std::vector<std::uint32_t> all_status =
-        ranks_.all_gather(std::span<const std::uint32_t>(own_status), sizes_of_ranks(RAYA_STATUS_WORDS));
-    const NodeStatus status(in_order_of_nodes(distribution_, ranks_.count(), all_status, RAYA_STATUS_WORDS));
+        ranks_.all_gather(std::span<const std::uint32_t>(own_status), distribution_.sizes_of_ranks(RAYA_STATUS_WORDS));
+    const NodeStatus status(distribution_.in_order_of_nodes(all_status, RAYA_STATUS_WORDS));
     plan_.update(status);
     return status;
-}
-
-std::vector<std::size_t> NodeArray::sizes_of_ranks(std::size_t elements_per_node) const {
-    std::vector<std::size_t> sizes;
-    for (std::uint32_t rank = 0; rank < ranks_.count(); ++rank)
-        sizes.push_back(elements_per_node * distribution_.nodes_of(rank).size());
-    return sizes;
 }
 
 void NodeArray::report_work(const NodeStatus& injected, const NodeWorkSink& sink) {
@@ -277,25 +254,31 @@ void NodeArray::finish_gather(std::vector<raya_head>& returns) {
     returns.insert(returns.end(), read.begin(), read.end());
 }
 
-std::vector<std::uint64_t> NodeArray::read_events() {
-    std::vector<std::uint64_t> own_events(events_.size());
-    session_.read("read counters", events_, own_events);
-    const std::vector<std::uint64_t> all_events =
-        ranks_.gather(std::span<const std::uint64_t>(own_events), sizes_of_ranks(RAYA_EVENTS));
-    return all_events.empty() ? all_events : in_order_of_nodes(distribution_, ranks_.count(), all_events, RAYA_EVENTS);
+std::vector<std::uint64_t> NodeArray::gather_counters(const Buffer<std::uint64_t>& counters) {
+    std::vector<std::uint64_t> own_counters(counters.size());
+    session_.read("read counters", counters, own_counters);
+    const std::size_t per_node = counters.size() / nodes_;
+    const std::vector<std::uint64_t> all_counters =
+        ranks_.gather(std::span<const std::uint64_t>(own_counters), distribution_.sizes_of_ranks(per_node));
+    return all_counters.empty() ? all_counters : distribution_.in_order_of_nodes(all_counters, per_node);
 }
 
-PacketCounts NodeArray::read_packets(const Buffer<std::uint64_t>& counters) {
+EventCounts NodeArray::read_own_events() {
+    std::vector<std::uint64_t> node_counts(events_.size());
+    session_.read("read counters", events_, node_counts);
+    EventCounts sums{};
+    for (std::size_t i = 0; i < node_counts.size(); ++i) sums[i % RAYA_EVENTS] += node_counts[i];
+    return sums;
+}
+
+std::pair<PacketCounts, PacketCounts> NodeArray::read_packets(const Buffer<std::uint64_t>& counters) {
     std::vector<std::uint64_t> node_counts(counters.size());
     session_.read("read counters", counters, node_counts);
     PacketCounts own_counts{}, total_counts{};
     for (std::size_t i = 0; i < node_counts.size(); ++i) own_counts[i % RAYA_KINDS] += node_counts[i];
     for (const PacketCounts& rank_counts : ranks_.all_gather(own_counts))
         for (std::size_t kind = 0; kind < RAYA_KINDS; ++kind) total_counts[kind] += rank_counts[kind];
-    return total_counts;
+    return {total_counts, own_counts};
 }
-
-PacketCounts NodeArray::read_created_counts() { return read_packets(made_); }
-PacketCounts NodeArray::read_ended_counts() { return read_packets(ended_); }
 
 }  // namespace raya

@@ -1,7 +1,9 @@
 // The torus nodes on the device of this rank: their memories, queues and counters, and the launches of their kernels.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/cl/kernels.hpp"
@@ -12,6 +14,7 @@
 #include "host/torus/node_memory.hpp"
 #include "host/torus/torus_result.hpp"
 #include "host/torus/torus_settings.hpp"
+#include "host/torus/torus_state.hpp"
 #include "kernels/shared/traffic.h"
 
 namespace raya {
@@ -30,14 +33,15 @@ struct MachineState {
 /// Computes the state from the status of all `nodes` nodes. `capacity`: capacity of a queue, in packets.
 MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity);
 
+/// Returns the progress, 0..1: the fraction of image rows whose primary rays are generated, times the mean of two
+/// estimates. The first estimate is the fraction of finished packets. It is accurate as long as all nodes compute. It
+/// is too high at the end, when few packets take many supersteps. The second estimate is the logarithmic decrease of
+/// the number of live packets. It is accurate at the end, but too low before. `returns`: number of returns that have
+/// reached the host; `max_live`: maximum number of live packets so far.
+double progress_of(const MachineState& state, std::size_t returns, std::uint64_t max_live);
+
 /// Returns [node]: modelled cycles of the node in the superstep.
 std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32_t nodes);
-
-/// Number of free queue slots that a packet needs before a node accepts or processes it (kernels/shared/traffic.h).
-enum class Reserve : cl_uint {
-    kWholeTree,  // enough for the packet's whole ray tree
-    kTight       // the minimum, used after a superstep without progress
-};
 
 namespace node_kernels {
 
@@ -121,17 +125,28 @@ class NodeArray {
     /// superstep. An empty sink skips the superstep; it must be empty in all ranks or in none.
     void record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
-    std::vector<std::uint64_t> read_events();  // rank 0: [node][RAYA_EVENTS] of all nodes; other ranks: empty
-    PacketCounts read_created_counts();        // numbers of packets that nodes created, sums over all ranks
-    PacketCounts read_ended_counts();  // numbers of packets that nodes processed to the end, sums over all ranks
+    /// Returns [node][RAYA_EVENTS] of all nodes in rank 0, and an empty vector in other ranks.
+    std::vector<std::uint64_t> read_events() { return gather_counters(events_); }
+    EventCounts read_own_events();  // sums over the nodes of this rank
+    /// Returns the numbers of packets that nodes created: sums over all ranks, and over this rank.
+    std::pair<PacketCounts, PacketCounts> read_created_counts() { return read_packets(made_); }
+    /// Returns the numbers of packets that nodes processed to the end, summed over all ranks.
+    PacketCounts read_ended_counts() { return read_packets(ended_).first; }
 
     /// Returns [node][RAYA_LINKS]: number of messages over the link since clear(), for the nodes of all ranks.
     std::vector<std::uint64_t> link_packets() const;
     bool links_by_kernel() const { return links_by_kernel_; }          // see TorusResult
     const std::string& links_origin() const { return links_origin_; }  // see TorusResult
-    std::uint64_t moved_rays() const { return ray_links_.moved_packets(); }
-    std::uint64_t moved_returns() const { return return_links_.moved_packets(); }
+    const LinkExchange& ray_links() const { return ray_links_; }
+    const LinkExchange& return_links() const { return return_links_; }
     const std::string& build_options() const { return build_options_; }
+
+    /// Collective: returns the state between read_status() after routing, which has returned `status`, and exchange().
+    /// Ranks other than 0 get only the counts. finish_gather() must have been called.
+    NodesState save(const NodeStatus& status);
+    /// Collective: continues from a state, whose contents only rank 0 needs. read_status() then returns the status of
+    /// save(), and exchange() is next.
+    void restore(NodesState state);
     bool copies_words_to_local() const { return options_.words_local; }  // kernels copy a node's words to local memory
 
   private:
@@ -145,11 +160,13 @@ class NodeArray {
     template <class Launch>
     void launch_until_done(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch);
     std::vector<PacketRecord> gather_records(const std::vector<PacketRecord>& own_records);
-    /// Returns [rank]: `elements_per_node` times the number of nodes of the rank.
-    std::vector<std::size_t> sizes_of_ranks(std::size_t elements_per_node) const;
+    /// Reads counters [slot][...] of all ranks. Returns [node][...] in rank 0, and an empty vector in other ranks.
+    std::vector<std::uint64_t> gather_counters(const Buffer<std::uint64_t>& counters);
     /// Returns the local memory of a kernel: `work_group_words` words, plus the node's words if kernels copy them.
     LocalMemory<std::uint32_t> local_words(std::size_t work_group_words) const;
-    PacketCounts read_packets(const Buffer<std::uint64_t>& counters);
+    std::pair<PacketCounts, PacketCounts> read_packets(const Buffer<std::uint64_t>& counters);
+    std::vector<std::uint32_t> scatter_packets(const NodeStatus& status, const std::vector<std::uint32_t>& all);
+    void write_packets(const NodeStatus& status, std::span<const std::uint32_t> words);
 
     Session& session_;
     const TorusSettings settings_;

@@ -119,6 +119,12 @@ std::uint32_t NodeDistribution::max_nodes_of_rank() const {
     return static_cast<std::uint32_t>(max_nodes);
 }
 
+std::vector<std::size_t> NodeDistribution::sizes_of_ranks(std::size_t elements_per_node) const {
+    std::vector<std::size_t> sizes;
+    for (const std::vector<std::uint32_t>& nodes : nodes_of_) sizes.push_back(elements_per_node * nodes.size());
+    return sizes;
+}
+
 std::uint32_t NodeDistribution::inbox_from(std::uint32_t sender, std::uint32_t link) const {
     if (has(sender)) return slot_of_[sender];
     const std::vector<std::uint32_t>& senders = remote_senders_[link];

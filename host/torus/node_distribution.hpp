@@ -1,5 +1,6 @@
 // Distribution of the torus nodes over ranks, and the status words of nodes.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -38,6 +39,24 @@ class NodeDistribution {
     std::uint32_t rank_of(std::uint32_t node) const { return rank_of_[node]; }
     bool has(std::uint32_t node) const { return rank_of_[node] == rank_; }
     std::uint32_t slot_of(std::uint32_t node) const { return slot_of_[node]; }
+
+    /// Returns [rank]: `elements_per_node` times the number of nodes of the rank.
+    std::vector<std::size_t> sizes_of_ranks(std::size_t elements_per_node) const;
+
+    /// Reorders [rank][slot][elements_per_node] to [node][elements_per_node].
+    template <class T>
+    std::vector<T> in_order_of_nodes(const std::vector<T>& by_rank, std::size_t elements_per_node) const {
+        if (nodes_of_.size() == 1) return by_rank;
+        std::vector<T> by_node(by_rank.size());
+        auto source = by_rank.begin();
+        for (const std::vector<std::uint32_t>& nodes : nodes_of_)
+            for (const std::uint32_t node : nodes) {
+                std::copy_n(source, elements_per_node,
+                            by_node.begin() + static_cast<std::ptrdiff_t>(elements_per_node * node));
+                source += static_cast<std::ptrdiff_t>(elements_per_node);
+            }
+        return by_node;
+    }
 
     /// Number of inboxes that this rank has for each link direction. The first inboxes belong to links that start at
     /// nodes of this rank, and are indexed by the slot of the start. Inboxes of links from other ranks follow. All

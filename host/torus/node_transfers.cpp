@@ -1,6 +1,7 @@
 // The functions of node_array.hpp that evaluate the nodes' status, choose the method of link exchange, and record
 // packets for a trace.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "host/base/clock.hpp"
@@ -66,6 +67,13 @@ MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::u
     }
     state.injected_fraction = rows ? static_cast<double>(injected_rows) / static_cast<double>(rows) : 1;
     return state;
+}
+
+double progress_of(const MachineState& state, std::size_t returns, std::uint64_t max_live) {
+    const auto finished_packets = static_cast<double>(returns), live_packets = static_cast<double>(state.live);
+    if (live_packets == 0) return state.injected_fraction;
+    const double decrease = 1 - std::log1p(live_packets) / std::log1p(static_cast<double>(max_live));
+    return state.injected_fraction * (finished_packets / (finished_packets + live_packets) + decrease) / 2;
 }
 
 // If neither an option nor `raya tune` chose the method, measures both and chooses the faster one. CPUs are not

@@ -49,11 +49,10 @@ TorusJob divide_scene(const Session& session, const Scene& scene, const TorusSet
     const SpanLog::Span span = session.span("divide scene");
     const Partition partition = raya::partition(job, s.format, s.voxels);
     TorusJob whole_job{
-        header_only_job(job.header(), job.has_patches()), pack_nodes(job, partition, s.torus), scale, {}, 0, 0};
+        header_only_job(job.header(), job.has_patches()), pack_nodes(job, partition, s.torus), scale, {}, 0};
     whole_job.buffers = buffers_of(scene, whole_job.memories, s, make_node_trial(job, s.format, s.voxels));
     check_device_memory(scene.name, whole_job.buffers, distribution.max_nodes_of_rank(), session.device().name, device);
     set_windows(whole_job.memories, s, job, partition);
-    whole_job.words = whole_job.memories.words.size();
     whole_job.fullest_words = fullest_words(whole_job.memories);
     return whole_job;
 }
@@ -78,7 +77,7 @@ struct TorusJobHeader {
     bool has_patches;
     LengthScale scale;
     NodeBuffers buffers;
-    std::uint64_t words, fullest_words, copies;
+    std::uint64_t fullest_words, copies;
     std::uint32_t max_objects;
 };
 
@@ -88,7 +87,6 @@ void send_to_ranks(const TorusJob& whole_job, const NodeDistribution& distributi
                           whole_job.header_only.has_patches(),
                           whole_job.scale,
                           whole_job.buffers,
-                          whole_job.words,
                           whole_job.fullest_words,
                           m.copies,
                           m.max_objects};
@@ -110,11 +108,7 @@ TorusJob receive_job(const NodeDistribution& distribution, Ranks& ranks) {
     ranks.receive(0, std::span(m.starts));
     m.words.resize(m.starts.back());
     ranks.receive(0, std::span(m.words));
-    return {header_only_job(header.header, header.has_patches),
-            std::move(m),
-            header.scale,
-            header.buffers,
-            header.words,
+    return {header_only_job(header.header, header.has_patches), std::move(m), header.scale, header.buffers,
             header.fullest_words};
 }
 

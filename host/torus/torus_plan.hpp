@@ -64,7 +64,6 @@ struct TorusJob {
     NodeMemories memories;  // words and starts: of this rank's nodes, by slot; other members: of all nodes
     LengthScale scale;
     NodeBuffers buffers;
-    std::uint64_t words = 0;          // number of words of all nodes together
     std::uint64_t fullest_words = 0;  // number of words of the fullest node
 };
 

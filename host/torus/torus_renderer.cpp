@@ -3,32 +3,19 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include "host/base/clock.hpp"
 #include "host/torus/buffer_plan.hpp"
 #include "host/torus/composer.hpp"
 #include "host/torus/node_array.hpp"
+#include "host/torus/torus_checkpoint.hpp"
 #include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_result.hpp"
 
 namespace raya {
-namespace {
-
-// Returns the progress, 0..1: the fraction of image rows whose primary rays are generated, times the mean of two
-// estimates. The first estimate is the fraction of finished packets. It is accurate as long as all nodes compute. It is
-// too high at the end, when few packets take many supersteps. The second estimate is the logarithmic decrease of the
-// number of live packets. It is accurate at the end, but too low before.
-double progress_of(const MachineState& state, std::size_t returns, std::uint64_t max_live) {
-    const auto finished_packets = static_cast<double>(returns), live_packets = static_cast<double>(state.live);
-    if (live_packets == 0) return state.injected_fraction;
-    const double decrease = 1 - std::log1p(live_packets) / std::log1p(static_cast<double>(max_live));
-    return state.injected_fraction * (finished_packets / (finished_packets + live_packets) + decrease) / 2;
-}
-
-}  // namespace
-
 // Maximum number of returns for which render() reserves memory in advance: 128 MB of address space. The operating
 // system allocates a page only when it is used.
 constexpr std::uint64_t kReservedReturns = 1 << 22;
@@ -47,16 +34,16 @@ struct TorusRenderer::Impl {
     double build_s = 0;
 
     void build();
-    std::optional<DeadlockFigures> run_supersteps(TorusResult& result, std::vector<raya_head>& returns,
+    std::optional<DeadlockFigures> run_supersteps(TorusRun& run, TorusCheckpoints& checkpoints,
                                                   const ProgressCallback& progress, const RenderObservers& observers);
-    void add_superstep(TorusResult& result, const NodeStatus& status, const MachineState& state,
+    void add_superstep(TorusRun& run, const NodeStatus& status, const MachineState& state,
                        const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const;
+    NodeStatus route(TorusRun& run, const RenderObservers& observers);
     void compute(NodeArray::Slots slots, Reserve reserve, bool injects, const NodeWorkSink& work);
     void compose(TorusResult& result, const std::vector<raya_head>& returns);
     void collect(TorusResult& result);
     void check(const TorusResult& result) const;
     void describe(TorusResult& result) const;
-    std::uint64_t node_bytes(const NodeBuffers& buffers) const;
 };
 
 TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks) {
@@ -95,15 +82,17 @@ void TorusRenderer::set_queue(std::uint32_t queue) {
 }
 
 bool TorusRenderer::runs_without_deadlock() {
-    TorusResult result;
-    std::vector<raya_head> returns;
-    return !impl_->run_supersteps(result, returns, {}, {});
+    Impl& p = *impl_;
+    TorusRun run;
+    TorusCheckpoints none(nullptr, p.settings, p.job, p.distribution, p.ranks);
+    return !p.run_supersteps(run, none, {}, {});
 }
 
 QueueTrial TorusRenderer::queue_trial() {
     Impl& p = *impl_;
     return {
-        .node_bytes = [&p](const NodeBuffers& b) { return p.node_bytes(b); },
+        .node_bytes =
+            [&p](const NodeBuffers& b) { return node_bytes(p.job.fullest_words, b, links_of_node(p.settings.torus)); },
         .node_memory = p.settings.memory_bytes.value_or(UINT64_MAX),
         .fits_device =
             [&p](const NodeBuffers& b) { return fits_device(b, p.distribution.max_nodes_of_rank(), p.device_memory); },
@@ -132,24 +121,31 @@ void TorusRenderer::Impl::build() {
     build_s = seconds_since(start);
 }
 
-TorusResult TorusRenderer::render(const ProgressCallback& progress, const RenderObservers& observers) {
+TorusResult TorusRenderer::render(const ProgressCallback& progress, const RenderObservers& observers,
+                                  const Checkpointing* checkpointing) {
     Impl& p = *impl_;
     if (observers.work && !p.settings.history)
         throw std::logic_error("an observer of work needs TorusSettings::history");
+    if (checkpointing != nullptr && (observers.work || observers.packets || observers.supersteps))
+        throw std::logic_error("a render with observers cannot save checkpoints");
     p.session.clear_profile();
     const Clock::time_point start = Clock::now();
     const SpanLog::Span rendering = p.session.span("render");
     const RankTraffic traffic_before = p.ranks.traffic();
-    TorusResult result;
-    std::vector<raya_head> returns;
-    returns.reserve(std::min<std::uint64_t>(2 * traced_pixels(p.settings), kReservedReturns));
+    TorusRun run;
+    run.returns.reserve(std::min<std::uint64_t>(2 * traced_pixels(p.settings), kReservedReturns));
     RenderObservers own_observers = observers;
     if (!p.ranks.is_first()) own_observers.supersteps = {};
-    if (const auto deadlock = p.run_supersteps(result, returns, progress, own_observers))
+    TorusCheckpoints checkpoints(checkpointing, p.settings, p.job, p.distribution, p.ranks);
+    if (const auto deadlock = p.run_supersteps(run, checkpoints, progress, own_observers))
         throw TorusDeadlock(*deadlock);
-    if (p.ranks.is_first()) p.compose(result, returns);
+    TorusResult result;
+    if (p.ranks.is_first()) p.compose(result, run.returns);
+    result.supersteps = std::move(run.supersteps);
+    result.link_words = std::move(run.link_words);
     p.collect(result);
-    result.render_s = seconds_since(start);
+    result.earlier_s = checkpoints.earlier_s();
+    result.render_s = result.earlier_s + seconds_since(start);
     result.traffic = p.ranks.traffic() - traffic_before;
     p.describe(result);
     if (p.ranks.is_first()) p.check(result);
@@ -165,62 +161,69 @@ void TorusRenderer::Impl::compute(NodeArray::Slots slots, Reserve reserve, bool 
     nodes->report_work(injected, work);
 }
 
-// Adds the counts of a superstep to the result, and passes them to `sink`. `words`: [node][RAYA_LINKS], number of words
+// Adds the counts of a superstep to the run, and passes them to `sink`. `words`: [node][RAYA_LINKS], number of words
 // charged for each link.
-void TorusRenderer::Impl::add_superstep(TorusResult& result, const NodeStatus& status, const MachineState& state,
+void TorusRenderer::Impl::add_superstep(TorusRun& run, const NodeStatus& status, const MachineState& state,
                                         const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const {
-    result.supersteps.push_back({state.max_cycles, *std::max_element(words.begin(), words.end()), state.live});
-    if (sink) sink({result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
-    for (std::size_t i = 0; i < words.size(); ++i) result.link_words[i] += words[i];
+    run.supersteps.push_back({state.max_cycles, *std::max_element(words.begin(), words.end()), state.live});
+    if (sink) sink({run.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
+    for (std::size_t i = 0; i < words.size(); ++i) run.link_words[i] += words[i];
 }
 
 // Runs supersteps until the image is complete; on a deadlock, returns the state of the machine. All ranks read the
 // status of all nodes, so they make the same decisions. While packets are transferred between ranks, the inner nodes
 // compute the next superstep.
-std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusResult& result, std::vector<raya_head>& returns,
+std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusRun& run, TorusCheckpoints& checkpoints,
                                                                    const ProgressCallback& progress,
                                                                    const RenderObservers& observers) {
     const SpanLog::Span span = session.span("supersteps");
     nodes->clear();
-    result.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
-    Reserve reserve = Reserve::kWholeTree;
-    int stalled = 0;  // consecutive supersteps without progress
-    std::uint64_t max_live = 0;
-    compute(nodes->all(), reserve, true, observers.work);
-    for (std::uint32_t superstep = 0;; ++superstep) {
-        nodes->route();
-        const NodeStatus status = nodes->read_status();
-        nodes->continue_gather(status, returns);
-        if (observers.packets)
-            nodes->record_packets(status, superstep,
-                                  superstep % observers.packets_every ? PacketSink{} : observers.packets);
-        const std::vector<std::uint64_t> words = nodes->exchange(status);
-        nodes->accept(nodes->inner(), reserve, superstep);
-
+    run.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
+    bool resumes = checkpoints.resume(*nodes, run);
+    if (!resumes) compute(nodes->all(), run.reserve, true, observers.work);
+    for (;; ++run.superstep, resumes = false) {
+        const NodeStatus status = resumes ? nodes->read_status() : route(run, observers);
         const MachineState state = machine_state(status, raya_nodes(settings.torus), job.buffers.queue);
-        add_superstep(result, status, state, words, observers.supersteps);
-        max_live = std::max(max_live, state.live);
+        run.max_live = std::max(run.max_live, state.live);
+        if (!resumes)
+            checkpoints.save_if_due(*nodes, status, run, progress_of(state, run.returns.size(), run.max_live));
+        const std::vector<std::uint64_t> words = nodes->exchange(status);
+        nodes->accept(nodes->inner(), run.reserve, run.superstep);
+
+        add_superstep(run, status, state, words, observers.supersteps);
         const bool ended = state.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && state.all_injected;
-        if (progress) progress(ended ? 1 : progress_of(state, returns.size(), max_live));
+        if (progress) progress(ended ? 1 : progress_of(state, run.returns.size(), run.max_live));
         const bool injects = !state.all_injected && state.longest_queue <= job.buffers.queue / 4;
         // Packets that a superstep accepts with a tight reserve count as progress only in the next superstep. So only
         // three supersteps without progress prove a deadlock.
-        stalled = state.progress == 0 && result.supersteps.back().max_link_words == 0 ? stalled + 1 : 0;
-        const Reserve next_reserve = stalled > 0 ? Reserve::kTight : Reserve::kWholeTree;
-        const bool continues = !ended && stalled < 3;
+        run.stalled = state.progress == 0 && run.supersteps.back().max_link_words == 0 ? run.stalled + 1 : 0;
+        const Reserve next_reserve = run.stalled > 0 ? Reserve::kTight : Reserve::kWholeTree;
+        const bool continues = !ended && run.stalled < 3;
         if (continues && nodes->inner().count > 0) compute(nodes->inner(), next_reserve, injects, observers.work);
         nodes->finish_exchange();
-        nodes->accept(nodes->border(), reserve, superstep);
+        nodes->accept(nodes->border(), run.reserve, run.superstep);
         if (ended) {
-            nodes->finish_gather(returns);
+            nodes->finish_gather(run.returns);
             return {};
         }
         if (!continues)
             return DeadlockFigures{
-                scene_name, superstep, state.live, state.full_queues, raya_nodes(settings.torus), job.buffers.queue};
+                scene_name,       run.superstep, state.live, state.full_queues, raya_nodes(settings.torus),
+                job.buffers.queue};
         if (nodes->border().count > 0) compute(nodes->border(), next_reserve, injects, observers.work);
-        reserve = next_reserve;
+        run.reserve = next_reserve;
     }
+}
+
+// Moves packets from the queues to the outboxes, and starts to read the returns. Returns the status of all nodes.
+NodeStatus TorusRenderer::Impl::route(TorusRun& run, const RenderObservers& observers) {
+    nodes->route();
+    const NodeStatus status = nodes->read_status();
+    nodes->continue_gather(status, run.returns);
+    if (observers.packets)
+        nodes->record_packets(status, run.superstep,
+                              run.superstep % observers.packets_every ? PacketSink{} : observers.packets);
+    return status;
 }
 
 void TorusRenderer::Impl::compose(TorusResult& result, const std::vector<raya_head>& returns) {
@@ -242,15 +245,17 @@ void TorusRenderer::Impl::collect(TorusResult& result) {
         loads[i / RAYA_EVENTS] += cycles[i % RAYA_EVENTS] * events[i];
     }
     if (ranks.is_first()) result.load = load_of(std::move(loads));
-    result.made = nodes->read_created_counts();
+    result.rank_events = nodes->read_own_events();
+    std::tie(result.made, result.rank_made) = nodes->read_created_counts();
     result.ended = nodes->read_ended_counts();
     const NodeStatus status = nodes->read_status();
     for (std::uint32_t node = 0; node < raya_nodes(settings.torus); ++node)
         result.queue_max = std::max<std::uint64_t>(result.queue_max, status.at(node, RAYA_STATUS_QUEUE_MAX));
     result.link_packets = nodes->link_packets();
     for (const std::uint64_t packets : result.link_packets) result.hops += packets;
-    result.moved_rays = nodes->moved_rays();
-    result.moved_returns = nodes->moved_returns();
+    result.sent_rays = nodes->ray_links().sent_packets();
+    result.received_rays = nodes->ray_links().received_packets();
+    result.received_returns = nodes->return_links().received_packets();
 }
 
 // Throws std::logic_error if a packet was lost or duplicated, because the image would be wrong.
@@ -271,17 +276,12 @@ void TorusRenderer::Impl::check(const TorusResult& result) const {
             fmt::format("{} returns are charged as messages, expected {}", result.returns, expected_returns));
 }
 
-// Returns the memory of the fullest node in bytes.
-std::uint64_t TorusRenderer::Impl::node_bytes(const NodeBuffers& buffers) const {
-    return raya::node_bytes(job.fullest_words, buffers, links_of_node(settings.torus));
-}
-
 void TorusRenderer::Impl::describe(TorusResult& result) const {
     result.copies = job.memories.copies;
     result.scale = job.scale;
     result.buffers = job.buffers;
-    result.copied_words = nodes->copies_words_to_local() ? job.words : 0;
-    result.node_bytes = node_bytes(job.buffers);
+    result.copied_words = nodes->copies_words_to_local() ? job.memories.words.size() : 0;
+    result.node_bytes = node_bytes(job.fullest_words, job.buffers, links_of_node(settings.torus));
     result.links_by_kernel = nodes->links_by_kernel();
     result.links_origin = nodes->links_origin();
     result.parts_of_rank = distribution.nodes();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "host/base/checkpoint.hpp"
 #include "host/base/progress.hpp"
 #include "host/cl/commands.hpp"
 #include "host/ranks/ranks.hpp"
@@ -26,8 +27,11 @@ class TorusRenderer {
 
     /// Renders one image; can be called repeatedly. All ranks must set the same members of `observers`. In ranks other
     /// than 0 the result has no image and no counts. Throws TorusDeadlock, or std::logic_error if RenderObservers::work
-    /// is set without TorusSettings::history.
-    TorusResult render(const ProgressCallback& progress = {}, const RenderObservers& observers = {});
+    /// is set without TorusSettings::history, or if checkpointing is combined with observers. With `checkpointing`, a
+    /// checkpoint may be saved in each superstep. A resumed render returns the same image and counts as an
+    /// uninterrupted one; its times are the sums over all runs.
+    TorusResult render(const ProgressCallback& progress = {}, const RenderObservers& observers = {},
+                       const Checkpointing* checkpointing = nullptr);
 
     /// Returns the factor by which the scene's lengths are multiplied.
     const LengthScale& scale() const;

@@ -79,24 +79,25 @@ TorusDeadlock::TorusDeadlock(const DeadlockFigures& state, const std::string& re
 
 std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const TorusResult& r) {
     const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
-    EventCounts inject_events{}, trace_events = r.events;
+    EventCounts inject_events{}, trace_events = r.rank_events;
     for (const std::size_t event : {RAYA_PRIMARY, RAYA_DISCARDED})
         inject_events[event] = std::exchange(trace_events[event], 0);
-    PacketCounts primary_packets{}, other_packets = r.made;
+    PacketCounts primary_packets{}, other_packets = r.rank_made;
     primary_packets[RAYA_KIND_PRIMARY] = std::exchange(other_packets[RAYA_KIND_PRIMARY], 0);
     const auto copied_bytes = [&](const char* label) { return launches_of(r, label) * kWordBytes * r.copied_words; };
 
     KernelWork inject = work_of("inject", inject_events), trace = work_of("trace_voxel", trace_events);
     inject.bytes = copied_bytes("inject") + packet_bytes(primary_packets);
-    trace.bytes = copied_bytes("trace_voxel") + kWordBytes * RAYA_PACKET_WORDS * r.events[RAYA_STEPS] +
+    trace.bytes = copied_bytes("trace_voxel") + kWordBytes * RAYA_PACKET_WORDS * r.rank_events[RAYA_STEPS] +
                   packet_bytes(other_packets);
     trace.rays += inject_events[RAYA_PRIMARY];  // trace_voxel also traces the primary rays
     KernelWork route, accept, compose;
     route.label = "route";
-    route.bytes = copied_bytes("route") +
-                  2 * kWordBytes * (r.moved_rays * RAYA_PACKET_WORDS + r.made[RAYA_KIND_RETURN] * RAYA_RETURN_WORDS);
+    route.bytes =
+        copied_bytes("route") +
+        2 * kWordBytes * (r.sent_rays * RAYA_PACKET_WORDS + r.rank_made[RAYA_KIND_RETURN] * RAYA_RETURN_WORDS);
     accept.label = "accept";
-    accept.bytes = 2 * kWordBytes * (r.moved_rays * RAYA_PACKET_WORDS + r.moved_returns * RAYA_RETURN_WORDS);
+    accept.bytes = 2 * kWordBytes * (r.received_rays * RAYA_PACKET_WORDS + r.received_returns * RAYA_RETURN_WORDS);
     compose.label = "compose";  // three multiply-adds for each contribution
     compose.operations = 3 * r.contributions;
     compose.bytes = r.contributions * 4 * sizeof(float) + kWordBytes * (pixels + 1) + 3 * sizeof(float) * pixels;

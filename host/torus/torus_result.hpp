@@ -69,22 +69,24 @@ using PacketCounts = std::array<std::uint64_t, RAYA_KINDS>;
 
 /// Result of a render.
 struct TorusResult {
-    Image image;  // pixels outside TorusSettings::pixels are 0
-    EventCounts events{};
-    Load load;  // modelled cycles of each node
+    Image image;                          // pixels outside TorusSettings::pixels are 0
+    EventCounts events{}, rank_events{};  // of all ranks; of this rank
+    Load load;                            // modelled cycles of each node
     std::vector<Superstep> supersteps;
     PacketCounts made{}, ended{};             // packets that nodes created, and packets that nodes processed to the end
+    PacketCounts rank_made{};                 // packets that this rank's nodes created
     std::uint64_t returns = 0;                // number of returns charged as messages (TorusSettings::packets)
     std::uint64_t hops = 0;                   // sum of link_packets
     std::vector<std::uint64_t> link_words;    // [node][RAYA_LINKS]: number of words charged for the link
     std::vector<std::uint64_t> link_packets;  // [node][RAYA_LINKS]: number of messages over the link
-    std::uint64_t moved_rays = 0, moved_returns = 0;  // numbers of packets transferred over links
-    std::uint64_t queue_max = 0;                      // maximum number of packets in a queue
-    std::uint64_t copies = 0;                         // see NodeMemories
+    std::uint64_t sent_rays = 0, received_rays = 0;  // of this rank's nodes: numbers of packets over links
+    std::uint64_t received_returns = 0;              // of this rank's nodes
+    std::uint64_t queue_max = 0;                     // maximum number of packets in a queue
+    std::uint64_t copies = 0;                        // see NodeMemories
     LengthScale scale;
     NodeBuffers buffers;
     std::uint64_t node_bytes = 0;     // number of bytes of the fullest node: words and buffers
-    std::uint64_t copied_words = 0;   // number of words that all nodes together copy to local memory in each launch
+    std::uint64_t copied_words = 0;   // number of words that this rank's nodes copy to local memory in each launch
     bool links_by_kernel = false;     // true: a kernel transferred packets over links; false: buffer copies did
     std::string links_origin;         // origin of this choice: "options", "FILE, DATE" (tuned), "measured", "defaults"
     std::uint64_t contributions = 0;  // number of return packets that reached the host
@@ -94,6 +96,7 @@ struct TorusResult {
     std::string build_options;
     std::string tuned;                 // source of lanes, group size and related settings (host/cl/tuned.hpp)
     double build_s = 0, render_s = 0;  // host times of the kernel build, and of the render after it
+    double earlier_s = 0;              // part of render_s that earlier runs took, before a resume
     std::vector<LabelSummary> commands;
 };
 
@@ -115,9 +118,9 @@ struct TorusDeadlock : UserError {
     DeadlockFigures figures;
 };
 
-/// Returns the work of each kernel. Nodes count events for all kernels together. Events of the generation of primary
-/// rays count as operations of inject; all other events, including those of the entry of primary rays into the bounding
-/// box, count as operations of trace_voxel. Bytes are lower bounds:
+/// Returns the work of each kernel of this rank. Nodes count events for all kernels together. Events of the generation
+/// of primary rays count as operations of inject; all other events, including those of the entry of primary rays into
+/// the bounding box, count as operations of trace_voxel. Bytes are lower bounds:
 ///   - trace_voxel, inject, route: read the words of all nodes in each launch, if kernels copy them to local memory;
 ///   - trace_voxel: reads a ray packet for each voxel in which the ray was tested, and writes each packet that it
 ///     creates; inject: writes a packet for each primary ray;

@@ -63,7 +63,12 @@ TEST_CASE("render --checkpoint, --resume: refuse missing, invalid and conflictin
     refused({"--checkpoint", folder / "s.rst", "--checkpoint-every", "-1"}, {"--checkpoint-every -1", "0..86400"});
     refused({"--checkpoint", folder / "none/s.rst"}, {"none"});
     refused({"--checkpoint", folder / "x.pfm"}, {"--checkpoint", "the same file as --output"});
-    refused({"--checkpoint", folder / "s.rst", "--machine", "torus"}, {"--checkpoint", "--machine torus", "grande"});
+    for (const Arguments& records :
+         {Arguments{"--packets", folder / "p.csv.gz"}, {"--async"}, {"--trace", folder / "t.json"}}) {
+        Arguments torus = {"--checkpoint", folder / "s.rst", "--machine", "torus"};
+        torus.insert(torus.end(), records.begin(), records.end());
+        refused(torus, {"--checkpoint with --machine torus", records.front()});
+    }
     refused({"--checkpoint", folder / "s.rst", "--frames", "1:2", "--turn", "90"}, {"--checkpoint", "single image"});
 }
 
@@ -88,7 +93,7 @@ TEST_CASE("render --checkpoint: refuses a file that is not a checkpoint, and lea
         refused({"--checkpoint", file}, "is not a checkpoint; name another file");
         refused({"--checkpoint", file, "--resume"}, "is not a checkpoint; name another file");
     }
-    write_whole_file(file, "raya state 2\nhours of work");
+    write_whole_file(file, "raya state 3\nhours of work");
     refused({"--checkpoint", file}, "add --resume");
 }
 

@@ -7,6 +7,7 @@
 #include "tests/document.hpp"
 #include "tests/ranks/run_ranks.hpp"
 #include "tests/report/trace_schema.hpp"
+#include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
@@ -107,6 +108,37 @@ TEST_CASE("a trace contains the host and the device of every rank, on one clock"
                 CHECK(!rank["commands"].empty());
             }
             CHECK(messages > 0);
+        }
+}
+
+TEST_CASE("--profile on several ranks has the roofline of every rank", "[ranks][.mpirun]") {
+    const TemporaryFolder folder("raya-ranks");
+    const std::filesystem::path report = folder.path() / "r.json";
+    for (const Mpi& mpi : installed_mpis())
+        for (const char* machine : quick(1, {"spa", "torus"})) {
+            CAPTURE(machine);
+            const RanksOutcome run =
+                run_ranks(mpi, {"-n", "2", mpi.program, "render", scene_file("spheres"), "--size", "32", "--machine",
+                                machine, "-o", folder.path() / "i.pfm", "--profile", "--report", report, "--quiet"});
+            INFO(run.describe());
+            REQUIRE(run.code == 0);
+            const Document contents = Document::parse(file_contents(report));
+            const std::string kernel = machine == std::string("spa") ? "trace" : "trace_voxel";
+            std::uint64_t rays = 0;
+            for (const Document& rank : contents["measured"]["ranks"]) {
+                CHECK(rank["peak"]["fp32_multiply_adds_per_s"] > 0);
+                const auto row = std::find_if(rank["roofline"].begin(), rank["roofline"].end(),
+                                              [&](const Document& r) { return r["label"] == kernel; });
+                REQUIRE(row != rank["roofline"].end());
+                rays += (*row)["rays"].get<std::uint64_t>();
+                CHECK(run.out.find("rank " + std::to_string(rank["rank"].get<int>()) + " on ") != std::string::npos);
+            }
+            const Document& counted = contents["rays"];
+            std::uint64_t expected = 0;
+            for (const char* kind : {"primary", "reflected", "refracted", "shadow"})
+                expected += counted[kind].get<std::uint64_t>();
+            CHECK(rays == expected);
+            CHECK(contents["measured"]["roofline"] == contents["measured"]["ranks"][0]["roofline"]);
         }
 }
 

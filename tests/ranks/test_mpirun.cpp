@@ -1,9 +1,12 @@
 // Runs of raya under mpirun write the same files as a single process.
 #include <map>
 
+#include "host/base/whole_file.hpp"
+#include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
-#include "tests/ranks/run_ranks.hpp"
+#include "tests/ranks/rank_script.hpp"
+#include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
@@ -70,6 +73,66 @@ TEST_CASE("mpirun: image, counts, loads and packets of the torus are those of a 
     check_all_rank_counts(folder, {"render", scene_file("spheres"), "-o", folder / "x.pfm", "--report",
                                    folder / "x.json", "--packets", folder / "p.csv.gz", "--machine", "torus", "--nodes",
                                    "3x2x2", "--size", "16", "--group", "1", "--quiet"});
+}
+
+// Renders on three ranks and saves checkpoints until the device of rank 1 fails. Returns the last checkpoint.
+std::string failed_render(const Mpi& mpi, const RankScript& script, const Arguments& render, const std::string& file) {
+    for (int launch = 10; launch < 1000; launch += launch / 2) {
+        const std::string fault = "clEnqueueNDRangeKernel " + std::to_string(launch) + " -5";
+        const RanksOutcome run =
+            run_ranks(mpi, script.arguments(mpi, 3, 1, preload_command(RAYA_CL_FAULTS, "RAYA_FAULT", fault), render));
+        INFO(run.describe());
+        CHECK(run.remaining == 0);
+        CHECK_THAT(run.err, Catch::Contains("raya: rank 1 on "));
+        if (run.code == 3 && std::filesystem::exists(file)) return file_contents(file);
+    }
+    throw std::runtime_error("no failed render left a checkpoint");
+}
+
+TEST_CASE("mpirun: a render that a failing device ends is resumed on any number of ranks", "[ranks][.mpirun]") {
+    if (kSanitized) return;
+    const ScratchFolder folder;
+    const RankScript script;
+    const std::string checkpoint = folder / "s.rst";
+    const Arguments common = {"render",   scene_file("centre"),
+                              "-o",       folder / "x.pfm",
+                              "--report", folder / "x.json",
+                              "--quiet",  "--lanes",
+                              "4",        "--group",
+                              "1",        "--checkpoint",
+                              checkpoint, "--checkpoint-every",
+                              "0",        "--resume"};
+    for (const Arguments& options :
+         {Arguments{"--machine", "grande", "--pes", "7", "--antialias", "supersample", "--size", "160x120"},
+          Arguments{"--machine", "torus", "--nodes", "2x2x2", "--size", "24"}}) {
+        Arguments render = common;
+        render.insert(render.end(), options.begin(), options.end());
+        REQUIRE(run_raya(render).code == 0);
+        const Files expected = files_in(folder);
+        REQUIRE(expected.size() == 2);
+        for (const Mpi& mpi : installed_mpis()) {
+            const std::string state = failed_render(mpi, script, render, checkpoint);
+            for (const std::uint32_t count : quick(2, {2u, 1u, 4u})) {
+                write_whole_file(checkpoint, state);
+                const RanksOutcome run = run_ranks(mpi, launch_arguments(mpi, count, render));
+                INFO(run.describe());
+                CHECK(run.code == 0);
+                CHECK(Document::parse(file_contents(folder / "x.json"))["measured"]["earlier_s"] > 0);
+                CHECK((files_in(folder) == expected));
+            }
+            std::string damaged = state;
+            damaged[state.size() / 2] ^= 1;
+            write_whole_file(checkpoint, damaged);
+            const RanksOutcome run = run_ranks(mpi, launch_arguments(mpi, 2, render));
+            INFO(run.describe());
+            CHECK(run.code == 2);
+            CHECK(run.messages == 1);
+            CHECK_THAT(run.err, Catch::Contains("raya: rank 0 on ") &&
+                                    Catch::Contains("--resume: " + checkpoint + ": damaged; remove the file"));
+            CHECK(file_contents(checkpoint) == damaged);
+            std::filesystem::remove(checkpoint);
+        }
+    }
 }
 
 TEST_CASE("mpirun: frames equal those of a single process, and existing frames are skipped", "[ranks][.mpirun]") {

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "host/error.hpp"
+#include "tests/ranks/same_results.hpp"
 #include "tests/ranks/thread_ranks.hpp"
 #include "tests/ring/render_scene.hpp"
 #include "tests/ring/small_mapping.hpp"
@@ -26,28 +27,6 @@ RingResult render_on(std::uint32_t count, const Scene& scene, const RingSettings
             throw std::logic_error("a rank other than 0 holds an image");
     });
     return result;
-}
-
-void check_same(const RingResult& single, const RingResult& distributed) {
-    CHECK(single.image.rgb == distributed.image.rgb);
-    CHECK(single.mask.rgb == distributed.mask.rgb);
-    CHECK(single.recomputed == distributed.recomputed);
-    CHECK(single.all.events == distributed.all.events);
-    CHECK(single.all.load.per_pe == distributed.all.load.per_pe);
-    CHECK(single.requests == distributed.requests);
-    REQUIRE(single.phases.size() == distributed.phases.size());
-    for (std::size_t i = 0; i < single.phases.size(); ++i) {
-        CHECK(single.phases[i].events == distributed.phases[i].events);
-        CHECK(single.phases[i].load.per_pe == distributed.phases[i].load.per_pe);
-        CHECK(single.phases[i].cost().cycles == distributed.phases[i].cost().cycles);
-    }
-    const Communication &a = single.communication, &b = distributed.communication;
-    CHECK(std::tie(a.broadcasts, a.broadcast_words, a.rotations, a.rotation_words, a.gathers, a.gather_words,
-                   a.transfers, a.transfer_words, a.pe_broadcasts, a.pe_broadcast_words) ==
-          std::tie(b.broadcasts, b.broadcast_words, b.rotations, b.rotation_words, b.gathers, b.gather_words,
-                   b.transfers, b.transfer_words, b.pe_broadcasts, b.pe_broadcast_words));
-    CHECK(single.scale.exponent == distributed.scale.exponent);
-    CHECK(single.pe_memory.bytes() == distributed.pe_memory.bytes());
 }
 
 raya_mapping random_mapping(SplitMix& random) {
@@ -98,6 +77,28 @@ TEST_CASE("random rings: image, loads and counts are the same on 1 to 8 ranks", 
     }
     CHECK(cases > 60);
     CHECK(uneven_cases > 10);
+}
+
+TEST_CASE("rings: the work of the ranks' kernels adds up to that of a single rank", "[ranks]") {
+    const Scene scene = project_scene("planes"), empty_scene;
+    for (const AntialiasMethod method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample})
+        for (const MappingRule& rule : {cyclic_mapping(8, Fold::kCyclic), tiles_mapping(5, 11)}) {
+            RingSettings settings = settings_of(RingCase{.width = 30, .height = 22, .pes = 7, .mapping = rule});
+            settings.antialias.method = method;
+            const auto works_of = [&](Ranks& ranks) {
+                Session session(choose_device(""));
+                RingRenderer renderer(session, ranks.is_first() ? scene : empty_scene, settings, ranks);
+                return ring_kernel_work(settings, renderer.render());
+            };
+            const std::vector<KernelWork> single = works_of(Ranks::single());
+            std::vector<std::vector<KernelWork>> works(3);
+            on_ranks(3, [&](Ranks& ranks) { works[ranks.rank()] = works_of(ranks); });
+            for (const std::vector<KernelWork>& of_rank : works) CHECK(of_rank.front().rays < single.front().rays);
+            check_sums(single, works,
+                       method == AntialiasMethod::kFilter
+                           ? std::vector<std::string>{"filter.sum_rows", "filter.sum_columns", "filter.take_means"}
+                           : std::vector<std::string>{"supersample.compare"});
+        }
 }
 
 TEST_CASE("more ranks than PEs are refused with both numbers", "[ranks]") {

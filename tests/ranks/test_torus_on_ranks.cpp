@@ -3,6 +3,7 @@
 
 #include "host/torus/node_distribution.hpp"
 #include "host/torus/torus_result.hpp"
+#include "tests/ranks/same_results.hpp"
 #include "tests/ranks/thread_ranks.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/random_torus.hpp"
@@ -31,24 +32,7 @@ RenderOutput render_on(Ranks& ranks, const Scene& scene, const TorusSettings& se
 }
 
 void check_same(const RenderOutput& single, const RenderOutput& distributed) {
-    const TorusResult &a = single.result, &b = distributed.result;
-    CHECK(a.image.rgb == b.image.rgb);
-    CHECK(a.events == b.events);
-    CHECK(a.load.per_pe == b.load.per_pe);
-    CHECK(a.made == b.made);
-    CHECK(a.ended == b.ended);
-    CHECK(a.returns == b.returns);
-    CHECK(a.hops == b.hops);
-    CHECK(a.link_words == b.link_words);
-    CHECK(a.link_packets == b.link_packets);
-    CHECK(a.queue_max == b.queue_max);
-    CHECK(a.node_bytes == b.node_bytes);
-    REQUIRE(a.supersteps.size() == b.supersteps.size());
-    for (std::size_t i = 0; i < a.supersteps.size(); ++i) {
-        CHECK(a.supersteps[i].max_node_cycles == b.supersteps[i].max_node_cycles);
-        CHECK(a.supersteps[i].max_link_words == b.supersteps[i].max_link_words);
-        CHECK(a.supersteps[i].live == b.supersteps[i].live);
-    }
+    check_same(single.result, distributed.result);
     CHECK(single.packets == distributed.packets);
 }
 
@@ -182,6 +166,19 @@ TEST_CASE("random toruses: image and traffic, or the deadlock, are the same on 1
     }
     WARN(cases << " machines completed their renders, " << deadlocks << " deadlocked");
     CHECK(cases > 8);
+}
+
+TEST_CASE("toruses: the work of the ranks' kernels adds up to that of a single rank", "[ranks]") {
+    const Scene scene = project_scene("glass");
+    const TorusSettings settings = settings_of({.nodes = {3, 2, 2}, .group = 1});
+    const auto works_of = [&](Ranks& ranks) {
+        return torus_kernel_work(settings, render_on(ranks, scene, settings).result);
+    };
+    const std::vector<KernelWork> single = works_of(Ranks::single());
+    std::vector<std::vector<KernelWork>> works(3);
+    on_ranks(3, [&](Ranks& ranks) { works[ranks.rank()] = works_of(ranks); });
+    for (const std::vector<KernelWork>& of_rank : works) CHECK(of_rank[1].operations < single[1].operations);
+    check_sums(single, works, {"accept"});
 }
 
 TEST_CASE("more ranks than nodes are refused with both numbers", "[ranks]") {

@@ -5,40 +5,12 @@
 
 #include "host/error.hpp"
 #include "host/ring/ring_state.hpp"
+#include "tests/base/test_checkpointing.hpp"
 #include "tests/ring/render_scene.hpp"
 #include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
-
-struct Stopped {};
-
-/// Saves a checkpoint as bytes after every band, and stops the render after `bands` bands. The render resumes from the
-/// checkpoint `resumed` unless it is empty.
-class TestCheckpoint {
-  public:
-    explicit TestCheckpoint(int bands = 1 << 30, std::string resumed = "")
-        : bands_left_(bands), saved_(std::move(resumed)) {
-        checkpointing_.band_s = 0;  // shortest possible bands
-        checkpointing_.due = [] { return true; };
-        checkpointing_.save = [this](const RingState& state, const StateSettings& settings) {
-            saved_ = state_bytes(state, settings);
-            ++count_;
-            if (--bands_left_ == 0) throw Stopped();
-        };
-        checkpointing_.resume = [this](const StateSettings& settings, const RingState& expected_sizes) {
-            return saved_.empty() ? std::optional<RingState>() : read_state(saved_, settings, expected_sizes);
-        };
-    }
-    const RingCheckpointing* checkpointing() const { return &checkpointing_; }
-    const std::string& saved() const { return saved_; }
-    int count() const { return count_; }
-
-  private:
-    int bands_left_, count_ = 0;
-    std::string saved_;
-    RingCheckpointing checkpointing_;
-};
 
 void check_same(const RingResult& a, const RingResult& b) {
     CHECK(pixel_hash(a.image) == pixel_hash(b.image));
@@ -70,6 +42,27 @@ RingSettings settings_for(AntialiasMethod method, std::uint64_t device_pixels) {
     return settings;
 }
 
+// Returns the state and the settings in a checkpoint of a render with `settings`.
+std::pair<RingState, StateSettings> parsed(const std::string& bytes, const RingSettings& settings) {
+    const StateSettings saved = saved_settings(bytes);
+    const raya_mapping& m = settings.mapping;
+    const std::size_t pixels = std::size_t{m.width} * m.height,
+                      in_window = m.pes * std::stoul(checkpoint_header(bytes).at("of").at("a device window of").text());
+    const bool supersamples = settings.antialias.method == AntialiasMethod::kSupersample;
+    RingState sizes;
+    sizes.image.resize(3 * pixels);
+    sizes.pixels.resize(3 * in_window);
+    if (supersamples) sizes.marks.resize(in_window);
+    sizes.passes.resize(supersamples ? 2 : 1);
+    for (RingState::Pass& pass : sizes.passes) {
+        pass.cycles.resize(in_window);
+        pass.events.resize(RAYA_EVENTS * m.pes);
+        pass.costs.resize(pixels);
+    }
+    if (supersamples) sizes.all_costs.resize(pixels);
+    return {read_state(bytes, saved, sizes), saved};
+}
+
 TEST_CASE("a render that is stopped at any band and resumed gives the same image and counts", "[ring][checkpoint]") {
     const std::uint32_t seed = 20;
     CAPTURE(seed);
@@ -84,23 +77,25 @@ TEST_CASE("a render that is stopped at any band and resumed gives the same image
         CAPTURE(antialias_name(method), device_pixels);
         const RingSettings settings = settings_for(method, device_pixels);
         const RingResult whole = RingRenderer(session, scene, settings).render();
-        TestCheckpoint uninterrupted;
+        TestCheckpointing uninterrupted;
         const RingResult saved = RingRenderer(session, scene, settings).render({}, uninterrupted.checkpointing());
         check_same(saved, whole);
         CHECK(saved.earlier_s == 0);
         REQUIRE(uninterrupted.count() > 3);
         for (int stop = 1; stop <= uninterrupted.count(); stop += 1 + static_cast<int>(random() % quick_cases(9, 3))) {
             CAPTURE(stop, uninterrupted.count());
-            TestCheckpoint first(stop);
+            TestCheckpointing first(stop);
             CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.checkpointing()), Stopped);
-            TestCheckpoint second(1 + static_cast<int>(random() % 2), first.saved());  // the render may stop again
+            TestCheckpointing second(1 + static_cast<int>(random() % 2), first.saved());  // the render may stop again
             std::string state = first.saved();
+            RingSettings other_group = settings;  // the image and the counts do not depend on the group size
+            if (method == AntialiasMethod::kSupersample) other_group.kernels.group_size = 2;
             try {
-                RingRenderer(session, scene, settings).render({}, second.checkpointing());
+                RingRenderer(session, scene, other_group).render({}, second.checkpointing());
             } catch (const Stopped&) {
                 state = second.saved();
             }
-            TestCheckpoint last(1 << 30, state);
+            TestCheckpointing last(1 << 30, state);
             const RingResult resumed = RingRenderer(session, scene, settings).render({}, last.checkpointing());
             check_same(resumed, whole);
             CHECK(resumed.earlier_s > 0);
@@ -115,10 +110,10 @@ TEST_CASE("one renderer renders with and without a checkpoint, in any order", "[
     const RingSettings settings = settings_for(AntialiasMethod::kSupersample, 1 << 22);
     RingRenderer renderer(session, project_scene("planes"), settings);
     const RingResult whole = renderer.render();
-    TestCheckpoint first(3);
+    TestCheckpointing first(3);
     CHECK_THROWS_AS(renderer.render({}, first.checkpointing()), Stopped);
     check_same(renderer.render(), whole);
-    TestCheckpoint last(1 << 30, first.saved());
+    TestCheckpointing last(1 << 30, first.saved());
     check_same(renderer.render({}, last.checkpointing()), whole);
     const RingResult unsaved = renderer.render();
     check_same(unsaved, whole);
@@ -129,11 +124,11 @@ TEST_CASE("a checkpoint of another render is refused with a message that names t
     Session session(choose_device(""));
     const Scene scene = project_scene("planes");
     const RingSettings settings = settings_for(AntialiasMethod::kNone, 1 << 22);
-    TestCheckpoint first(2);
+    TestCheckpointing first(2);
     CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.checkpointing()), Stopped);
     const auto check_refused = [&](const Scene& other_scene, const RingSettings& changed, const char* reason) {
         CAPTURE(reason);
-        TestCheckpoint second(1 << 30, first.saved());
+        TestCheckpointing second(1 << 30, first.saved());
         RingRenderer renderer(session, other_scene, changed);
         CHECK_THROWS_WITH(renderer.render({}, second.checkpointing()), Catch::Contains(reason));
     };
@@ -149,7 +144,6 @@ TEST_CASE("a checkpoint of another render is refused with a message that names t
     check_setting("was rendered with --cost or --mapping dynamic", [](RingSettings& s) { s.record_costs = false; });
     check_setting("was rendered with --format fp32, not e8m21",
                   [](RingSettings& s) { s.format = parse_format("e8m21"); });
-    check_setting("was rendered with --group 1, not 2", [](RingSettings& s) { s.kernels.group_size = 2; });
     check_setting("was rendered with --accel none, not bvh", [](RingSettings& s) { s.accel.kind = AccelKind::kBvh; });
     check_setting("was rendered with --sampling centres, not corners",
                   [](RingSettings& s) { s.sampling = Sampling::kCorners; });
@@ -166,18 +160,10 @@ TEST_CASE("a checkpoint with a valid hash is refused if its vector sizes are not
     for (const AntialiasMethod method : {AntialiasMethod::kNone, AntialiasMethod::kSupersample}) {
         CAPTURE(antialias_name(method));
         const RingSettings settings = settings_for(method, 1 << 22);
-        RingState saved;
-        StateSettings saved_settings;
-        RingCheckpointing checkpointing;
-        checkpointing.band_s = 0;
-        checkpointing.due = [] { return true; };
-        checkpointing.save = [&](const RingState& state, const StateSettings& state_settings) {
-            saved = state;
-            saved_settings = state_settings;
-            throw Stopped();
-        };
         RingRenderer renderer(session, scene, settings);
-        CHECK_THROWS_AS(renderer.render({}, &checkpointing), Stopped);
+        TestCheckpointing first(1);
+        CHECK_THROWS_AS(renderer.render({}, first.checkpointing()), Stopped);
+        const auto [saved, state_settings] = parsed(first.saved(), settings);
         const std::pair<const char*, std::function<void(RingState&)>> damages[] = {
             {"no pass", [](RingState& s) { s.passes.clear(); }},
             {"a pass too many", [](RingState& s) { s.passes.emplace_back(); }},
@@ -194,7 +180,7 @@ TEST_CASE("a checkpoint with a valid hash is refused if its vector sizes are not
             CAPTURE(name);
             RingState damaged = saved;
             damage(damaged);
-            TestCheckpoint last(1 << 30, state_bytes(damaged, saved_settings));
+            TestCheckpointing last(1 << 30, state_bytes(damaged, state_settings));
             CHECK_THROWS_WITH(renderer.render({}, last.checkpointing()), "damaged");
         }
     }
@@ -207,7 +193,7 @@ TEST_CASE("a checkpoint with a changed byte or a missing end is refused", "[ring
     RingState state;
     state.window = 5;
     state.next = 7;
-    state.fraction = 0.25;
+    state.part.fraction = 0.25;
     state.image = {1, 2, 3};
     state.pixels = {4};
     state.passes.resize(1);

@@ -26,6 +26,8 @@ SCENES = ROOT / "scenes"
 # Described members that do not occur in the reports of this test, with the reason.
 RARE = {
     "render.json: measured.earlier_s": "resumed renders: tests/cli/test_checkpoint.cpp",
+    "render.json: measured.no_roofline": "devices that do not time their commands, resumed renders",
+    "render.json: rank.no_roofline": "devices that do not time their commands, resumed renders",
     "bench.json: rows[].no_roofline": "devices that do not time their commands",
     "verify.json: devices[].pci_address": "GPUs: tests/ranks/test_verify_on_ranks.cpp",
     "tune.json: results[].configuration.trees": "a parameter of the grid, whose search takes long",
@@ -34,8 +36,7 @@ RARE = {
     "tune.json: results[].configuration.link_exchange": "a parameter of the torus, whose search takes long",
 }
 # These members need MPI.
-MPI_MEMBERS = ("ping.json: ", "render.json: measured.ranks", "render.json: measured.no_roofline", "render.json: rank.", "verify.json: devices[].rank",
-               "verify.json: devices[].host")
+MPI_MEMBERS = ("ping.json: ", "render.json: measured.ranks", "render.json: rank.", "verify.json: devices[].rank", "verify.json: devices[].host")
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 # (kernel file, text, faulty replacement): a mutant, for which a check of verify must fail.
 FAULT = ("shared/mapping.h", "if (m.kind == RAYA_ROWS) return row % m.pes;", "if (m.kind == RAYA_ROWS) return (row + 1) % m.pes;")

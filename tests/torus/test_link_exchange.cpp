@@ -109,7 +109,7 @@ class Mailboxes {
         std::uint64_t waiting = 0, counted = 0;
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box)
             waiting += status_.at(box % nodes_, RAYA_STATUS_OUTBOX + box / nodes_);
-        for (const std::uint64_t packets : links_.packets()) counted += packets;
+        for (const std::uint64_t packets : links_.counts().messages) counted += packets;
         CHECK(arrivals_.size() + waiting == sources_.size());
         CHECK(counted == arrivals_.size());
         CHECK(std::all_of(arrivals_.begin(), arrivals_.end(), [](const auto& a) { return a.second == 1; }));
@@ -246,10 +246,11 @@ TEST_CASE("the words of a link include only the returns that the model charges a
     expected[RAYA_LINKS + 1] = 3 * 6;
     links.exchange(status, words);
     CHECK(words == expected);
-    CHECK(links.packets()[RAYA_LINKS + 1] == 3);
-    CHECK(links.moved_packets() == 5);
+    CHECK(links.counts().messages[RAYA_LINKS + 1] == 3);
+    CHECK(links.sent_packets() == 5);
+    CHECK(links.received_packets() == 5);
     links.clear();
-    CHECK(links.moved_packets() == 0);
+    CHECK(links.sent_packets() == 0);
 }
 
 TEST_CASE("links are named by direction and axis", "[torus]") {

@@ -122,7 +122,13 @@ function roofline(r) {
   if (!has(r, "measured.peak"))
     return [paragraph(
       "The device's peak was not measured; ", code("raya render --page"), " and ", code("--profile"), " measure it.")];
-  return rooflineOf(
-    member(r, "measured.peak", "object"),
-    list(r, "measured.roofline", "object").map((row) => [str(row, "label"), row]));
+  const ranks = has(r, "measured.ranks") ? list(r, "measured.ranks", "object").filter((rank) => has(rank, "peak")) : [],
+        ofKernels = (owner) => rooflineOf(
+          member(owner, "peak", "object"), list(owner, "roofline", "object").map((row) => [str(row, "label"), row]));
+  if (ranks.length === 0) return ofKernels(member(r, "measured", "object"));
+  return ranks
+    .map(
+      (rank) => part(
+        `Rank ${num(rank, "rank")} on ${str(rank, "host")}, ${str(rank, "device.name")}`, ...ofKernels(rank)))
+    .flat();
 }

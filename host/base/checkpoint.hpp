@@ -1,0 +1,102 @@
+// Checkpoints: the state of a partial render as the bytes of a file.
+//
+//     raya state 3
+//     {"of": {NAME: VALUE, ...}, "fraction": ..., "seconds": ..., NAME: INTEGER, ...}
+//     vectors: the number of elements (64 bits), then the elements
+//     hash of all bytes before it, 32 hexadecimal digits
+//
+// A checkpoint does not depend on the number of ranks, so a render can be resumed with other ranks.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "host/base/json.hpp"
+
+namespace raya {
+
+/// Names and values of all settings that determine the state. CheckpointReader compares them, so that it rejects the
+/// checkpoint of a different render. A name is an option, or a text that can follow "was rendered with". The value of a
+/// flag is "yes" or "no".
+using StateSettings = std::vector<std::pair<std::string, std::string>>;
+
+/// First bytes of a checkpoint.
+inline constexpr std::string_view kStateMagic = "raya state 3\n";
+
+/// Progress of a render: completed fraction, 0..1, and measured time of all runs so far, seconds.
+struct RenderedPart {
+    double fraction = 0, seconds = 0;
+};
+
+class CheckpointWriter {
+  public:
+    /// `integers`: an object of integers, the scalars of the state.
+    CheckpointWriter(const StateSettings& settings, const RenderedPart& part, const Json& integers);
+
+    template <class T>
+    void put(const std::vector<T>& values) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        put_bytes(values.size(), values.data(), sizeof(T));
+    }
+    /// Returns the bytes of the file.
+    std::string finish();
+
+  private:
+    void put_bytes(std::uint64_t count, const void* values, std::size_t value_bytes);
+
+    std::string bytes_;
+};
+
+/// Reads what a CheckpointWriter has written. All functions throw UserError, whose text does not contain the file's
+/// name, if the bytes are damaged.
+class CheckpointReader {
+  public:
+    /// Also throws UserError if the bytes are not a checkpoint, or belong to a different render: then the text contains
+    /// the first setting that differs. `bytes` must outlive the reader.
+    CheckpointReader(std::string_view bytes, const StateSettings& settings);
+
+    RenderedPart part() const;
+    std::uint64_t integer(const char* name, std::uint64_t max = UINT64_MAX) const;
+
+    /// Replaces the elements of `values`. The file must have the same number of elements.
+    template <class T>
+    void take(std::vector<T>& values) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        take_bytes(take_count(sizeof(T), values.size()), values.data(), sizeof(T));
+    }
+    /// Returns a vector of any number of elements.
+    template <class T>
+    std::vector<T> take_any() {
+        static_assert(std::is_trivially_copyable_v<T>);
+        std::vector<T> values(take_count(sizeof(T), {}));
+        take_bytes(values.size(), values.data(), sizeof(T));
+        return values;
+    }
+
+  private:
+    /// Returns the number of elements of the next vector.
+    std::uint64_t take_count(std::size_t value_bytes, std::optional<std::uint64_t> expected);
+    void take_bytes(std::uint64_t count, void* values, std::size_t value_bytes);
+
+    std::string_view bytes_;
+    Json header_;
+};
+
+/// Callbacks for the checkpoints of a render. With several ranks, only rank 0 calls `due`, `save` and `resume`.
+struct Checkpointing {
+    /// Target duration of a band of pixels, seconds.
+    double band_s = 2;
+    /// Returns true if the next checkpoint is due.
+    std::function<bool()> due;
+    /// Saves the bytes of a CheckpointWriter.
+    std::function<void(const std::string& bytes)> save;
+    /// Calls `read` with the bytes of the checkpoint to resume, if there is one. Empty: do not resume.
+    std::function<void(const std::function<RenderedPart(std::string_view bytes)>& read)> resume;
+};
+
+}  // namespace raya

@@ -1,0 +1,112 @@
+// Checkpoints of torus renders that must be refused: those of other renders, and damaged ones. Resumed renders:
+// tests/ranks/test_checkpoints_on_ranks.cpp.
+#include <catch2/catch.hpp>
+#include <functional>
+
+#include "host/torus/torus_state.hpp"
+#include "tests/base/test_checkpointing.hpp"
+#include "tests/torus/render_torus.hpp"
+
+namespace raya {
+namespace {
+
+/// Renders until the fourth checkpoint, from which the torus can be resumed.
+std::string stopped_render(Session& session, const Scene& scene, const TorusSettings& settings) {
+    TestCheckpointing checkpointing(4);
+    TorusRenderer renderer(session, scene, settings);
+    CHECK_THROWS_AS(renderer.render({}, {}, checkpointing.checkpointing()), Stopped);
+    return checkpointing.saved();
+}
+
+TorusSettings small_torus() { return settings_of({.packets = {20, true}, .queue = 100, .group = 1, .bounces = 2}); }
+
+}  // namespace
+
+TEST_CASE("torus: a checkpoint of another render is refused with a message that names the difference",
+          "[torus][checkpoint]") {
+    Session session(choose_device(""));
+    const Scene scene = project_scene("planes");
+    const std::string state = stopped_render(session, scene, small_torus());
+    const auto check_refused = [&](const Scene& other_scene, const TorusSettings& changed, const char* reason) {
+        CAPTURE(reason);
+        TestCheckpointing resumed(1 << 30, state);
+        TorusRenderer renderer(session, other_scene, changed);
+        CHECK_THROWS_WITH(renderer.render({}, {}, resumed.checkpointing()), Catch::Contains(reason));
+    };
+    Scene moved = scene;
+    moved.view.from.x += 1e-3;
+    check_refused(moved, small_torus(), "was rendered with another scene, camera or light");
+    const auto check_setting = [&](const char* reason, const auto& change) {
+        TorusSettings changed = small_torus();
+        change(changed);
+        check_refused(scene, changed, reason);
+    };
+    check_setting("was rendered with --size 20x16, not 20x17", [](TorusSettings& s) { s.height = 17; });
+    check_setting("was rendered with --nodes 2x2x2, not 3x2x2", [](TorusSettings& s) {
+        s.torus = make_torus({3, 2, 2}, s.links);
+    });
+    check_setting("was rendered with --links torus3d, not torus2d", [](TorusSettings& s) {
+        s.links = Links::kTorus2d;
+        s.torus = make_torus({2, 2, 2}, s.links);
+    });
+    check_setting("was rendered with --voxels 2x2x2, not 3x3x3", [](TorusSettings& s) { s.voxels = {3, 3, 3}; });
+    check_setting("was rendered with --inject all, not root", [](TorusSettings& s) { s.inject = Injection::kRoot; });
+    check_setting("was rendered with --returns rays, not terms", [](TorusSettings& s) { s.packets = {20, false}; });
+    check_setting("was rendered with --packet-words 20, not 21", [](TorusSettings& s) { s.packets = {21, true}; });
+    check_setting("was rendered with --queue 100, not 90", [](TorusSettings& s) { s.queue = 90; });
+    check_setting("was rendered with --bounces 2, not 1", [](TorusSettings& s) { s.bounces = 1; });
+    check_setting("was rendered with --sampling centres, not corners",
+                  [](TorusSettings& s) { s.sampling = Sampling::kCorners; });
+    check_setting("was rendered with every Nth pixel, from 1, 0, not 2, 0", [](TorusSettings& s) {
+        s.pixels = {2, 0};
+    });
+    TestCheckpointing of_torus(1 << 30, state);
+    RingRenderer ring(session, scene, settings_of(RingCase{.width = 20, .height = 16}));
+    CHECK_THROWS_WITH(ring.render({}, of_torus.checkpointing()), "was rendered with a machine of type torus, not ring");
+}
+
+TEST_CASE("torus: a checkpoint with a valid hash is refused if its counts do not fit the machine",
+          "[torus][checkpoint]") {
+    Session session(choose_device(""));
+    const Scene scene = project_scene("planes");
+    const TorusSettings settings = small_torus();
+    const std::string state = stopped_render(session, scene, settings);
+    const StateSettings of = saved_settings(state);
+    const TorusState saved = read_state(state, of, 8, buffers_for(settings.queue));
+    CHECK(state_bytes(saved.run, saved.nodes, saved.part, of) == state);
+    CHECK(saved.run.superstep == 3);
+    const auto set_status = [](std::uint32_t word, std::uint32_t value) {
+        return [=](TorusState& s) { s.nodes.status[RAYA_STATUS_WORDS + word] = value; };
+    };
+    const std::uint32_t box = buffers_for(settings.queue).box;
+    const std::pair<const char*, std::function<void(TorusState&)>> damages[] = {
+        {"a superstep more", [](TorusState& s) { ++s.run.superstep; }},
+        {"fewer links", [](TorusState& s) { s.run.link_words.pop_back(); }},
+        {"no status", [](TorusState& s) { s.nodes.status.clear(); }},
+        {"more events", [](TorusState& s) { s.nodes.events.push_back(0); }},
+        {"fewer counts of packets made", [](TorusState& s) { s.nodes.made.pop_back(); }},
+        {"fewer counts of packets ended", [](TorusState& s) { s.nodes.ended.pop_back(); }},
+        {"fewer counts of messages", [](TorusState& s) { s.nodes.returns.messages.pop_back(); }},
+        {"more counts of rays", [](TorusState& s) { s.nodes.rays.packets.push_back(0); }},
+        {"a queue that is too full", set_status(RAYA_STATUS_QUEUE, settings.queue + 1)},
+        {"too many returns in the root", set_status(RAYA_STATUS_HOST, settings.queue + 1)},
+        {"an outbox that is too full", set_status(RAYA_STATUS_OUTBOX + 5, box + 1)},
+        {"an inbox that is too full", set_status(RAYA_STATUS_INBOX, box + 1)},
+        {"too many returns in an outbox", set_status(RAYA_STATUS_RETURN_OUTBOX + 1, box + 1)},
+        {"too many returns in an inbox", set_status(RAYA_STATUS_RETURN_INBOX + 2, UINT32_MAX)},
+        {"fewer words of packets", [](TorusState& s) { s.nodes.packets.pop_back(); }},
+        {"more words of packets", [](TorusState& s) { s.nodes.packets.push_back(0); }}};
+    TorusRenderer renderer(session, scene, settings);
+    for (const auto& [name, damage] : damages) {
+        CAPTURE(name);
+        TorusState damaged = saved;
+        damage(damaged);
+        TestCheckpointing resumed(1 << 30, state_bytes(damaged.run, damaged.nodes, damaged.part, of));
+        CHECK_THROWS_WITH(renderer.render({}, {}, resumed.checkpointing()), "damaged");
+    }
+    TestCheckpointing resumed(1 << 30, state);
+    CHECK(renderer.render({}, {}, resumed.checkpointing()).earlier_s > 0);
+    CHECK(renderer.render().earlier_s == 0);
+}
+
+}  // namespace raya
