@@ -34,9 +34,9 @@ struct Rendering {
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     LinkMove link_move = LinkMove::kCopies;
-    bool global_words = false;  // job words are in global memory, as if local memory were too small
-    bool refined = false;       // division, square root and fma are refined, as if the device did not round them
-                                // correctly
+    bool global_words = false;   // job words are in global memory, as if local memory were too small
+    bool fallback_code = false;  // as if the device did not round division, square root and fma correctly, and the
+                                 // compiler had none of the builtins that raya uses
 
     // Returns the name of the renderer with its accelerator or torus, such as "ring", "bvh" or "torus2d 3x2x2 root". It
     // is the key in StoredImage::counts: renderings of an image by the same renderer have equal counts.
@@ -55,7 +55,7 @@ struct Rendering {
         if (work_per_launch) text += fmt::format(", launches of {} {}", work_per_launch, torus ? "units" : "tests");
         if (link_move == LinkMove::kKernel) text += ", links by a kernel";
         if (global_words) text += ", global words";
-        if (refined) text += ", division refined";
+        if (fallback_code) text += ", fallback code";
         if (lanes) text += fmt::format(", {}x{}", lanes, group_size);
         return fmt::format("{}: {}", image, text);
     }
@@ -63,7 +63,8 @@ struct Rendering {
 
 KernelChoice kernels_for(KernelChoice choice, const Rendering& r) {
     choice.local_words = !r.global_words;
-    choice.exact_arithmetic = !r.refined;
+    choice.exact_arithmetic = !r.fallback_code;
+    if (r.fallback_code) choice.sources.more_options.emplace_back(kNoBuiltins);
     return choice;
 }
 
@@ -181,7 +182,7 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
 
 // Returns renderings that together use every kernel and option. Building kernels takes most of a rendering's time, so
 // renderings with equal build options are adjacent and use the same build. For the same reason some renderings of depth
-// kQuick combine several features, such as global words and refined division. The renderings of depth kBrief need three
+// kQuick combine several features, such as global words and fallback code. The renderings of depth kBrief need three
 // builds: one for each machine and one for a reduced format.
 std::vector<Rendering> standard_renderings() {
     constexpr auto k2d = Links::kTorus2d;
@@ -197,7 +198,7 @@ std::vector<Rendering> standard_renderings() {
              .work_per_launch = 40},
             {.image = "glass fp32", .min_depth = Depth::kQuick, .mapping = tiles_mapping(5, 4), .pes = 7},
             {.image = "glass fp32", .global_words = true},
-            {.image = "glass fp32", .refined = true},
+            {.image = "glass fp32", .fallback_code = true},
             {.image = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
             {.image = "glass fp32", .lanes = 4, .group_size = 32, .mapping = random_mapping(1), .pes = 5},
             {.image = "ties fp32",
@@ -205,16 +206,18 @@ std::vector<Rendering> standard_renderings() {
              .mapping = blocks_mapping(),
              .pes = 5,
              .global_words = true,
-             .refined = true},
+             .fallback_code = true},
             {.image = "ties fp32"},
             {.image = "ties fp32", .accel = AccelKind::kGrid},
             {.image = "ties fp32", .accel = AccelKind::kBvh},
             {.image = "ties fp32", .torus = true},
             {.image = "polygons fp32", .mapping = tiles_mapping(5, 4), .pes = 7},
             {.image = "polygons fp32", .min_depth = Depth::kQuick, .accel = AccelKind::kGrid},
-            {.image = "polygons fp32", .accel = AccelKind::kGrid, .global_words = true},
+            {.image = "polygons fp32", .accel = AccelKind::kGrid, .global_words = true, .fallback_code = true},
             {.image = "polygons fp32", .min_depth = Depth::kQuick, .accel = AccelKind::kBvh},
-            {.image = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true},
+            {.image = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true, .fallback_code = true},
+            {.image = "cones fp32", .lanes = 8, .group_size = 1, .accel = AccelKind::kBvh, .fallback_code = true},
+            {.image = "polygons fp32", .lanes = 4, .group_size = 1, .accel = AccelKind::kBvh, .fallback_code = true},
             {.image = "cones fp32", .accel = AccelKind::kBvh},
             {.image = "polygons fp32", .min_depth = Depth::kQuick, .torus = true},
             {.image = "polygons fp32",
@@ -235,9 +238,9 @@ std::vector<Rendering> standard_renderings() {
              .min_depth = Depth::kQuick,
              .mapping = cyclic_mapping(16),
              .pes = kReferenceSide},
-            {.image = "cones e5m10", .min_depth = Depth::kQuick, .refined = true},
-            {.image = "mirrors spa22", .refined = true},
-            {.image = "polygons spa22", .torus = true, .refined = true},
+            {.image = "cones e5m10", .min_depth = Depth::kQuick, .fallback_code = true},
+            {.image = "mirrors spa22", .fallback_code = true},
+            {.image = "polygons spa22", .torus = true, .fallback_code = true},
             {.image = "mirrors spa22 axes", .mapping = cyclic_mapping(3), .pes = 100},
             {.image = "planes fp32 corners", .accel = AccelKind::kGrid},
             {.image = "spheres e8m12t"},

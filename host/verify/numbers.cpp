@@ -60,6 +60,7 @@ Program build_number_program(Session& session, const NumberBuild& build) {
         .lanes = build.lanes, .format = build.format, .exact_divide = build.trusted, .exact_fma = build.trusted};
     KernelSources sources = build.sources;
     if (!build.optimised) sources.more_options.emplace_back("-cl-opt-disable");
+    if (!build.trusted) sources.more_options.emplace_back(kNoBuiltins);
     return Kernels(session, options, sources).program("checks/numbers.cl");
 }
 
@@ -98,7 +99,7 @@ void NumberRows::pad() {
 }
 
 std::string NumberBuild::name() const {
-    return fmt::format("{}, {}{}{}", format_name(format), counted(lanes, "lane"), trusted ? "" : ", division refined",
+    return fmt::format("{}, {}{}{}", format_name(format), counted(lanes, "lane"), trusted ? "" : ", fallback code",
                        optimised ? "" : ", -cl-opt-disable");
 }
 

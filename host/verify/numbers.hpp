@@ -83,7 +83,7 @@ struct NumberBuild {
     bool optimised = true;  // false: -cl-opt-disable
     KernelSources sources{};
 
-    /// Returns text such as "e6m15, 16 lanes, division refined".
+    /// Returns text such as "e6m15, 16 lanes, fallback code".
     std::string name() const;
 };
 

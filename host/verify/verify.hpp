@@ -99,6 +99,9 @@ void verify_at_random(const cl::Device& device, const VerifySettings& settings, 
 /// Returns "LAYER NAME" of every check that verify() would run, in the same order.
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings);
 
+/// Build option with which kernels use no builtins of clang, but their fallback code.
+inline constexpr const char* kNoBuiltins = "-DRAYA_BUILTINS=0";
+
 /// Device, settings and results of a run of verify(). The functions below, one per layer, call check() for each check.
 class Verification {
   public:
