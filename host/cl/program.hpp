@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host/base/clock.hpp"
+#include "host/cl/capture.hpp"
 #include "host/cl/error_names.hpp"
 #include "host/cl/memory.hpp"
 #include "host/cl/opencl.hpp"
@@ -109,6 +110,7 @@ class Kernel {
     }
 
     void set_bytes(cl_uint index, std::size_t bytes, const void* value) {
+        if (Capture::active() != nullptr) Capture::active()->set_argument(kernel_, index, bytes, value);
         guarded(fmt::format("setting argument {} of kernel '{}' ({} bytes)", index, name_, bytes),
                 [&] { return kernel_.setArg(index, bytes, value); });
     }

@@ -1,7 +1,7 @@
 // raya verify: checks a device, its driver and its compiler.
 #include "host/verify/verify.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <charconv>
 #include <cstdio>
@@ -20,7 +20,9 @@
 #include "host/cli/scene_input.hpp"
 #include "host/error.hpp"
 #include "host/model/unit_text.hpp"
+#include "host/verify/bisect.hpp"
 #include "host/verify/ci_reports.hpp"
+#include "host/verify/reproduce.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/version.hpp"
 
@@ -31,7 +33,7 @@ namespace {
 constexpr double kDefaultTimeout_s = 600;
 
 struct VerifyCommand {
-    std::string device, report, page, junit, tap, expect, kernel_dir, only, skip, shard;
+    std::string device, report, page, junit, tap, expect, reproduce, bisect, kernel_dir, only, skip, shard;
     std::uint32_t lanes = 0, repeat = 1;
     double timeout_s = kDefaultTimeout_s, soak_s = 0;
     std::uint64_t seed = 1;
@@ -68,7 +70,7 @@ void set_shard(VerifySettings& settings, const std::string& text) {
 VerifySettings settings_of(const VerifyCommand& command) {
     VerifySettings settings{.depth = command.depth(),
                             .sources = {command.kernel_dir},
-                            .only = command.only,
+                            .only = command.bisect.empty() ? command.only : command.bisect,
                             .skip = command.skip,
                             .repeat = command.repeat,
                             .timeout_s = command.timeout_s,
@@ -178,11 +180,46 @@ void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
     fmt::print("{}: {}\n", counted(device_checks.size(), "device"), closing_text(checks, seconds));
 }
 
+// Finds and prints the changes with which the failed check passes.
+void bisect_failure(const VerifyCommand& command, std::size_t index, const DeviceChecks& device,
+                    const VerifySettings& settings, const std::string& name) {
+    const Bisection found =
+        bisect(command.device, index, device, settings, name, [](const std::vector<std::string>& changes, bool passed) {
+            if (!is_quiet()) fmt::print("{}  {}\n", passed ? "PASS" : "FAIL", fmt::join(changes, ", "));
+            std::fflush(stdout);
+        });
+    if (found.smallest.empty())
+        fmt::print("{}: fails also with all of: {}\n", name, fmt::join(found.tried, ", "));
+    else
+        fmt::print("{}: passes with {}\n", name, fmt::join(found.smallest, ", "));
+}
+
+// Bisects the first failure and writes its case, if the options say so.
+void analyse_first_failure(const VerifyCommand& command, const std::vector<DeviceChecks>& device_checks,
+                           const VerifySettings& settings) {
+    for (std::size_t index = 0; index < device_checks.size(); ++index)
+        for (const Check& check : device_checks[index].checks) {
+            if (check.verdict.outcome != Outcome::kFail) continue;
+            const std::string name = check.layer + " " + check.name;
+            if (!command.bisect.empty()) bisect_failure(command, index, device_checks[index], settings, name);
+            if (!command.reproduce.empty())
+                fmt::print("{}",
+                           reproduce(command.device, index, device_checks[index], settings, check, command.reproduce));
+            if (command.bisect.empty() && command.reproduce.empty() && !is_quiet())
+                fmt::print(
+                    "--reproduce DIR writes the first failure as a C program, for a bug report; --bisect \"{}\" "
+                    "finds settings with which it passes\n",
+                    name);
+            return;
+        }
+}
+
 void run_verify(const VerifyCommand& command) {
     if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
     if (!command.page.empty()) check_page_name("--page", command.page);
     const VerifySettings settings = settings_of(command);
     if (command.list) return list_checks(command, settings);
+    if (!command.reproduce.empty()) check_case_folder(command.reproduce);
     Warnings warnings;
     warn_of_build_options(warnings);
     std::vector<DeviceChecks> device_checks;
@@ -195,6 +232,7 @@ void run_verify(const VerifyCommand& command) {
     write_report_and_page({command.report, command.page}, report_of(device_checks, command.depth()));
     if (!command.junit.empty()) write_whole_file(command.junit, junit_report(device_checks));
     if (!command.tap.empty()) write_whole_file(command.tap, tap_report(device_checks));
+    if (!all_passed) analyse_first_failure(command, device_checks, settings);
     if (!all_passed) throw CheckFailure{};
 }
 
@@ -261,6 +299,17 @@ void add_verify_command(CLI::App& program) {
              "Write all checks and their failures as JSON; -: stdout; the lines about the checks then go to stderr");
     add_file(*command, FileUse::kWritten, "--junit", options->junit, "FILE.xml", "Write the results as JUnit XML");
     add_file(*command, FileUse::kWritten, "--tap", options->tap, "FILE", "Write the results as TAP, version 14");
+    add_value(
+        *command, "--reproduce", options->reproduce,
+        "If a check fails: write the kernel launch that computes wrong words as a self-contained case, a C program "
+        "with kernel, inputs and expected words, into this new folder")
+        ->type_name("DIR");
+    CLI::Option* const bisected =
+        add_value(*command, "--bisect", options->bisect,
+                  "Run the checks whose names contain this text, as --only; then find the smallest change of build "
+                  "options, macros, lanes, groups or PoCL's variables with which the first that fails passes")
+            ->type_name("TEXT");
+    bisected->excludes("--only");
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
              "Write all checks, and the first failure in full, as an HTML page; raya page makes the same page from a "
              "report");

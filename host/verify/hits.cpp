@@ -130,6 +130,13 @@ Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, st
         first_wrong = i;
     }
     if (wrong_rays == 0) return passed(pass_text);
+    KnownWords objects(expected.objects.size()), distances(expected.distances.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        objects.set(i, expected.objects[i]);
+        distances.set(i, expected.distances[i]);
+    }
+    report_expected("objects", objects);
+    report_expected("distances", distances);
     return failed(fmt::format("{} of {} rays wrong", wrong_rays, count),
                   {.where = fmt::format("{}\n{}", describe(first_wrong), rays.text(first_wrong)),
                    .expected = expected.text(first_wrong),

@@ -134,6 +134,7 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
         return answers.operation >= kAnsweredOperations;
     });
     const NumberResults results = run(rows, with_functions);
+    KnownWords known(results.size() * rows.count());
     std::size_t wrong = 0, compared = 0, skipped = 0;
     std::string operations;
     Fault fault;
@@ -144,7 +145,9 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
             const std::uint32_t got = results[answers.operation].at(row), correct = answers.results[i];
             const bool skip = !has_denormals_ && has_denormal(answers.operation, operands_of(rows, row), correct);
             (skip ? skipped : compared) += 1;
-            if (skip || agrees(got, correct)) continue;
+            if (skip) continue;
+            known.set(answers.operation * rows.count() + row, agrees(got, correct) ? got : correct);
+            if (agrees(got, correct)) continue;
             if (wrong++ == 0) fault = fault_of(format_, answers.operation, operands_of(rows, row), correct, got);
             ++wrong_of_operation;
         }
@@ -153,7 +156,10 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
                 fmt::format("{}{} {} of {}", operations.empty() ? "" : ", ", kNumberOperations[answers.operation].name,
                             wrong_of_operation, answers.results.size());
     }
-    if (wrong) return failed("wrong: " + operations, fault);
+    if (wrong) {
+        report_expected("results", known);
+        return failed("wrong: " + operations, fault);
+    }
     const std::string denormals = skipped ? fmt::format(", {} with denormal numbers skipped", skipped) : "";
     return passed(fmt::format("{} answers{}", compared, denormals));
 }

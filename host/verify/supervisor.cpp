@@ -11,20 +11,18 @@
 #include "host/base/child_process.hpp"
 #include "host/base/clock.hpp"
 #include "host/base/json.hpp"
+#include "host/cl/capture.hpp"
 #include "host/cl/driver.hpp"
 #include "host/error.hpp"
 
 namespace raya {
-namespace {
-
-// --- Settings as JSON, and functions of the child process
-
 Json settings_json(const VerifySettings& s, const std::string& selector, std::size_t index) {
     return {{"device", selector},
             {"index", index},
             {"depth", depth_name(s.depth)},
             {"kernel_dir", s.sources.folder.string()},
             {"only", s.only},
+            {"is_whole_name", s.is_whole_name ? 1 : 0},
             {"skip", s.skip},
             {"shard", s.shard},
             {"shards", s.shards},
@@ -32,8 +30,13 @@ Json settings_json(const VerifySettings& s, const std::string& selector, std::si
             {"soak_s", s.soak_s},
             {"seed", s.seed},
             {"lanes", s.lanes},
+            {"group_size", s.group_size},
             {"done", s.done}};
 }
+
+namespace {
+
+// --- Functions of the child process
 
 VerifySettings settings_of(const Json& json) {
     const std::string& depth = json.at("depth").text();
@@ -50,7 +53,9 @@ VerifySettings settings_of(const Json& json) {
             .repeat = number("repeat"),
             .soak_s = json.at("soak_s").number(),
             .seed = json.at("seed").integer(),
+            .is_whole_name = json.at("is_whole_name").integer() != 0,
             .lanes = number("lanes"),
+            .group_size = number("group_size"),
             .done = json.at("done").integer()};
 }
 
@@ -281,6 +286,10 @@ void run_checks(int pipe, const Json& request) {
                      {"platform", info.platform},
                      {"version", info.version},
                      {"driver", info.driver}});
+    std::optional<Capture> capture;
+    if (const Json* c = request.find("capture"))
+        capture.emplace(c->at("step").integer(), c->at("folder").text(),
+                        [&](const Json& line) { send_line(pipe, line); });
     const CheckSink sink{.started =
                              [&](const std::string& layer, const std::string& name) {
                                  send_line(pipe, {{"started", {{"layer", layer}, {"name", name}}}});

@@ -49,6 +49,10 @@ struct SupervisorSink {
 DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink, std::size_t& devices);
 
+/// Returns the request of the child process's task: settings and device, see supervise(). With a member "capture",
+/// {"step": N, "folder": TEXT}, the child also captures step N and writes the lines of Capture (host/cl/capture.hpp).
+Json settings_json(const VerifySettings& settings, const std::string& selector, std::size_t index);
+
 /// Name and function of the child process's task (host/base/child_process.hpp). run_checks() writes the lines to the
 /// file descriptor `pipe`, except the line "error": run_checks() throws the exception, and its caller writes the line.
 inline constexpr const char* kVerifyTask = "verify";

@@ -206,7 +206,9 @@ void Verification::check(const std::string& layer, const std::string& name,
 }
 
 KernelChoice Verification::kernels(std::uint32_t lanes, std::uint32_t group_size) const {
-    return {.lanes = lanes ? lanes : settings_.lanes, .group_size = group_size, .sources = settings_.sources};
+    return {.lanes = lanes ? lanes : settings_.lanes,
+            .group_size = settings_.group_size ? settings_.group_size : group_size,
+            .sources = settings_.sources};
 }
 
 std::vector<std::uint32_t> Verification::lanes() const {

@@ -76,9 +76,10 @@ struct VerifySettings {
     std::uint64_t seed = 1;  // of verify_at_random()
     bool is_whole_name = false;                        // `only` is a whole "LAYER NAME"
     std::vector<ExpectedFailure> expected_failures{};  // supervise() changes the outcome of checks that match
-    std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
-                              // Depth::kFull, all four numbers
-    std::size_t done = 0;     // number of checks, from the first on, that are already done; verify() skips them
+    std::uint32_t lanes = 0;       // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
+                                   // Depth::kFull, all four numbers
+    std::uint32_t group_size = 0;  // of the kernels of images, in work-items; 0: as each check defines
+    std::size_t done = 0;          // number of checks, from the first on, that are already done; verify() skips them
 };
 
 /// Callbacks: `started` is called with the layer and name of every check before it runs, `finished` after it has run.

@@ -42,7 +42,7 @@ expect 2 "unknown option '--nonsense'"
 run_setup --studies --nonsense --gpu
 expect 2 "unknown option '--nonsense'"
 run_setup --gpu --print --package
-expect 0 "$line g++ cmake" "oclgrind clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools dpkg-dev lintian man-db zsh fish"
+expect 0 "$line g++ cmake" "oclgrind clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools cvise dpkg-dev lintian man-db zsh fish"
 [[ $out != *debootstrap* ]] || { echo "FAILED: a group that was not named"; exit 1; }
 
 # Nothing is missing.
