@@ -76,8 +76,7 @@ class Bisector {
     }
 
     bool passes(const Changes& changes) {
-        const TemporaryFolder cache(std::filesystem::temp_directory_path() /
-                                    ("raya-bisect-" + std::to_string(::getpid())));
+        const CaseFolder cache(std::filesystem::temp_directory_path() / ("raya-bisect-" + std::to_string(::getpid())));
         Variant variant = failing_;
         std::string name = name_, options;
         for (const Change& change : changes) {

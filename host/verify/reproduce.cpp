@@ -70,7 +70,7 @@ std::pair<std::size_t, std::string> capture_wrong_step(const Variant& failing, c
         observe(failing, seen.expected, folder);
         return {seen.expected, "the check's known results"};
     }
-    const TemporaryFolder scratch(folder.string() + ".reference");
+    const CaseFolder scratch(folder.string() + ".reference");
     bool any_passes = false;
     for (const Variant& reference : references(failing)) {
         const Observation first = observe(reference), second = observe(reference);
@@ -104,7 +104,7 @@ std::string reproduce(const std::string& selector, std::size_t index, const Devi
                       const VerifySettings& settings, const Check& check, const fs::path& folder) {
     check_case_folder(folder);
     const Variant failing{"", selector, index, settings_of_one(settings, check.layer + " " + check.name)};
-    const TemporaryFolder scratch(fs::path(folder).lexically_normal().string() + ".new");
+    const CaseFolder scratch(fs::path(folder).lexically_normal().string() + ".new");
     const Observation seen = observe(failing);
     if (seen.passed) no_case(check, "it passes when it runs alone");
     if (seen.steps.empty()) no_case(check, "it fails before the first build of a kernel");

@@ -73,12 +73,12 @@ Observation observe(const Variant& v, std::size_t step, const std::filesystem::p
     return seen;
 }
 
-TemporaryFolder::TemporaryFolder(std::filesystem::path path) : path_(std::move(path)) {
+CaseFolder::CaseFolder(std::filesystem::path path) : path_(std::move(path)) {
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
 }
 
-TemporaryFolder::~TemporaryFolder() {
+CaseFolder::~CaseFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
 }

@@ -46,12 +46,12 @@ Observation observe(const Variant& variant, std::size_t step = 0, const std::fil
 std::string with_build_option(const std::string& option);
 
 /// A new, empty folder, removed by the destructor.
-class TemporaryFolder {
+class CaseFolder {
   public:
-    explicit TemporaryFolder(std::filesystem::path path);
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    explicit CaseFolder(std::filesystem::path path);
+    ~CaseFolder();
+    CaseFolder(const CaseFolder&) = delete;
+    CaseFolder& operator=(const CaseFolder&) = delete;
     const std::filesystem::path& path() const { return path_; }
 
   private:

@@ -63,7 +63,7 @@ expect 1 "neither root nor sudo" "$line clang-15 llvm-15 libclc-15 intel-opencl-
 run_setup --package
 expect 1 "neither root nor sudo" "$line dpkg-dev lintian man-db zsh fish"
 run_setup --bare-root --gpu --studies --bare-root
-expect 1 "neither root nor sudo" "$line debootstrap clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools libsimgrid-dev"
+expect 1 "neither root nor sudo" "$line debootstrap clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools cvise libsimgrid-dev"
 
 # Two packages are missing, one of them removed but not purged; neither root nor sudo.
 mock_program dpkg-query "printf '%s installed\n' ${all[*]} | { while read -r p s; do [[ \$p == cmake || \$p == catch2 ]] || echo \$p \$s; done; }
