@@ -2,7 +2,7 @@
 """Tests tools/hot_lines: a line that is made slow becomes the hottest, and errors name what is missing.
   test_hot_lines.py BUILD     the build folder: raya and patch_kernels
 Exit code 77: no perf, no LLVM symbolizer, or perf is not permitted (tools/setup --profile); the checks that need none have passed."""
-import os, pathlib, re, shutil, subprocess, sys, tempfile
+import os, pathlib, platform, re, shutil, subprocess, sys, tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -67,6 +67,8 @@ slow = hot_lines(*at_build, *SCENE, "--kernel-dir", kernels, "--page", page, tex
 hottest = slow.split("text\n")[1].splitlines()[0].split(maxsplit=4)
 expect(float(hottest[0]) > 80 and hottest[2:] == [place, "put_rays", line_text], hottest, slow)
 expect(share_of(slow, "put_rays") > 80, slow)  # the function
+if platform.machine() == "x86_64":
+    expect(float(re.search(r"^vector scalar ([\d.]+) %", slow, re.M)[1]) > 80, slow)  # the loop's instructions
 fast = hot_lines(*at_build, *SCENE)
 expect(share_of(fast, "p->direction = r->direction;") < 20, fast)
 
