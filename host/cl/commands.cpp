@@ -156,15 +156,18 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
     }
     const bool records_launch = (logs_builds_ || builds_ != nullptr) && launched_.emplace(kernel(), group_size).second;
     const std::string name = records_launch ? fmt::format("{}, groups of {}", record.target_name, group_size) : "";
-    if (records_launch) finish();
+    if (records_launch || host_counters_ != nullptr) finish();
+    const HostCounts counts_before = host_counters_ != nullptr ? host_counters_->read() : HostCounts{};
     const Clock::time_point start = Clock::now();
     Capture* const capture = Capture::active();
     if (capture != nullptr) capture->begin_launch(*queue_, kernel, record.target_name, groups, group_size);
     submit(operation, std::move(record), [&](cl::Event* event) {
         queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
                                      nullptr, event);
+        if (host_counters_ != nullptr) queue_->finish();
     });
     if (capture != nullptr) guarded(operation, [&] { capture->end_launch(*queue_); });
+    if (host_counters_ != nullptr) pending_.back().record.host_counts = host_counters_->read() - counts_before;
     if (!records_launch) return;
     finish();
     const cl::Program program = kernel.getInfo<CL_KERNEL_PROGRAM>();

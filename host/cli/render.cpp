@@ -61,6 +61,8 @@ std::vector<ShortHelp> render_short_help() {
 
 void check_render(const CLI::App& parser, const RenderCommand& command) {
     check_trace(parser, command.trace);
+    if (command.counters && !command.needs_roofline())
+        throw UserError("--counters: the counts are shown with the roofline: add --profile or --page FILE.html");
     check_checkpoint_options(parser, command.checkpoint);
     if (command.frames.given()) check_frames(command);
     check_output_files(parser, command);
@@ -112,7 +114,13 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
         ->required();
     add_render_command_options(*command, *options);
     command->get_option("--output")->required();
-    const OptionGroup kernels(*command, kKernels);
+    OptionGroup last_options(*command, kDiagnostics);
+    command->add_flag(
+        "--counters", options->counters,
+        "With --profile or --page, and a CPU as the device: count processor time, page faults and, where "
+        "Linux offers them, cycles, instructions, cache misses and branch misses of each kernel. The host "
+        "waits for each launch, which makes renders with many launches slower");
+    last_options.next(kKernels);
     command->add_flag("--cache-kernels", options->cache_kernels,
                       "Store the binaries of this render's kernels in the program's folder: later renders with the "
                       "same kernels and options, on this device and driver, do not compile");

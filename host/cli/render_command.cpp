@@ -77,6 +77,8 @@ void add_profile(RenderReport& report, RenderRecorder& recorder, const cl::Devic
         const DevicePeak peak =
             recorder.spans().during("measure peak", [&] { return device_peak(device, format, report.device.lanes); });
         report.measured.roofline = roofline(peak, works, report.measured.commands);
+        if (const HostCounters* counters = recorder.host_counters())
+            report.measured.roofline->host_counts_unavailable = counters->unavailable();
         constexpr double kMaxScatter = 0.15;  // limit for (best - worst) / best of the samples of the peak
         if (peak.scatter > kMaxScatter)
             warnings.add(

@@ -32,7 +32,7 @@ struct RenderCommand {
     FrameOptions frames;
     CheckpointOptions checkpoint;
     TraceOptions trace;
-    bool profile = false, cache_kernels = false;
+    bool profile = false, counters = false, cache_kernels = false;
     bool summary = true;          // print the report's summary
     bool prints_profile = true;   // print the table of --profile
     ProgressCallback progress{};  // empty: progress bar on a terminal

@@ -41,19 +41,22 @@ struct RooflineRow {
     Bound bound = Bound::kCompute;            // the lower roof at this intensity
     double roof_fraction = 0;                 // achieved rate divided by the roof; 1: as fast as the device's peak
     std::optional<double> format_fraction{};  // time at the format's peak rates divided by `seconds`; empty: unknown
+    std::optional<HostCounts> host_counts{};  // events of the host's processor in all launches; empty: not requested
 };
 
 struct Roofline {
     DevicePeak peak{};
     std::vector<RooflineRow> rows{};
-    std::string unavailable{};  // reason why there is no roofline; empty: there is one
+    std::string unavailable{};              // reason why there is no roofline; empty: there is one
+    std::string host_counts_unavailable{};  // reason why RooflineRow::host_counts lacks events; empty: it lacks none
 };
 
 /// Returns a row for each kernel of `works` that `commands` contains with a time > 0; no rows if the peak is unknown.
 Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
                   const std::vector<LabelSummary>& commands);
 
-/// Returns the table, the peak, the meaning of the columns, and for each kernel its bound and fraction of the roof.
+/// Returns the table, the peak, the meaning of the columns, and for each kernel its bound and fraction of the roof;
+/// then the table of host_counts, if the rows have them.
 std::string roofline_table(const Roofline& roofline);
 
 Json peak_json(const DevicePeak& peak);

@@ -132,7 +132,7 @@ class Reports:
         def render(scene, *options, output="x.ppm", launcher=()):
             self.make("render", "render", scene, *options, *quick_options, "-o", output, launcher=launcher)
 
-        render(spheres, *ring, "--page", "r.html")
+        render(spheres, *ring, "--page", "r.html", "--counters")
         render(odd, *ring, "--mapping", "rows", "--light", "1,2,3", output="x.pfm")
         render(spheres, *ring, "--antialias", "filter", "--exchange", "bus", "--tone", "reinhard", "--gamma", "2", "--fold", "block")
         render(spheres, *ring, "--antialias", "supersample", "--points", "diagonals")

@@ -60,6 +60,8 @@ run_setup --browser
 expect 1 "neither root nor sudo" "$line chromium"
 run_setup --gpu
 expect 1 "neither root nor sudo" "$line clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools"
+run_setup --profile
+expect 1 "neither root nor sudo" "$line linux-perf llvm-15"
 run_setup --package
 expect 1 "neither root nor sudo" "$line dpkg-dev lintian man-db zsh fish"
 run_setup --bare-root --gpu --studies --bare-root
