@@ -180,7 +180,8 @@ class Program {
     cl::Kernel checked_kernel(const std::string& kernel_name, std::size_t argument_count) const;
 
     /// Loads the program from its binary file. Returns false if there is no file or the driver rejects it.
-    bool load_binary(const cl::Context& context, const cl::Device& device, const std::string& source);
+    bool load_binary(const cl::Context& context, const cl::Device& device, const std::string& source,
+                     const std::string& driver_options);
 
     cl::Program program_;
     std::string name_, options_, log_;

@@ -235,7 +235,8 @@ std::vector<ShortHelp> bench_short_help() {
             {"--denormals", more, "Also time every row with denormals flushed to 0"},
             {"--build", more, "Measure only compilation"},
             {"--limit", more, "Maximum seconds to compile a kernel, for --build"},
-            {"--kernel-dir", more, "Read the kernels from this folder"}};
+            {"--kernel-dir", more, "Read the kernels from this folder"},
+            {"--il", more, "Build the kernels from SPIR-V"}};
 }
 
 }  // namespace

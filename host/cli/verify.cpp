@@ -292,8 +292,7 @@ void add_verify_command(CLI::App& program) {
     command->get_option("--device")
         ->description(command->get_option("--device")->get_description() + "; all: every usable device in turn");
     group.next(kKernels);
-    add_file(*command, FileUse::kKernelFolder, "--kernel-dir", options->kernel_dir, "DIR",
-             "Read the kernels from this folder, for kernel development");
+    add_kernel_source_options(*command, options->kernel_dir);
     group.next(kDiagnostics);
     add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
              "Write all checks and their failures as JSON; -: stdout; the lines about the checks then go to stderr");

@@ -70,11 +70,10 @@ SelectedDevices selected_devices(const std::string& selector) {
     SelectedDevices selected;
     for (const cl::Device& device : all_devices()) {
         const DeviceInfo info = device_info(device);
-        if (info.available && info.compiler_available)
+        if (const std::string reason = unusable_reason(info); reason.empty())
             selected.devices.push_back(device);
         else
-            selected.left_out.push_back(
-                fmt::format("{} ({}): skipped: not available, or without a compiler", info.name, info.platform));
+            selected.left_out.push_back(fmt::format("{} ({}): skipped: {}", info.name, info.platform, reason));
     }
     if (selected.devices.empty()) choose_device("");  // throws DeviceError with a remedy
     return selected;

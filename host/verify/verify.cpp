@@ -9,11 +9,14 @@
 #include "host/base/clock.hpp"
 #include "host/base/json.hpp"
 #include "host/cl/program.hpp"
+#include "host/cl/spirv.hpp"
 #include "host/error.hpp"
 #include "host/scene/split_mix.hpp"
 
 namespace raya {
 namespace {
+
+constexpr const char* kWithoutIl = "run raya verify without --il; if it passes, the SPIR-V is the cause";
 
 bool contains_any(const std::string& message, const std::vector<const char*>& texts) {
     return std::any_of(texts.begin(), texts.end(),
@@ -53,7 +56,9 @@ Verdict verdict_of(const std::function<Verdict()>& body) {
         return failed(message.substr(0, end), fault);
     };
     try {
-        return body();
+        Verdict verdict = body();
+        if (uses_il()) verdict.fault.remedies.emplace(verdict.fault.remedies.begin(), kWithoutIl);
+        return verdict;
     } catch (const DeviceError& error) {
         return failure(error.what(), true);
     } catch (const std::exception& error) {
@@ -146,6 +151,7 @@ Json to_json(const Check& c) {
 
 std::vector<std::string> compiler_remedies() {
     std::vector<std::string> all;
+    if (uses_il()) all.emplace_back(kWithoutIl);
     if (user_build_options().find("-cl-opt-disable") == std::string::npos)
         all.emplace_back("RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify: compiles without optimisation");
     all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
