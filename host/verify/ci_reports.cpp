@@ -117,8 +117,9 @@ std::string tap_report(const std::vector<DeviceChecks>& devices) {
     for (const DeviceChecks& device : devices)
         for (const Check& check : device.checks) {
             const Verdict& v = check.verdict;
-            lines += fmt::format("{} {} - {} {}{}", has_failed(v.outcome) ? "not ok" : "ok", ++number, tap_text(check.layer),
-                                 tap_text(check.name), devices.size() > 1 ? " on " + tap_text(device.name) : "");
+            lines +=
+                fmt::format("{} {} - {} {}{}", has_failed(v.outcome) ? "not ok" : "ok", ++number, tap_text(check.layer),
+                            tap_text(check.name), devices.size() > 1 ? " on " + tap_text(device.name) : "");
             if (v.outcome == Outcome::kSkip) lines += " # SKIP " + tap_text(v.result);
             if (v.outcome == Outcome::kExpectedFail || v.outcome == Outcome::kUnexpectedPass)
                 lines += " # TODO " + tap_text(v.result);
