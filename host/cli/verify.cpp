@@ -192,6 +192,8 @@ void run_verify(const VerifyCommand& command) {
         all_passed = all_passed && device_checks.back().all_passed();
     }
     if (device_checks.size() > 1) print_device_totals(device_checks);
+    for (const std::string& text : unmatched_patterns(settings.expected_failures, device_checks))
+        warn(text + "; raya verify --full --list prints the names of all checks");
     write_report_and_page({command.report, command.page}, report_of(device_checks, command.depth()));
     if (!command.junit.empty()) write_whole_file(command.junit, junit_report(device_checks));
     if (!command.tap.empty()) write_whole_file(command.tap, tap_report(device_checks));

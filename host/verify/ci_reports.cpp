@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "host/base/whole_file.hpp"
@@ -90,9 +91,25 @@ std::vector<ExpectedFailure> read_expected_failures(const std::filesystem::path&
         if (fields.size() < 2 || fields.size() > 3 || fields[0].empty() || fields[1].empty())
             throw UserError(
                 fmt::format("{}:{}: expected PATTERN | REASON or PATTERN | REASON | LINK", path.string(), number));
-        failures.push_back({fields[0], fields[1], fields.size() > 2 ? fields[2] : ""});
+        failures.push_back(
+            {fmt::format("{}:{}", path.string(), number), fields[0], fields[1], fields.size() > 2 ? fields[2] : ""});
     }
     return failures;
+}
+
+std::vector<std::string> unmatched_patterns(const std::vector<ExpectedFailure>& failures,
+                                            const std::vector<DeviceChecks>& devices) {
+    std::vector<std::string> warnings;
+    for (const ExpectedFailure& e : failures) {
+        const auto is_matched = [&](const DeviceChecks& device) {
+            return std::ranges::any_of(device.names, [&](const auto& name) { return name_matches(name, e.pattern); }) ||
+                   std::ranges::any_of(device.checks,
+                                       [&](const Check& c) { return name_matches(c.layer + " " + c.name, e.pattern); });
+        };
+        if (std::ranges::none_of(devices, is_matched))
+            warnings.push_back(fmt::format("{}: \"{}\" matches no check", e.place, e.pattern));
+    }
+    return warnings;
 }
 
 std::string junit_report(const std::vector<DeviceChecks>& devices) {

@@ -12,6 +12,10 @@ namespace raya {
 /// link, separated by " | "; # starts a comment line. Throws UserError with file and line.
 std::vector<ExpectedFailure> read_expected_failures(const std::filesystem::path& path);
 
+/// Returns a warning for each pattern that matches no check of any device, whether selected or not.
+std::vector<std::string> unmatched_patterns(const std::vector<ExpectedFailure>& failures,
+                                            const std::vector<DeviceChecks>& devices);
+
 /// Returns the results as JUnit XML: one test suite for each device, one test case for each check. Expected failures
 /// are skipped test cases, unexpected passes are failures.
 std::string junit_report(const std::vector<DeviceChecks>& devices);

@@ -54,6 +54,7 @@ TEST_CASE("verify --expect: listed failures do not count, and listed checks that
     const RunOutcome unexpected = run_raya(verify);
     INFO(unexpected.describe());
     CHECK(unexpected.code == 4);
+    CHECK_THAT(unexpected.err, !Catch::Contains("matches no check"));
     CHECK_THAT(unexpected.out, Catch::Contains("XPASS machine") && Catch::Contains("XFAIL machine   mapping: blocks") &&
                                    Catch::Contains("0 failed, 0 skipped, 2 failed as expected"));
     CHECK_THAT(file_contents(junit),
@@ -70,6 +71,15 @@ TEST_CASE("verify --expect: listed failures do not count, and listed checks that
                                          Catch::Contains("(expected: wrong mapping)"));
     CHECK_THAT(file_contents(tap),
                Catch::StartsWith("TAP version 14\n1..") && Catch::Contains("not ok ") && Catch::Contains(" # TODO "));
+    // A pattern of a check that is not selected, and two without any check.
+    write_whole_file(list,
+                     "mapping: blocks | a\nmapping: cyclic*block | b\nimage glass | c\nno such | d\n\nimge | e\n");
+    const RunOutcome unmatched = run_raya(verify);
+    INFO(unmatched.describe());
+    CHECK(unmatched.code == 0);
+    CHECK_THAT(unmatched.err, Catch::Contains(list + ":4: \"no such\" matches no check") &&
+                                  Catch::Contains(list + ":6: \"imge\" matches no check") &&
+                                  !Catch::Contains("image glass"));
     write_whole_file(list, "mapping: blocks\n");
     const ScratchFolder outputs;
     check_refused(outputs, verify, 2, {list + ":1: expected PATTERN | REASON or PATTERN | REASON | LINK"});
