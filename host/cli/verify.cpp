@@ -76,7 +76,7 @@ VerifySettings settings_of(const VerifyCommand& command) {
                             .seed = command.seed,
                             .lanes = command.lanes};
     set_shard(settings, command.shard);
-    if (!command.expect.empty()) settings.expected_failures = read_expected_failures(command.expect);
+    settings.expected_failures = read_expected_failures(command.expect);
     return settings;
 }
 
@@ -195,7 +195,7 @@ void run_verify(const VerifyCommand& command) {
     for (const std::string& text : unmatched_patterns(settings.expected_failures, device_checks))
         warn(text + "; raya verify --full --list prints the names of all checks");
     write_report_and_page({command.report, command.page}, report_of(device_checks, command.depth()));
-    if (!command.junit.empty()) write_whole_file(command.junit, junit_report(device_checks));
+    if (!command.junit.empty()) write_whole_file(command.junit, junit_report("raya verify", device_checks));
     if (!command.tap.empty()) write_whole_file(command.tap, tap_report(device_checks));
     if (!all_passed) throw CheckFailure{};
 }
