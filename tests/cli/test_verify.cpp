@@ -6,6 +6,7 @@
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
+#include "tests/paths.h"
 #include "tests/verify/faults.hpp"
 
 namespace raya {
@@ -108,6 +109,21 @@ TEST_CASE("verify --shard, --skip, --list: every check is in exactly one shard",
     for (const char* shard : {"0/2", "3/2", "1", "1/2x", "/2"})
         check_refused(scratch, {"verify", "--shard", shard}, 2, {"--shard", "must be I/N with I 1..N"});
     check_refused(scratch, {"verify", "--only", "number fp32", "--shard", "5/9"}, 2, {"select no check of"});
+}
+
+TEST_CASE("verify --list: names are those of tests/verify/check_names.txt", "[cli][verify]") {
+    // Lists of expected failures and CI dashboards contain the names. If you change one, write the file again and say
+    // so in CHANGELOG.md: build/raya verify --quick --lanes 4 --list > tests/verify/check_names.txt
+    const RunOutcome run = run_raya({"verify", "--quick", "--lanes", "4", "--list"});
+    INFO(run.describe());
+    CHECK(run.out == file_contents(RAYA_SOURCE_DIR "/tests/verify/check_names.txt"));
+    const ScratchFolder scratch;
+    const std::string report = scratch / "v.json";
+    REQUIRE(run_raya({"verify", "--quick", "--lanes", "4", "--only", "machine", "--report", report}).code == 0);
+    const Document checks = Document::parse(file_contents(report))["devices"][0]["checks"];
+    REQUIRE(checks.size() == 24);
+    for (const Document& check : checks)
+        CHECK_THAT(run.out, Catch::Contains("machine " + check["name"].get<std::string>() + "\n"));
 }
 
 TEST_CASE("verify --timeout: ends a check that hangs, and continues with the next", "[cli][verify]") {
