@@ -4,12 +4,14 @@
 #include <fmt/core.h>
 
 #include <charconv>
+#include <chrono>
 #include <cstdio>
 #include <map>
 #include <memory>
 
 #include "host/base/json.hpp"
 #include "host/base/log.hpp"
+#include "host/base/progress.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
@@ -27,8 +29,9 @@
 namespace raya {
 namespace {
 
-// A check that takes longer counts as hung. This time includes the builds of its kernels.
-constexpr double kDefaultTimeout_s = 600;
+// A check that takes longer counts as hung: ten build budgets. A check builds at most six programs (test_verify.cpp),
+// each within the budget; the rest is for its launches.
+constexpr double kDefaultTimeout_s = std::chrono::duration<double>(10 * kBuildBudget).count();
 
 struct VerifyCommand {
     std::string device, report, page, junit, tap, expect, kernel_dir, only, skip, shard;
@@ -238,9 +241,10 @@ void add_verify_command(CLI::App& program) {
               "Run the I-th of N parts of the selected checks, to divide them over N jobs")
         ->type_name("I/N");
     add_value(*command, "--timeout", options->timeout_s,
-              "Seconds after which a check counts as failed and its process is ended; 0: never")
+              "Seconds after which a check counts as failed and its process is ended, builds included; 0: never")
         ->check(CLI::Range(0., 1e6))
-        ->type_name("S");
+        ->type_name("S")
+        ->capture_default_str();
     add_value(*command, "--soak", options->soak_s,
               "Run random checks with random numbers of lanes for this time, such as 60s, 30m, 2h; print only failures")
         ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}))

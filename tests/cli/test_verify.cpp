@@ -134,6 +134,22 @@ TEST_CASE("verify --timeout: ends a check that hangs, and continues with the nex
     CHECK_THAT(run.out, Catch::Contains("no result after") && Catch::Contains("--timeout SECONDS"));
 }
 
+TEST_CASE("verify: no check builds more than six programs, for which the default of --timeout allows",
+          "[cli][verify]") {
+    const ScratchFolder scratch;
+    const std::string log = scratch / "log";
+    const RunOutcome run =
+        run_raya({"verify", "--only", "torus3d 2x2x2, launches of 3 units, links by a kernel", "--lanes", "4"},
+                 {.variables = {{"RAYA_KERNEL_LOG", log}}});
+    INFO(run.describe());
+    CHECK(run.code == 0);
+    std::size_t builds = 0;
+    std::istringstream lines(file_contents(log));
+    for (std::string line; std::getline(lines, line);) builds += contains(line, "\tbuild\t");
+    CHECK(builds == 6);  // the most of all checks: inject, trace_voxel, route, accept, exchange, compose
+    CHECK_THAT(run_raya({"verify", "--help"}).out, Catch::Contains("--timeout S") && Catch::Contains("600"));
+}
+
 TEST_CASE("verify --soak: finds a bit that flips once in many copies, with its rate, and repeats by the seed",
           "[cli][verify]") {
     const ScratchFolder scratch;

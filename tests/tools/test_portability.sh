@@ -21,6 +21,8 @@ case $1 in
         status=PASS
         [[ ${POCL_WORK_GROUP_METHOD-} == loops ]] && status=FAIL
         [[ -e $0.slow ]] && sleep 20
+        while [[ $1 != --timeout ]]; do shift; done
+        [[ ! -e $0.timeouts ]] || echo "$2" >>"$0.timeouts"
         while [[ $1 != --only ]]; do shift; done
         layer=${2% }
         [[ $layer == image ]] && check='"name": "groups", "status": "SKIP", "result": "one work-item only"'
@@ -194,6 +196,12 @@ rm "$build/raya.budget"
 : >"$build/runs"
 matrix --raya "$build/flaky" --only "PoCL loopvec" --checks build --repeat 2
 ((code == 0 && $(wc -l <"$build/runs") == 2)) || fail "exit code $code of two right runs"
+
+# A check of verify may take ten build budgets of the implementation.
+: >"$build/raya.timeouts"
+matrix --only "PoCL loopvec" --checks number
+((code == 0)) && [[ $(<"$build/raya.timeouts") == 600 ]] || fail "verify has --timeout $(<"$build/raya.timeouts")"
+rm "$build/raya.timeouts"
 
 # Tests matrices without a right cell, where every check is skipped or too slow; then a check that passes and then crashes.
 matrix --only "PoCL loopvec" --checks image,machine
