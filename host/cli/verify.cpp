@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <chrono>
 #include <cstdio>
 #include <map>
 #include <memory>
 
 #include "host/base/json.hpp"
 #include "host/base/log.hpp"
+#include "host/base/progress.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
@@ -29,8 +31,9 @@
 namespace raya {
 namespace {
 
-// A check that takes longer counts as hung. This time includes the builds of its kernels.
-constexpr double kDefaultTimeout_s = 600;
+// A check that takes longer counts as hung: ten build budgets. A check builds at most six programs (test_verify.cpp),
+// each within the budget; the rest is for its launches.
+constexpr double kDefaultTimeout_s = std::chrono::duration<double>(10 * kBuildBudget).count();
 
 struct VerifyCommand {
     std::string device, report, page, junit, tap, expect, reproduce, bisect, kernel_dir, only, skip, shard;
@@ -78,7 +81,7 @@ VerifySettings settings_of(const VerifyCommand& command) {
                             .seed = command.seed,
                             .lanes = command.lanes};
     set_shard(settings, command.shard);
-    if (!command.expect.empty()) settings.expected_failures = read_expected_failures(command.expect);
+    settings.expected_failures = read_expected_failures(command.expect);
     return settings;
 }
 
@@ -229,8 +232,10 @@ void run_verify(const VerifyCommand& command) {
         all_passed = all_passed && device_checks.back().all_passed();
     }
     if (device_checks.size() > 1) print_device_totals(device_checks);
+    for (const std::string& text : unmatched_patterns(settings.expected_failures, device_checks))
+        warn(text + "; raya verify --full --list prints the names of all checks");
     write_report_and_page({command.report, command.page}, report_of(device_checks, command.depth()));
-    if (!command.junit.empty()) write_whole_file(command.junit, junit_report(device_checks));
+    if (!command.junit.empty()) write_whole_file(command.junit, junit_report("raya verify", device_checks));
     if (!command.tap.empty()) write_whole_file(command.tap, tap_report(device_checks));
     if (!all_passed) analyse_first_failure(command, device_checks, settings);
     if (!all_passed) throw CheckFailure{};
@@ -274,9 +279,10 @@ void add_verify_command(CLI::App& program) {
               "Run the I-th of N parts of the selected checks, to divide them over N jobs")
         ->type_name("I/N");
     add_value(*command, "--timeout", options->timeout_s,
-              "Seconds after which a check counts as failed and its process is ended; 0: never")
+              "Seconds after which a check counts as failed and its process is ended, builds included; 0: never")
         ->check(CLI::Range(0., 1e6))
-        ->type_name("S");
+        ->type_name("S")
+        ->capture_default_str();
     add_value(*command, "--soak", options->soak_s,
               "Run random checks with random numbers of lanes for this time, such as 60s, 30m, 2h; print only failures")
         ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}))

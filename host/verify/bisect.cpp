@@ -28,7 +28,7 @@ bool exists(const VerifySettings& settings, const std::string& selector, std::si
 
 class Bisector {
   public:
-    Bisector(Variant failing, const std::string& name, bool is_pocl,
+    Bisector(CheckRun failing, const std::string& name, bool is_pocl,
              std::function<void(const std::vector<std::string>&, bool)> finished)
         : failing_(std::move(failing)), name_(name), finished_(std::move(finished)) {
         for (const char* const option : {"-cl-opt-disable", kNoBuiltins, "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0"})
@@ -77,7 +77,7 @@ class Bisector {
 
     bool passes(const Changes& changes) {
         const CaseFolder cache(std::filesystem::temp_directory_path() / ("raya-bisect-" + std::to_string(::getpid())));
-        Variant variant = failing_;
+        CheckRun variant = failing_;
         std::string name = name_, options;
         for (const Change& change : changes) {
             if (change.variable == "RAYA_BUILD_OPTIONS")
@@ -98,7 +98,7 @@ class Bisector {
         return passed;
     }
 
-    Variant failing_;
+    CheckRun failing_;
     std::string name_;
     std::function<void(const std::vector<std::string>&, bool)> finished_;
     Changes changes_;

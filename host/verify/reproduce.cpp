@@ -31,8 +31,8 @@ std::size_t first_difference(const Observation& failing, const Observation& refe
     return 0;
 }
 
-std::vector<Variant> references(const Variant& failing) {
-    std::vector<Variant> all;
+std::vector<CheckRun> references(const CheckRun& failing) {
+    std::vector<CheckRun> all;
     if (!failing.settings.sources.folder.empty()) {
         all.push_back(failing);
         all.back().name = "raya's own kernels";
@@ -64,7 +64,7 @@ void take_expected(const fs::path& folder, const fs::path& reference,
 }
 
 // Captures the first step with wrong outputs in `folder`. Returns the number of the step and the name of the reference.
-std::pair<std::size_t, std::string> capture_wrong_step(const Variant& failing, const Observation& seen,
+std::pair<std::size_t, std::string> capture_wrong_step(const CheckRun& failing, const Observation& seen,
                                                        const Check& check, const fs::path& folder) {
     if (seen.expected != 0) {
         observe(failing, seen.expected, folder);
@@ -72,7 +72,7 @@ std::pair<std::size_t, std::string> capture_wrong_step(const Variant& failing, c
     }
     const CaseFolder scratch(folder.string() + ".reference");
     bool any_passes = false;
-    for (const Variant& reference : references(failing)) {
+    for (const CheckRun& reference : references(failing)) {
         const Observation first = observe(reference), second = observe(reference);
         if (!first.passed || !second.passed) continue;
         any_passes = true;
@@ -103,7 +103,7 @@ void check_case_folder(const fs::path& folder) {
 std::string reproduce(const std::string& selector, std::size_t index, const DeviceChecks& device,
                       const VerifySettings& settings, const Check& check, const fs::path& folder) {
     check_case_folder(folder);
-    const Variant failing{"", selector, index, settings_of_one(settings, check.layer + " " + check.name)};
+    const CheckRun failing{"", selector, index, settings_of_one(settings, check.layer + " " + check.name)};
     const CaseFolder scratch(fs::path(folder).lexically_normal().string() + ".new");
     const Observation seen = observe(failing);
     if (seen.passed) no_case(check, "it passes when it runs alone");

@@ -54,7 +54,7 @@ std::string with_build_option(const std::string& option) {
     return options != nullptr ? std::string(options) + " " + option : option;
 }
 
-Observation observe(const Variant& v, std::size_t step, const std::filesystem::path& folder, bool ends_at_step) {
+Observation observe(const CheckRun& v, std::size_t step, const std::filesystem::path& folder, bool ends_at_step) {
     std::list<EnvironmentVariable> environment;
     environment.emplace_back("RAYA_BINARIES", "off");
     for (const auto& [name, value] : v.environment) environment.emplace_back(name, value);

@@ -12,7 +12,7 @@
 namespace raya {
 
 /// How to run a check.
-struct Variant {
+struct CheckRun {
     std::string name;      // for people: "-cl-opt-disable"
     std::string selector;  // of the device, with `index` as in supervise()
     std::size_t index = 0;
@@ -37,9 +37,9 @@ struct Observation {
 /// Returns the settings to run only the check of this name, "LAYER NAME", once.
 VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name);
 
-/// Runs the check of `variant`. Captures step number `step`, if not 0, in `folder`. Ends the run after
+/// Runs the check of `run`. Captures step number `step`, if not 0, in `folder`. Ends the run after
 /// settings.timeout_s, or, if `ends_at_step`, when the inputs of the step have been captured.
-Observation observe(const Variant& variant, std::size_t step = 0, const std::filesystem::path& folder = {},
+Observation observe(const CheckRun& run, std::size_t step = 0, const std::filesystem::path& folder = {},
                     bool ends_at_step = false);
 
 /// Returns the value of RAYA_BUILD_OPTIONS with one more option.

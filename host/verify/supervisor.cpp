@@ -188,6 +188,7 @@ class Supervision {
         all_.platform = line.at("platform").text();
         all_.version = line.at("version").text();
         all_.driver = line.at("driver").text();
+        all_.names = line.at("names").strings();
         if (sink_.device) sink_.device(all_, line.at("left_out").strings());
     }
 
@@ -197,25 +198,10 @@ class Supervision {
                 "run raya verify without --kernel-dir; if it passes, these kernels are wrong"};
         settings_.done += running_.has_value();
         running_.reset();
-        apply_expectation(check);
+        apply_expectations(check, settings_.expected_failures);
         all_.seconds += check.seconds;
         all_.checks.push_back(check);
         if (sink_.finished) sink_.finished(check);
-    }
-
-    // Changes the outcome of a check that is expected to fail.
-    void apply_expectation(Check& check) const {
-        Verdict& v = check.verdict;
-        if (v.outcome == Outcome::kSkip) return;
-        for (const ExpectedFailure& e : settings_.expected_failures) {
-            if (!name_matches(check.layer + " " + check.name, e.pattern)) continue;
-            const std::string why = e.link.empty() ? e.reason : e.reason + ", " + e.link;
-            const bool passes = v.outcome == Outcome::kPass;
-            v.outcome = passes ? Outcome::kUnexpectedPass : Outcome::kExpectedFail;
-            v.result = passes ? fmt::format("passed, but --expect lists it as failing ({}): {}", why, v.result)
-                              : fmt::format("{} (expected: {})", v.result, why);
-            return;
-        }
     }
 
     Check timed_out_check() const {
@@ -279,12 +265,14 @@ void run_checks(int pipe, const Json& request) {
         for (const cl::Device& device : selected.devices) refuse_empty_selection(device, settings);
     const cl::Device& device = selected.devices.at(index);
     const DeviceInfo info = device_info(device);
+    const VerifySettings full{.depth = Depth::kFull, .sources = settings.sources};
     send_line(pipe, {{"devices", selected.devices.size()},
                      {"left_out", selected.left_out},
                      {"name", info.name},
                      {"platform", info.platform},
                      {"version", info.version},
-                     {"driver", info.driver}});
+                     {"driver", info.driver},
+                     {"names", check_names(device, full)}});
     std::optional<Capture> capture;
     if (const Json* c = request.find("capture"))
         capture.emplace(c->at("step").integer(), c->at("folder").text(),

@@ -1,9 +1,10 @@
 // Runs a device's checks in a child process, because a crash in a driver ends the process. After a crash another child
 // process continues with the next check. The child writes one JSON object per line:
 //
-//     {"devices": N, "left_out": [TEXT, ...], "name": ..., "platform": ..., "version": ..., "driver": ...}
-//                           the first line: number of selected devices, a text for each unusable device, and
-//                           the device that is checked
+//     {"devices": N, "left_out": [TEXT, ...], "name": ..., "platform": ..., "version": ..., "driver": ..., "names":
+//     [...]}
+//                           the first line: number of selected devices, a text for each unusable device, the device
+//                           that is checked, and the names of all its checks
 //     {"started": {"layer": LAYER, "name": NAME}}    a check starts
 //     {"check": {...}}      the check is done; the object is that of to_json() in verify.hpp
 //     {"ended": true}       all checks are done
@@ -21,6 +22,7 @@ namespace raya {
 /// A device and the results of its checks.
 struct DeviceChecks {
     std::string name, platform, version, driver;
+    std::vector<std::string> names;  // "LAYER NAME" of each check of Depth::kFull, selected or not
     std::vector<Check> checks;
     double seconds = 0;  // sum of the checks' times
 

@@ -110,6 +110,20 @@ bool name_matches(const std::string& full_name, const std::string& pattern) {
     return ::fnmatch((glob + "*").c_str(), full_name.c_str(), 0) == 0;
 }
 
+void apply_expectations(Check& check, const std::vector<ExpectedFailure>& expected_failures) {
+    Verdict& v = check.verdict;
+    if (v.outcome == Outcome::kSkip) return;
+    for (const ExpectedFailure& e : expected_failures) {
+        if (!name_matches(check.layer + " " + check.name, e.pattern)) continue;
+        const std::string why = e.link.empty() ? e.reason : e.reason + ", " + e.link;
+        const bool passes = v.outcome == Outcome::kPass;
+        v.outcome = passes ? Outcome::kUnexpectedPass : Outcome::kExpectedFail;
+        v.result = passes ? fmt::format("passed, but --expect lists it as failing ({}): {}", why, v.result)
+                          : fmt::format("{} (expected: {})", v.result, why);
+        return;
+    }
+}
+
 Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body) {
     const Clock::time_point start = Clock::now();
     Check check{layer, name, 0, verdict_of(body)};

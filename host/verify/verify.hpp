@@ -61,8 +61,12 @@ bool name_matches(const std::string& full_name, const std::string& pattern);
 
 /// A check that is known to fail.
 struct ExpectedFailure {
+    std::string place;                  // "FILE:LINE"
     std::string pattern, reason, link;  // pattern: see name_matches()
 };
+
+/// Changes the outcome of a check that is expected to fail: a failure becomes kExpectedFail, a pass kUnexpectedPass.
+void apply_expectations(Check& check, const std::vector<ExpectedFailure>& expected_failures);
 
 struct VerifySettings {
     Depth depth = Depth::kQuick;

@@ -6,6 +6,7 @@
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
+#include "tests/paths.h"
 #include "tests/verify/faults.hpp"
 
 namespace raya {
@@ -54,6 +55,7 @@ TEST_CASE("verify --expect: listed failures do not count, and listed checks that
     const RunOutcome unexpected = run_raya(verify);
     INFO(unexpected.describe());
     CHECK(unexpected.code == 4);
+    CHECK_THAT(unexpected.err, !Catch::Contains("matches no check"));
     CHECK_THAT(unexpected.out, Catch::Contains("XPASS machine") && Catch::Contains("XFAIL machine   mapping: blocks") &&
                                    Catch::Contains("0 failed, 0 skipped, 2 failed as expected"));
     CHECK_THAT(file_contents(junit),
@@ -70,6 +72,15 @@ TEST_CASE("verify --expect: listed failures do not count, and listed checks that
                                          Catch::Contains("(expected: wrong mapping)"));
     CHECK_THAT(file_contents(tap),
                Catch::StartsWith("TAP version 14\n1..") && Catch::Contains("not ok ") && Catch::Contains(" # TODO "));
+    // A pattern of a check that is not selected, and two without any check.
+    write_whole_file(list,
+                     "mapping: blocks | a\nmapping: cyclic*block | b\nimage glass | c\nno such | d\n\nimge | e\n");
+    const RunOutcome unmatched = run_raya(verify);
+    INFO(unmatched.describe());
+    CHECK(unmatched.code == 0);
+    CHECK_THAT(unmatched.err, Catch::Contains(list + ":4: \"no such\" matches no check") &&
+                                  Catch::Contains(list + ":6: \"imge\" matches no check") &&
+                                  !Catch::Contains("image glass"));
     write_whole_file(list, "mapping: blocks\n");
     const ScratchFolder outputs;
     check_refused(outputs, verify, 2, {list + ":1: expected PATTERN | REASON or PATTERN | REASON | LINK"});
@@ -100,12 +111,43 @@ TEST_CASE("verify --shard, --skip, --list: every check is in exactly one shard",
     check_refused(scratch, {"verify", "--only", "number fp32", "--shard", "5/9"}, 2, {"select no check of"});
 }
 
+TEST_CASE("verify --list: names are those of tests/verify/check_names.txt", "[cli][verify]") {
+    // Lists of expected failures and CI dashboards contain the names. If you change one, write the file again and say
+    // so in CHANGELOG.md: build/raya verify --quick --lanes 4 --list > tests/verify/check_names.txt
+    const RunOutcome run = run_raya({"verify", "--quick", "--lanes", "4", "--list"});
+    INFO(run.describe());
+    CHECK(run.out == file_contents(RAYA_SOURCE_DIR "/tests/verify/check_names.txt"));
+    const ScratchFolder scratch;
+    const std::string report = scratch / "v.json";
+    REQUIRE(run_raya({"verify", "--quick", "--lanes", "4", "--only", "machine", "--report", report}).code == 0);
+    const Document checks = Document::parse(file_contents(report))["devices"][0]["checks"];
+    REQUIRE(checks.size() == 24);
+    for (const Document& check : checks)
+        CHECK_THAT(run.out, Catch::Contains("machine " + check["name"].get<std::string>() + "\n"));
+}
+
 TEST_CASE("verify --timeout: ends a check that hangs, and continues with the next", "[cli][verify]") {
     const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine mapping: rows", "--timeout", "1"},
                                     device_with_fault("clFinish 1 slow"));
     INFO(run.describe());
     CHECK(run.code == 4);
     CHECK_THAT(run.out, Catch::Contains("no result after") && Catch::Contains("--timeout SECONDS"));
+}
+
+TEST_CASE("verify: no check builds more than six programs, for which the default of --timeout allows",
+          "[cli][verify]") {
+    const ScratchFolder scratch;
+    const std::string log = scratch / "log";
+    const RunOutcome run =
+        run_raya({"verify", "--only", "torus3d 2x2x2, launches of 3 units, links by a kernel", "--lanes", "4"},
+                 {.variables = {{"RAYA_KERNEL_LOG", log}}});
+    INFO(run.describe());
+    CHECK(run.code == 0);
+    std::size_t builds = 0;
+    std::istringstream lines(file_contents(log));
+    for (std::string line; std::getline(lines, line);) builds += contains(line, "\tbuild\t");
+    CHECK(builds == 6);  // the most of all checks: inject, trace_voxel, route, accept, exchange, compose
+    CHECK_THAT(run_raya({"verify", "--help"}).out, Catch::Contains("--timeout S") && Catch::Contains("600"));
 }
 
 TEST_CASE("verify --soak: finds a bit that flips once in many copies, with its rate, and repeats by the seed",
