@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cstdlib>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -14,7 +15,9 @@
 namespace raya {
 namespace {
 
-std::string read_kernel_file(const std::string& file, const std::filesystem::path& folder) {
+std::string read_kernel_file(const std::string& file, std::filesystem::path folder) {
+    if (const char* const variable = std::getenv("RAYA_KERNEL_DIR"); folder.empty() && variable != nullptr)
+        folder = variable;
     if (folder.empty()) {
         const auto found = embedded_files().find("kernels/" + file);
         if (found == embedded_files().end())
