@@ -18,6 +18,8 @@ case $1 in
     --version) echo "raya 0.0.0" ;;
     verify)
         [[ $2 == --help ]] && { echo "  --quick"; exit 0; }
+        [[ $2 == --list && $RAYA_BUILD_OPTIONS == --il && ! -e $0.spirv ]] && exit 3
+        [[ $2 == --list ]] && exit 0
         status=PASS
         [[ ${POCL_WORK_GROUP_METHOD-} == loops ]] && status=FAIL
         [[ -e $0.slow ]] && sleep 20
@@ -222,12 +224,23 @@ matrix --only "PoCL loopvec" --checks number,renders
 expect "number: exit code -11, though no check failed"
 rm "$build/raya.crash"
 
+# Kernels as SPIR-V, on an implementation that does not accept it, and on one that does.
+if command -v clang-15 llvm-spirv-15 >"$build/paths" && (($(wc -l <"$build/paths") == 2)); then
+    matrix --only "PoCL, SPIR-V" --list
+    expect "PoCL, SPIR-V: no device accepts SPIR-V"
+    touch "$build/raya.spirv"
+    matrix --only "PoCL, SPIR-V" --checks number,renders,defects
+    ((code == 1)) || fail "exit code $code with SPIR-V"
+    expect "| PoCL, SPIR-V | toy | OpenCL 3.0, driver 1 | 1 right | 24 right | FAIL |"  # the mock fails with RAYA_BUILD_OPTIONS
+    rm "$build/raya.spirv"
+fi
+
 # Oclgrind: a render without a fault; then a kernel that makes the same image but also writes beyond a buffer.
 "$patch_kernels" "$build/kernels"
 mv "$build/raya" "$build/mock_raya"
 cat >"$build/raya" <<RAYA
 #!/usr/bin/env bash
-"$build/mock_raya" "\$@"
+"$build/mock_raya" "\$@" || exit
 [[ \$1 != render ]] || exec "$raya" render "$root/scenes/planes.nff" -o "$build/x.pfm" --quiet --size 2 --pes 1 --lanes 1 --kernel-dir "$build/kernels"
 RAYA
 chmod +x "$build/raya"
