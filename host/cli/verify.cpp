@@ -3,13 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
-#include <cstdio>
+#include <functional>
+#include <future>
 #include <map>
 #include <memory>
 
-#include "host/base/json.hpp"
 #include "host/base/log.hpp"
 #include "host/base/progress.hpp"
 #include "host/base/whole_file.hpp"
@@ -20,13 +21,12 @@
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/scene_input.hpp"
+#include "host/cli/verify_output.hpp"
 #include "host/error.hpp"
-#include "host/model/unit_text.hpp"
 #include "host/verify/bisect.hpp"
 #include "host/verify/ci_reports.hpp"
 #include "host/verify/reproduce.hpp"
 #include "host/verify/supervisor.hpp"
-#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -44,17 +44,6 @@ struct VerifyCommand {
 
     Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
 };
-
-// Returns the text "57 checks passed, 0 failed, 2 skipped in 12.3 s".
-std::string closing_text(const std::vector<Check>& checks, double seconds) {
-    const std::size_t expected = count_of(checks, Outcome::kExpectedFail),
-                      unexpected = count_of(checks, Outcome::kUnexpectedPass);
-    return fmt::format("{} passed, {} failed, {} skipped{}{} in {:.1f} s",
-                       counted(count_of(checks, Outcome::kPass), "check"), count_of(checks, Outcome::kFail),
-                       count_of(checks, Outcome::kSkip),
-                       expected ? fmt::format(", {} failed as expected", expected) : "",
-                       unexpected ? fmt::format(", {} passed unexpectedly", unexpected) : "", seconds);
-}
 
 // Sets shard and shards from the text "I/N". Throws UserError if it is not valid.
 void set_shard(VerifySettings& settings, const std::string& text) {
@@ -92,95 +81,37 @@ void list_checks(const VerifyCommand& command, const VerifySettings& settings) {
             fmt::print("{}{}\n", all ? device_info(device).name + ": " : "", name);
 }
 
-// Prints, for each check that failed in a soak test, how often it failed and when it failed first.
-void print_soak_failures(const std::vector<Check>& checks, std::uint64_t seed) {
-    struct Count {
-        std::size_t runs = 0, failures = 0;
-        double first_s = 0;  // sum of the times of the checks up to the first failure
-    };
-    std::map<std::string, Count> counts;
-    double seconds = 0;
-    for (const Check& check : checks) {
-        seconds += check.seconds;
-        Count& count = counts[check.layer + " " + check.name];
-        ++count.runs;
-        if (check.verdict.outcome == Outcome::kFail && count.failures++ == 0) count.first_s = seconds;
-    }
-    for (const auto& [name, count] : counts)
-        if (count.failures > 0)
-            fmt::print("{}: failed {} of {}, first after {:.1f} s\n", name, count.failures, counted(count.runs, "time"),
-                       count.first_s);
-    fmt::print("random checks with --seed {}\n", seed);
-}
-
-// Verifies device number `index` of those that --device selects, and prints each check. Sets `device_count` to the
-// number of selected devices.
+// Verifies device number `index` of those that --device selects, and prints each check. Before the first check, calls
+// `take_count` with the number of selected devices.
 DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, const VerifySettings& settings,
-                           std::size_t& device_count) {
-    const bool quiet = is_quiet(), shows_status = shows_progress();
-    const auto print = [&](const std::string& line) {
-        clear_status();
-        fmt::print("{}", line);
-        std::fflush(stdout);
-    };
+                           const std::function<void(std::size_t)>& take_count) {
+    DeviceOutput output(settings, index);
     const SupervisorSink sink{
         .device =
-            [&](const DeviceChecks& device, const std::vector<std::string>& unusable_devices) {
-                if (quiet) return;
-                if (index == 0)
-                    for (const std::string& line : unusable_devices) print(line + "\n");
-                print(fmt::format("{} ({}, driver {})\n", device.name, device.platform, device.driver));
+            [&](const DeviceChecks& device, const std::vector<std::string>& unusable_devices, std::size_t devices) {
+                output.device(device, unusable_devices, devices);
+                take_count(devices);
             },
-        .running =
-            [&](const std::string& layer, const std::string& name, double seconds) {
-                if (shows_status) show_status(fmt::format("running {} {} ... {:.0f} s", layer, name, seconds));
-            },
-        .finished =
-            [&](const Check& check) {
-                const Outcome outcome = check.verdict.outcome;
-                const bool prints_all = !quiet && settings.soak_s == 0;
-                if (prints_all || outcome == Outcome::kFail || outcome == Outcome::kUnexpectedPass)
-                    print(check_lines(check));
-            }};
-    DeviceChecks result = supervise(command.device, index, settings, sink, device_count);
-    if (settings.soak_s > 0) print_soak_failures(result.checks, settings.seed);
-    if (!quiet || device_count == 1 || !result.all_passed())
-        print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
+        .running = std::bind_front(&DeviceOutput::running, &output),
+        .finished = std::bind_front(&DeviceOutput::finished, &output)};
+    DeviceChecks result = supervise(command.device, index, settings, sink);
+    output.ended(result);
     return result;
 }
 
-Json report_of(const std::vector<DeviceChecks>& device_checks, Depth depth) {
-    Json devices = Json::array();
-    for (const DeviceChecks& device : device_checks) {
-        Json checks = Json::array();
-        for (const Check& check : device.checks) checks.push_back(to_json(check));
-        devices.push_back({{"name", device.name},
-                           {"platform", device.platform},
-                           {"version", device.version},
-                           {"driver", device.driver},
-                           {"right", device.all_passed()},
-                           {"passed", count_of(device.checks, Outcome::kPass)},
-                           {"failed", count_of(device.checks, Outcome::kFail)},
-                           {"skipped", count_of(device.checks, Outcome::kSkip)},
-                           {"failed_as_expected", count_of(device.checks, Outcome::kExpectedFail)},
-                           {"passed_unexpectedly", count_of(device.checks, Outcome::kUnexpectedPass)},
-                           {"seconds", device.seconds},
-                           {"checks", checks}});
-    }
-    return {{"kind", kVerifyReportKind},
-            {"program", name_and_version()},
-            {"depth", depth_name(depth)},
-            {"devices", devices}};
-}
-
-void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
-    std::vector<Check> checks;
-    double seconds = 0;
-    for (const DeviceChecks& device : device_checks) {
-        checks.insert(checks.end(), device.checks.begin(), device.checks.end());
-        seconds += device.seconds;
-    }
-    fmt::print("{}: {}\n", counted(device_checks.size(), "device"), closing_text(checks, seconds));
+// Verifies the devices that --device selects: in a soak test all at once, otherwise one after another.
+std::vector<DeviceChecks> verify_devices(const VerifyCommand& command, const VerifySettings& settings) {
+    std::vector<std::future<DeviceChecks>> others;
+    const auto add_others = [&](std::size_t devices) {
+        const std::launch policy = settings.soak_s > 0 ? std::launch::async : std::launch::deferred;
+        while (others.size() + 1 < devices)
+            others.push_back(std::async(policy, [&command, &settings, index = others.size() + 1] {
+                return verify_device(command, index, settings, [](std::size_t) {});
+            }));
+    };
+    std::vector<DeviceChecks> all = {verify_device(command, 0, settings, add_others)};
+    for (std::future<DeviceChecks>& other : others) all.push_back(other.get());
+    return all;
 }
 
 // Finds and prints the changes with which the failed check passes.
@@ -225,20 +156,16 @@ void run_verify(const VerifyCommand& command) {
     if (!command.reproduce.empty()) check_case_folder(command.reproduce);
     Warnings warnings;
     warn_of_build_options(warnings);
-    std::vector<DeviceChecks> device_checks;
-    bool all_passed = true;
-    for (std::size_t device_count = 1; device_checks.size() < device_count;) {
-        device_checks.push_back(verify_device(command, device_checks.size(), settings, device_count));
-        all_passed = all_passed && device_checks.back().all_passed();
-    }
+    const std::vector<DeviceChecks> device_checks = verify_devices(command, settings);
     if (device_checks.size() > 1) print_device_totals(device_checks);
     for (const std::string& text : unmatched_patterns(settings.expected_failures, device_checks))
         warn(text + "; raya verify --full --list prints the names of all checks");
-    write_report_and_page({command.report, command.page}, report_of(device_checks, command.depth()));
+    write_report_and_page({command.report, command.page}, verify_report(device_checks, command.depth()));
     if (!command.junit.empty()) write_whole_file(command.junit, junit_report("raya verify", device_checks));
     if (!command.tap.empty()) write_whole_file(command.tap, tap_report(device_checks));
-    if (!all_passed) analyse_first_failure(command, device_checks, settings);
-    if (!all_passed) throw CheckFailure{};
+    if (std::ranges::all_of(device_checks, &DeviceChecks::all_passed)) return;
+    analyse_first_failure(command, device_checks, settings);
+    throw CheckFailure{};
 }
 
 }  // namespace
@@ -296,7 +223,8 @@ void add_verify_command(CLI::App& program) {
         "failures do not count; if one passes, the exit code is 4");
     add_device_option(*command, options->device);
     command->get_option("--device")
-        ->description(command->get_option("--device")->get_description() + "; all: every usable device in turn");
+        ->description(command->get_option("--device")->get_description() +
+                      "; all: every usable device, in turn or, with --soak, at once");
     group.next(kKernels);
     add_kernel_source_options(*command, options->kernel_dir);
     group.next(kDiagnostics);

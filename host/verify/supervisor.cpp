@@ -155,7 +155,6 @@ class Supervision {
     }
 
     DeviceChecks take_checks() { return std::move(all_); }
-    std::size_t devices() const { return devices_; }
 
   private:
     struct Running {
@@ -189,7 +188,7 @@ class Supervision {
         all_.version = line.at("version").text();
         all_.driver = line.at("driver").text();
         all_.names = line.at("names").strings();
-        if (sink_.device) sink_.device(all_, line.at("left_out").strings());
+        if (sink_.device) sink_.device(all_, line.at("left_out").strings(), devices_);
     }
 
     void finish(Check check) {
@@ -250,10 +249,9 @@ class Supervision {
 }  // namespace
 
 DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
-                       const SupervisorSink& sink, std::size_t& devices) {
+                       const SupervisorSink& sink) {
     Supervision supervision(settings, sink);
     while (supervision.run_remaining(selector, index)) continue;
-    devices = supervision.devices();
     return supervision.take_checks();
 }
 

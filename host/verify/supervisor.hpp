@@ -35,8 +35,9 @@ struct DeviceChecks {
 
 /// Callbacks of supervise().
 struct SupervisorSink {
-    /// Called before a device's first check. `left_out`: one line for each unusable device.
-    std::function<void(const DeviceChecks&, const std::vector<std::string>& left_out)> device{};
+    /// Called before a device's first check. `left_out`: one line for each unusable device; `devices`: number of
+    /// selected devices.
+    std::function<void(const DeviceChecks&, const std::vector<std::string>& left_out, std::size_t devices)> device{};
     /// Called about once a second while a check runs, with the check's run time in seconds.
     std::function<void(const std::string& layer, const std::string& name, double seconds)> running{};
     /// Called after each check.
@@ -45,11 +46,11 @@ struct SupervisorSink {
 
 /// Checks device number `index`, from 0, of the devices that `selector` selects: "all" selects every usable device, any
 /// other text one device by the rules of choose_device(). If the child process ends early, or a check takes longer than
-/// settings.timeout_s, the running check counts as failed, and the next checks run in a new process. Sets
-/// `devices` to the number of selected devices. Throws the UserError or DeviceError that the child process reports, and
-/// DeviceError if the driver ends the process before the first check.
+/// settings.timeout_s, the running check counts as failed, and the next checks run in a new process. Throws the
+/// UserError or DeviceError that the child process reports, and DeviceError if the driver ends the process before the
+/// first check. Several threads may call it at once.
 DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
-                       const SupervisorSink& sink, std::size_t& devices);
+                       const SupervisorSink& sink);
 
 /// Returns the request of the child process's task: settings and device, see supervise(). With a member "capture",
 /// {"step": N, "folder": TEXT}, the child also captures step N and writes the lines of Capture (host/cl/capture.hpp).

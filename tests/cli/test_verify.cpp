@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "host/verify/soak.hpp"
 #include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
@@ -155,7 +156,7 @@ TEST_CASE("verify --soak: finds a bit that flips once in many copies, with its r
     const ScratchFolder scratch;
     const auto soak = [&](const RunOptions& options) {
         const std::string report = scratch / "v.json";
-        const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine", "--lanes", "4", "--soak", "3s",
+        const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine ring", "--lanes", "4", "--soak", "3s",
                                          "--seed", "7", "--report", report},
                                         options);
         INFO(run.describe());
@@ -172,7 +173,47 @@ TEST_CASE("verify --soak: finds a bit that flips once in many copies, with its r
     const auto [wrong, same_names] = soak(device_with_fault("clEnqueueCopyBuffer 40 flip"));
     CHECK(wrong.code == 4);
     CHECK(same_names == names);
-    CHECK(has_line(wrong.out, "machine .*: failed [0-9]+ of [0-9]+ times?, first after [0-9.]+ s"));
+    CHECK(has_line(wrong.out, "after [0-9.]+ s: FAIL  machine .*"));
+    // The fault hits the 8th rotation of each check, so all failures of a check have the same first wrong word.
+    CHECK(has_line(
+        wrong.out,
+        "machine ring: rotations of [0-9]+ PEs: failed ([0-9]+) of [0-9]+ times?, first after [0-9.]+ s; \\1 of "
+        "\\1 failures? with the same first wrong word: rotation 8 of .* PEs, PE 0, word 0: expected 0x.*, got "
+        "0x.*"));
+}
+
+TEST_CASE("verify --soak --device all: checks all devices at once", "[cli][verify]") {
+    const ScratchFolder scratch;
+    const std::string report = scratch / "v.json";
+    const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine ring", "--lanes", "4", "--soak", "3s",
+                                     "--device", "all", "--report", report},
+                                    {.variables = {{"POCL_DEVICES", "pthread basic"}}});
+    INFO(run.describe());
+    CHECK(run.code == 0);
+    const Document devices = Document::parse(file_contents(report))["devices"];
+    REQUIRE(devices.size() == 2);
+    for (const Document& device : devices) CHECK(device["passed"].get<int>() >= 5);
+    CHECK(devices[0]["checks"][0]["name"] == devices[1]["checks"][0]["name"]);  // the same seed
+    // Both tests start before one of them ends.
+    const auto start_of = [&](const char* device) { return run.out.find(std::string(device) + "-"); };
+    CHECK(std::max(start_of("pthread"), start_of("basic")) < run.out.find("random checks with --seed"));
+}
+
+TEST_CASE("verify: a soak test repeats the first wrong word only if it is the same", "[verify]") {
+    SoakCounts counts;
+    Check check{"machine", "bus", 1, passed("")};
+    CHECK(counts.add(check, 1).empty());
+    check.verdict = failed("wrong", {.where = "word 3", .expected = "1", .got = "2", .remedies = {"a remedy"}});
+    CHECK_THAT(counts.add(check, 2), Catch::StartsWith("after 2.0 s: FAIL  machine") && Catch::Contains("a remedy"));
+    CHECK_THAT(counts.add(check, 3), Catch::StartsWith("after 3.0 s: FAIL") && !Catch::Contains("a remedy"));
+    check.verdict.fault.got = "3";
+    counts.add(check, 4);
+    check.verdict.outcome = Outcome::kSkip;
+    CHECK(counts.add(check, 5).empty());
+    CHECK(
+        counts.summary() ==
+        "machine bus: failed 3 of 5 times, first after 2.0 s; 2 of 3 failures with the same first wrong word: word 3: "
+        "expected 1, got 2\n");
 }
 
 TEST_CASE("verify --kernel-dir: refuses a folder without all kernels, before any check", "[cli][verify]") {
