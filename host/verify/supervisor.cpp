@@ -32,6 +32,7 @@ Json settings_json(const VerifySettings& s, const std::string& selector, std::si
             {"soak_s", s.soak_s},
             {"seed", s.seed},
             {"lanes", s.lanes},
+            {"as", s.as},
             {"done", s.done}};
 }
 
@@ -51,6 +52,7 @@ VerifySettings settings_of(const Json& json) {
             .soak_s = json.at("soak_s").number(),
             .seed = json.at("seed").integer(),
             .lanes = number("lanes"),
+            .as = json.at("as").text(),
             .done = json.at("done").integer()};
 }
 
@@ -251,8 +253,9 @@ DeviceChecks supervise(const std::string& selector, std::size_t index, const Ver
     return supervision.take_checks();
 }
 
-void run_checks(int pipe, const Json& request) {
-    const VerifySettings settings = settings_of(request);
+void run_checks(int pipe, const Json& request, const std::function<RenderCase(const std::string&)>& render_case) {
+    VerifySettings settings = settings_of(request);
+    if (!settings.as.empty()) settings.render = std::make_shared<RenderCase>(render_case(settings.as));
     const std::size_t index = request.at("index").integer();
     const SelectedDevices selected = selected_devices(request.at("device").text());
     if (index == 0 && settings.done == 0)
