@@ -100,13 +100,13 @@ void add_render_command_options(CLI::App& command, RenderCommand& options) {
     add_trace_options(command, options.trace);
 }
 
-void add_render_command(CLI::App& program, Ranks& ranks) {
+CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<RenderCommand>& options) {
     CLI::App* command = program.add_subcommand("render", "Render an NFF scene on a ring machine or the torus machine");
     add_examples(*command, {{"raya render scenes/centre.nff -o centre.png",
                              "Render on a ring of 256 PEs, in the scene's resolution"},
                             {"raya render scenes/glass.nff --machine torus --size 64 --report glass.json -o glass.png",
                              "Render a small image on a torus of 64 nodes, with a report"}});
-    const auto options = std::make_shared<RenderCommand>();
+    command->callback([options] {});  // keeps the options
     add_short_help(*command, render_short_help());
     const OptionGroup group(*command, kFiles);
     add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
@@ -124,6 +124,12 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
     command->add_flag("--cache-kernels", options->cache_kernels,
                       "Store the binaries of this render's kernels in the program's folder: later renders with the "
                       "same kernels and options, on this device and driver, do not compile");
+    return command;
+}
+
+void add_render_command(CLI::App& program, Ranks& ranks) {
+    const auto options = std::make_shared<RenderCommand>();
+    CLI::App* const command = declare_render_command(program, options);
     command->callback([command, options, &ranks] { render(*command, *options, ranks); });
 }
 

@@ -21,6 +21,7 @@
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/scene_input.hpp"
+#include "host/cli/verify_as.hpp"
 #include "host/cli/verify_output.hpp"
 #include "host/error.hpp"
 #include "host/verify/bisect.hpp"
@@ -36,7 +37,7 @@ namespace {
 constexpr double kDefaultTimeout_s = std::chrono::duration<double>(10 * kBuildBudget).count();
 
 struct VerifyCommand {
-    std::string device, report, page, junit, tap, expect, reproduce, bisect, kernel_dir, only, skip, shard;
+    std::string device, report, page, junit, tap, expect, reproduce, bisect, kernel_dir, only, skip, shard, as;
     std::uint32_t lanes = 0, repeat = 1;
     double timeout_s = kDefaultTimeout_s, soak_s = 0;
     std::uint64_t seed = 1;
@@ -59,6 +60,16 @@ void set_shard(VerifySettings& settings, const std::string& text) {
         throw UserError(fmt::format("--shard {}: must be I/N with I 1..N, such as 2/4", text));
 }
 
+// Sets the options that the render of --as has, too.
+void take_render(VerifyCommand& command) {
+    if (command.as.empty()) return;
+    if (command.brief || command.quick || command.full || command.lanes != 0)
+        throw UserError("--as with --brief, --quick, --full or --lanes: no effect; leave them out");
+    const RenderOptions render = parse_render(command.as).render;
+    if (command.device.empty()) command.device = render.device;
+    if (command.kernel_dir.empty()) command.kernel_dir = render.kernel_dir;
+}
+
 VerifySettings settings_of(const VerifyCommand& command) {
     VerifySettings settings{.depth = command.depth(),
                             .sources = {command.kernel_dir},
@@ -68,13 +79,15 @@ VerifySettings settings_of(const VerifyCommand& command) {
                             .timeout_s = command.timeout_s,
                             .soak_s = command.soak_s,
                             .seed = command.seed,
-                            .lanes = command.lanes};
+                            .lanes = command.lanes,
+                            .as = command.as};
     set_shard(settings, command.shard);
     settings.expected_failures = read_expected_failures(command.expect);
     return settings;
 }
 
-void list_checks(const VerifyCommand& command, const VerifySettings& settings) {
+void list_checks(const VerifyCommand& command, VerifySettings settings) {
+    if (!command.as.empty()) settings.render = std::make_shared<RenderCase>(render_case(command.as));
     const bool all = command.device == "all";
     for (const cl::Device& device : all ? all_devices() : std::vector<cl::Device>{choose_device(command.device)})
         for (const std::string& name : check_names(device, settings))
@@ -148,7 +161,8 @@ void analyse_first_failure(const VerifyCommand& command, const std::vector<Devic
         }
 }
 
-void run_verify(const VerifyCommand& command) {
+void run_verify(VerifyCommand command) {
+    take_render(command);
     if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
     if (!command.page.empty()) check_page_name("--page", command.page);
     const VerifySettings settings = settings_of(command);
@@ -160,7 +174,7 @@ void run_verify(const VerifyCommand& command) {
     if (device_checks.size() > 1) print_device_totals(device_checks);
     for (const std::string& text : unmatched_patterns(settings.expected_failures, device_checks))
         warn(text + "; raya verify --full --list prints the names of all checks");
-    write_report_and_page({command.report, command.page}, verify_report(device_checks, command.depth()));
+    write_report_and_page({command.report, command.page}, verify_report(device_checks, settings));
     if (!command.junit.empty()) write_whole_file(command.junit, junit_report("raya verify", device_checks));
     if (!command.tap.empty()) write_whole_file(command.tap, tap_report(device_checks));
     if (std::ranges::all_of(device_checks, &DeviceChecks::all_passed)) return;
@@ -192,6 +206,10 @@ void add_verify_command(CLI::App& program) {
         "default number of lanes, or with --full, every number of lanes")
         ->check(CLI::IsMember({1, 4, 8, 16}))
         ->type_name("V");
+    add_value(*command, "--as", options->as,
+              "Check only what this render uses, such as \"render scene.nff --lanes 8 --accel bvh\": its format and "
+              "lanes, its image, and reference images with its options")
+        ->type_name("\"render ...\"");
     add_value(*command, "--only", options->only,
               "Run only checks whose printed \"LAYER NAME\" contains this text: number, \"image glass\", spa22, ...; * "
               "stands for any text")

@@ -72,7 +72,7 @@ void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
     fmt::print("{}: {}\n", counted(device_checks.size(), "device"), closing_text(checks, seconds));
 }
 
-Json verify_report(const std::vector<DeviceChecks>& device_checks, Depth depth) {
+Json verify_report(const std::vector<DeviceChecks>& device_checks, const VerifySettings& settings) {
     Json devices = Json::array();
     for (const DeviceChecks& device : device_checks) {
         Json checks = Json::array();
@@ -90,10 +90,10 @@ Json verify_report(const std::vector<DeviceChecks>& device_checks, Depth depth) 
                            {"seconds", device.seconds},
                            {"checks", checks}});
     }
-    return {{"kind", kVerifyReportKind},
-            {"program", name_and_version()},
-            {"depth", depth_name(depth)},
-            {"devices", devices}};
+    Json report = {{"kind", kVerifyReportKind}, {"program", name_and_version()}, {"depth", depth_name(settings.depth)}};
+    if (!settings.as.empty()) report["as"] = settings.as;
+    report["devices"] = devices;
+    return report;
 }
 
 }  // namespace raya

@@ -38,6 +38,6 @@ class DeviceOutput {
 void print_device_totals(const std::vector<DeviceChecks>& device_checks);
 
 /// Returns the report of --report (docs/report.md).
-Json verify_report(const std::vector<DeviceChecks>& device_checks, Depth depth);
+Json verify_report(const std::vector<DeviceChecks>& device_checks, const VerifySettings& settings);
 
 }  // namespace raya

@@ -228,6 +228,15 @@ void verify_numbers(Verification& v) {
     }
 }
 
+void verify_number_format(Verification& v, const NumberFormat& format, std::uint32_t lanes) {
+    const auto& all = known_answers();
+    const auto found = std::ranges::find(all, format, &FormatAnswers::format);
+    if (found != all.end()) return verify_format(v, *found, lanes, true);
+    const NumberBuild build{.format = format, .lanes = lanes};
+    v.check("number", build.name(),
+            [&](Session&) { return skipped(fmt::format("there are no stored results in {}", format_name(format))); });
+}
+
 std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
     std::vector<FormatAnswers> all;
     std::size_t operation = 0;

@@ -31,6 +31,7 @@ Json settings_json(const VerifySettings& s, const std::string& selector, std::si
             {"seed", s.seed},
             {"lanes", s.lanes},
             {"group_size", s.group_size},
+            {"as", s.as},
             {"done", s.done}};
 }
 
@@ -56,6 +57,7 @@ VerifySettings settings_of(const Json& json) {
             .is_whole_name = json.at("is_whole_name").integer() != 0,
             .lanes = number("lanes"),
             .group_size = number("group_size"),
+            .as = json.at("as").text(),
             .done = json.at("done").integer()};
 }
 
@@ -255,8 +257,9 @@ DeviceChecks supervise(const std::string& selector, std::size_t index, const Ver
     return supervision.take_checks();
 }
 
-void run_checks(int pipe, const Json& request) {
-    const VerifySettings settings = settings_of(request);
+void run_checks(int pipe, const Json& request, const std::function<RenderCase(const std::string&)>& render_case) {
+    VerifySettings settings = settings_of(request);
+    if (!settings.as.empty()) settings.render = std::make_shared<RenderCase>(render_case(settings.as));
     const std::size_t index = request.at("index").integer();
     const SelectedDevices selected = selected_devices(request.at("device").text());
     if (index == 0 && settings.done == 0)

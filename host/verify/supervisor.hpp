@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "host/verify/render_case.hpp"
 #include "host/verify/verify.hpp"
 
 namespace raya {
@@ -58,7 +59,8 @@ Json settings_json(const VerifySettings& settings, const std::string& selector, 
 
 /// Name and function of the child process's task (host/base/child_process.hpp). run_checks() writes the lines to the
 /// file descriptor `pipe`, except the line "error": run_checks() throws the exception, and its caller writes the line.
+/// `render_case` parses VerifySettings::as.
 inline constexpr const char* kVerifyTask = "verify";
-void run_checks(int pipe, const Json& request);
+void run_checks(int pipe, const Json& request, const std::function<RenderCase(const std::string&)>& render_case);
 
 }  // namespace raya

@@ -12,6 +12,7 @@
 #include "host/cl/spirv.hpp"
 #include "host/error.hpp"
 #include "host/scene/split_mix.hpp"
+#include "host/verify/render_case.hpp"
 
 namespace raya {
 namespace {
@@ -77,6 +78,7 @@ std::string indented(const std::string& label, const std::string& text) {
 }
 
 void visit_layers(Verification& verification) {
+    if (verification.render() != nullptr) return verify_render_case(verification, *verification.render());
     verify_numbers(verification);
     verify_geometry(verification);
     verify_machines(verification);
@@ -250,11 +252,12 @@ std::vector<Check> verify(const cl::Device& device, const VerifySettings& settin
 
 void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
     std::vector<VerifySettings> choices;
-    for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) {
+    std::vector<std::uint32_t> lanes_choices = {1, 4, 8, 16};
+    if (settings.lanes != 0 || settings.render) lanes_choices = {settings.lanes};
+    for (const std::uint32_t lanes : lanes_choices) {
         VerifySettings one = settings;
         one.lanes = lanes;
         one.done = 0;
-        if (settings.lanes != 0 && settings.lanes != lanes) continue;
         const std::vector<std::string> names = check_names(device, one);
         one.is_whole_name = true;
         one.skip.clear();
@@ -270,7 +273,7 @@ void verify_at_random(const cl::Device& device, const VerifySettings& settings, 
         const VerifySettings& one = choices[random.next() % choices.size()];
         if (n < settings.done) continue;
         verify(device, one, {.started = sink.started, .finished = [&](Check check) {
-                                 check.verdict.result += fmt::format(", --lanes {}", one.lanes);
+                                 if (one.lanes != 0) check.verdict.result += fmt::format(", --lanes {}", one.lanes);
                                  sink.finished(check);
                              }});
     }

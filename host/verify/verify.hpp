@@ -2,6 +2,7 @@
 // and compares them with known results.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,8 @@ struct ExpectedFailure {
 /// Changes the outcome of a check that is expected to fail: a failure becomes kExpectedFail, a pass kUnexpectedPass.
 void apply_expectations(Check& check, const std::vector<ExpectedFailure>& expected_failures);
 
+struct RenderCase;
+
 struct VerifySettings {
     Depth depth = Depth::kQuick;
     KernelSources sources{};
@@ -83,7 +86,9 @@ struct VerifySettings {
     std::uint32_t lanes = 0;       // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
                                    // Depth::kFull, all four numbers
     std::uint32_t group_size = 0;  // of the kernels of images, in work-items; 0: as each check defines
-    std::size_t done = 0;          // number of checks, from the first on, that are already done; verify() skips them
+    std::string as{};              // if not empty: check only this render (docs/verify.md)
+    std::shared_ptr<const RenderCase> render{};  // `as`, parsed
+    std::size_t done = 0;  // number of checks, from the first on, that are already done; verify() skips them
 };
 
 /// Callbacks: `started` is called with the layer and name of every check before it runs, `finished` after it has run.
@@ -121,6 +126,8 @@ class Verification {
     void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
 
     const KernelSources& sources() const { return settings_.sources; }
+    /// Returns the only render to check; null: all layers are checked.
+    const RenderCase* render() const { return settings_.render.get(); }
     /// Returns the sources and options of a renderer's kernels. If `lanes` is 0, the options have given_lanes() lanes.
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const;
 
