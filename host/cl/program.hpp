@@ -154,8 +154,8 @@ struct KernelBuild {
 /// A built OpenCL program, made by Session::build().
 class Program {
   public:
-    /// Builds `source` for `device` with `options`, joined by blanks; `name` is for messages. Throws DeviceError, with
-    /// options, device and the whole build log, if the build fails.
+    /// Builds `source` for `device` with `options`, joined by blanks; `name` is for messages. The option "--il" builds
+    /// from SPIR-V (spirv.hpp). Throws DeviceError, with options, device and the whole build log, if the build fails.
     Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,
             const std::vector<std::string>& options);
 

@@ -1,7 +1,7 @@
 #include "host/cl/spirv.hpp"
 
 #include <fcntl.h>
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -67,8 +67,8 @@ void run_compiler(std::vector<std::string> arguments, const MemoryFile& in, cons
                                       ending_text(status), fmt::join(arguments, " "), log.content()));
 }
 
-// Returns the source as SPIR-V. Compiles without optimisation, to SPIR-V 1.0, because of defects of llvm-spirv-15
-// (docs/porting.md). The driver optimises.
+// Returns the source as SPIR-V. Compiles without optimisation, because of defects of llvm-spirv-15
+// (docs/porting.md); the driver optimises. The version is 1.0; with -g, which needs it, 1.1.
 std::string compiled_to_spirv(const std::string& source, const std::string& options, cl_uint address_bits,
                               const std::string& operation) {
     MemoryFile text, bitcode, spirv, log;
@@ -89,7 +89,7 @@ std::string compiled_to_spirv(const std::string& source, const std::string& opti
     std::istringstream words(options);
     for (std::string word; words >> word;) clang.push_back(word);
     run_compiler(clang, text, bitcode, log, operation);
-    run_compiler({"llvm-spirv-15", "--spirv-max-version=1.0", "-o", "-", "-"}, bitcode, spirv, log, operation);
+    run_compiler({"llvm-spirv-15", "--spirv-max-version=1.1", "-o", "-", "-"}, bitcode, spirv, log, operation);
     return spirv.content();
 }
 
@@ -122,7 +122,7 @@ std::string il_versions(const cl::Device& device) {
     if (::clGetDeviceInfo(device(), CL_DEVICE_IL_VERSION_KHR, 0, nullptr, &size) != CL_SUCCESS || size == 0) return {};
     std::string versions(size, '\0');
     if (::clGetDeviceInfo(device(), CL_DEVICE_IL_VERSION_KHR, size, versions.data(), nullptr) != CL_SUCCESS) return {};
-    return versions.c_str();
+    return versions.substr(0, versions.find('\0'));
 }
 
 cl::Program spirv_program(const cl::Context& context, const cl::Device& device, const std::string& source,

@@ -19,7 +19,7 @@ bool uses_il();
 /// Returns the IL versions that the device accepts, such as "SPIR-V_1.0 SPIR-V_1.2"; empty if it accepts none.
 std::string il_versions(const cl::Device& device);
 
-/// Compiles `source` with `options`, separated by blanks, to SPIR-V 1.0 and makes a program of it, which is not built
+/// Compiles `source` with `options`, separated by blanks, to SPIR-V and makes a program of it, which is not built
 /// yet. `operation` is for messages. Throws DeviceError, with options and the compilers' messages, if the device does
 /// not accept SPIR-V or if a compiler is missing or fails. Throws cl::Error if the driver rejects the program.
 cl::Program spirv_program(const cl::Context& context, const cl::Device& device, const std::string& source,

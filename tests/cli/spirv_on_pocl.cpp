@@ -53,7 +53,7 @@ cl_program CL_API_CALL create_program(cl_context context, const void* il, size_t
     inject_fault(module);
     const std::string bitcode = bitcode_of(module);
     cl_device_id device = nullptr;
-    clGetContextInfo(context, CL_CONTEXT_DEVICES, sizeof device, &device, nullptr);
+    clGetContextInfo(context, CL_CONTEXT_DEVICES, sizeof(cl_device_id), &device, nullptr);
     const size_t bytes = bitcode.size();
     const auto* data = reinterpret_cast<const unsigned char*>(bitcode.data());
     return clCreateProgramWithBinary(context, 1, &device, &bytes, &data, nullptr, error);

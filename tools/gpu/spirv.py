@@ -1,4 +1,4 @@
-"""SPIR-V modules: faults that every OpenCL implementation would refuse, and uses of what clspv, the compiler of clvk (OpenCL on Vulkan), does not support.
+"""SPIR-V modules: double precision, undefined functions, and uses of what clspv, the compiler of clvk (OpenCL on Vulkan), does not support.
 
     python3 tools/gpu/spirv.py MODULE.spv...     prints what clspv does not support (docs/porting.md); exit code 1 if there is something
 """
@@ -8,8 +8,8 @@ from pathlib import Path
 # Capabilities that kernels may require. Int8: clang copies structs as bytes. Vector16: clvk passes -long-vector to clspv.
 CAPABILITIES = {4: "Addresses", 5: "Linkage", 6: "Kernel", 7: "Vector16", 11: "Int64", 39: "Int8"}
 # Functions of OpenCL.std that Vulkan computes exactly, or whose rounding errors raya corrects: fma, sqrt.
-FUNCTIONS = {23: "fabs", 25: "floor", 26: "fma", 27: "fmax", 28: "fmin", 61: "sqrt", 151: "clz", 156: "s_max", 157: "u_max", 158: "s_min", 159: "u_min",
-             171: "vloadn", 172: "vstoren", 187: "select"}
+FUNCTIONS = {23: "fabs", 25: "floor", 26: "fma", 27: "fmax", 28: "fmin", 61: "sqrt", 151: "clz", 156: "s_max", 157: "u_max", 158: "s_min",
+             159: "u_min", 171: "vloadn", 172: "vstoren", 187: "select"}
 FUNCTION, WORKGROUP, CROSS_WORKGROUP = 7, 4, 5  # storage classes: private, local and global memory
 
 
