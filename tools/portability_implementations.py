@@ -1,5 +1,5 @@
 """The OpenCL implementations of tools/portability: starts programs on an implementation, and explains why an implementation cannot run."""
-import os, resource, shutil, subprocess, tempfile
+import copy, os, resource, shutil, subprocess, tempfile
 from pathlib import Path
 
 VENDORS = Path("/etc/OpenCL/vendors")
@@ -9,6 +9,7 @@ FETCHED = "implementations"  # folder in the build folder to which tools/portabi
 class Implementation:
     """An OpenCL implementation, on which run() starts programs. slow: it runs fewer cases. unavailable: reason why it cannot run, with a remedy, or
     None. needs_device: its driver may be installed on a machine without its device. budget: maximum seconds to compile a kernel.
+    from_spirv: it gets the kernels as SPIR-V.
 
     reports_faults: the implementation detects faults in kernels and reports them only on stderr, with exit code 0. raya prints nothing to stderr
     without an error, so every line there is a fault. (Oclgrind's --log is not used, because each OpenCL context truncates that file.)
@@ -16,7 +17,15 @@ class Implementation:
 
     def __init__(self, name, variables=None, prefix=(), slow=False, unavailable=None, reports_faults=False, needs_device=False, budget=60):
         self.name, self.prefix, self.slow, self.unavailable, self.reports_faults = name, list(prefix), slow, unavailable, reports_faults
-        self.variables, self.needs_device, self.budget = dict(variables or {}), needs_device, budget
+        self.variables, self.needs_device, self.budget, self.from_spirv = dict(variables or {}), needs_device, budget, False
+
+    def with_spirv(self):
+        """Returns the same implementation with kernels as SPIR-V."""
+        other = copy.copy(self)
+        other.name, other.variables, other.from_spirv = f"{self.name}, SPIR-V", {**self.variables, "RAYA_BUILD_OPTIONS": "--il"}, True
+        if not shutil.which("clang-15") or not shutil.which("llvm-spirv-15"):
+            other.unavailable = other.unavailable or "no clang-15 or no llvm-spirv-15 (tools/setup --gpu)"
+        return other
 
     def run(self, command, scratch, limit, variables=None):
         """Runs a command with additional environment variables. Returns (exit code, None after `limit` seconds; stdout and stderr; stdout; text of the
@@ -73,13 +82,18 @@ def known_implementations(build):
                                 unavailable=None if icd("rusticl").exists() else "not installed (Debian: mesa-opencl-icd)"))
     other_drivers = sorted(p for p in VENDORS.glob("*.icd") if p.stem not in ("pocl", "rusticl", "mesa"))
     found += [Implementation(p.stem, {"OCL_ICD_VENDORS": str(p)}, needs_device=True) for p in other_drivers]
+    variants = {"RAYA_BUILD_OPTIONS", "POCL_WORK_GROUP_METHOD", "POCL_DEVICES"}
+    found += [i.with_spirv() for i in found if not variants & set(i.variables)]
     if not any(word in p.stem.lower() for p in other_drivers for word in ("nvidia", "amd", "rocm", "intel", "gpu")):
         found.append(Implementation("GPU", unavailable="no GPU's driver is installed"))
     return found
 
 
 def mark_missing_devices(implementations, raya):
-    """Marks implementations whose driver has no device here, such as a GPU's, as unable to run."""
+    """Marks implementations as unable to run whose driver has no device here, such as a GPU's, or does not accept SPIR-V."""
     for implementation in implementations:
-        if implementation.needs_device and implementation.run([raya, "devices"], tempfile.gettempdir(), 120)[0] == 3:
-            implementation.unavailable = "its driver is installed, but reports no device"
+        if implementation.unavailable or not (implementation.needs_device or implementation.from_spirv):
+            continue
+        if implementation.run([raya, "verify", "--list"], tempfile.gettempdir(), 120)[0] == 3:  # exit code 3: no usable device
+            implementation.unavailable = ("no device accepts SPIR-V" if implementation.from_spirv else
+                                          "its driver is installed, but reports no device")

@@ -23,12 +23,17 @@ struct StageProgress {
 /// remaining time if `progress` is known and its fraction is at least 0.1 %.
 std::string progress_line(const std::string& stage, const std::optional<StageProgress>& progress, double seconds);
 
+/// The build budget: a program that compiles for longer counts as slow. tools/portability has its own budget for each
+/// implementation.
+inline constexpr std::chrono::seconds kBuildBudget{60};
+
 /// Starts a thread that prints messages about the compilation of kernels on stderr, unless --quiet is given. After 1 s,
 /// which is longer than loading cached kernels takes, it prints that kernels are being compiled for the device. After
 /// another `patience` it prints remedies. When the returned thread is destroyed, it prints the time that compilation
 /// took, if that time was more than 1 s.
 [[nodiscard]] std::jthread announce_compiling(const std::string& device,
-                                              std::chrono::milliseconds patience = std::chrono::seconds(59));
+                                              std::chrono::milliseconds patience = kBuildBudget -
+                                                                                   std::chrono::seconds(1));
 
 /// A thread that draws progress_line() of the current stage as the status line (log.hpp), if stderr is a terminal and
 /// --quiet is not given. It draws first after 0.7 s, then five times a second. The destructor erases the line.

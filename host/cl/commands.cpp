@@ -1,6 +1,6 @@
 #include "host/cl/commands.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <exception>
 #include <map>
@@ -79,7 +79,10 @@ Program Session::build(const std::string& name, const std::string& source,
     if (built != shared.programs.end()) return built->second;
     const SpanLog::Span building = span("build " + name);
     const Clock::time_point start = Clock::now();
+    Capture* const capture = Capture::active();
+    if (capture != nullptr) capture->begin_build(name, source, fmt::format("{}", fmt::join(all_options, " ")));
     Program program(context_, device_, name, source, all_options);
+    if (capture != nullptr) capture->end_build(program.handle());
     if (logs_builds_) log_kernel_build("build", name, program.options(), start);
     if (builds_ != nullptr) builds_->push_back({program.handle(), name, program.options(), seconds_since(start)});
     log_message(kDetailed, fmt::format("build {}: options {}", name, program.options()));
@@ -104,8 +107,10 @@ cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::si
             name, count, element_bytes, double(count) * double(element_bytes), info_.name, info_.max_allocation_bytes));
     }
     bytes_taken_ += count * element_bytes;
-    return guarded(fmt::format("allocating buffer '{}' ({} bytes)", name, count * element_bytes),
-                   [&] { return cl::Buffer(context_, CL_MEM_READ_WRITE, count * element_bytes); });
+    const cl::Buffer buffer = guarded(fmt::format("allocating buffer '{}' ({} bytes)", name, count * element_bytes),
+                                      [&] { return cl::Buffer(context_, CL_MEM_READ_WRITE, count * element_bytes); });
+    if (Capture::active() != nullptr) Capture::active()->add_buffer(*queue_, buffer, name, count * element_bytes);
+    return buffer;
 }
 
 std::unique_ptr<HostMemory> Session::host_memory(const std::string& name, std::size_t bytes) const {
@@ -151,12 +156,18 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
     }
     const bool records_launch = (logs_builds_ || builds_ != nullptr) && launched_.emplace(kernel(), group_size).second;
     const std::string name = records_launch ? fmt::format("{}, groups of {}", record.target_name, group_size) : "";
-    if (records_launch) finish();
+    if (records_launch || host_counters_ != nullptr) finish();
+    const HostCounts counts_before = host_counters_ != nullptr ? host_counters_->read() : HostCounts{};
     const Clock::time_point start = Clock::now();
+    Capture* const capture = Capture::active();
+    if (capture != nullptr) capture->begin_launch(*queue_, kernel, record.target_name, groups, group_size);
     submit(operation, std::move(record), [&](cl::Event* event) {
         queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
                                      nullptr, event);
+        if (host_counters_ != nullptr) queue_->finish();
     });
+    if (capture != nullptr) guarded(operation, [&] { capture->end_launch(*queue_); });
+    if (host_counters_ != nullptr) pending_.back().record.host_counts = host_counters_->read() - counts_before;
     if (!records_launch) return;
     finish();
     const cl::Program program = kernel.getInfo<CL_KERNEL_PROGRAM>();

@@ -169,6 +169,10 @@ class Session {
         recorded_launches_ = launches;
     }
 
+    /// From now on, the session waits for the device before and after each kernel launch, and the launch's record has
+    /// the counts of `counters`, which must outlive the session.
+    void count_host_events(const HostCounters& counters) { host_counters_ = &counters; }
+
     /// Enables the messages of compile_notice().
     void announce_compiling() { announces_compiling_ = true; }
 
@@ -260,6 +264,7 @@ class Session {
     std::set<std::pair<cl_kernel, std::size_t>> launched_;
     bool announces_compiling_ = false;
     SpanLog* spans_ = nullptr;
+    const HostCounters* host_counters_ = nullptr;
     std::size_t recorded_launches_ = 0;  // number of further launches whose arguments are recorded
 };
 

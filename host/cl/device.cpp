@@ -12,6 +12,7 @@
 #include "host/base/module.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
+#include "host/cl/spirv.hpp"
 
 namespace raya {
 namespace {
@@ -43,7 +44,7 @@ std::uint32_t max_loop_iterations_of(const std::string& device_name) {
 
 std::string full_name(const DeviceInfo& device) { return device.platform + " " + device.name; }
 
-bool is_usable(const DeviceInfo& device) { return device.available && device.compiler_available; }
+bool is_usable(const DeviceInfo& device) { return unusable_reason(device).empty(); }
 
 std::string device_list(const std::vector<DeviceInfo>& devices) {
     std::string list;
@@ -75,7 +76,9 @@ std::size_t default_index(const std::vector<DeviceInfo>& devices, std::size_t or
         const std::vector<std::size_t> found = usable_devices(type, devices);
         if (!found.empty()) return found[ordinal % found.size()];
     }
-    throw DeviceError("no available OpenCL device has a compiler; see clinfo; devices:" + device_list(devices));
+    throw DeviceError((uses_il() ? "no available OpenCL device accepts SPIR-V; remedy: omit --il; devices:"
+                                 : "no available OpenCL device has a compiler; see clinfo; devices:") +
+                      device_list(devices));
 }
 
 /// Returns the entry of a comma-separated list whose index is `ordinal` modulo the number of entries.
@@ -139,6 +142,12 @@ std::vector<cl::Device> all_devices() {
     return all;
 }
 
+std::string unusable_reason(const DeviceInfo& device) {
+    if (!device.available) return "not available";
+    if (!device.compiler_available) return "without a compiler";
+    return uses_il() && device.il_versions.empty() ? "unable to accept SPIR-V (--il)" : "";
+}
+
 DeviceInfo device_info(const cl::Device& device) {
     return guarded("querying the properties of a device", [&device] {
         const cl_device_fp_config floats = device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>();
@@ -165,6 +174,7 @@ DeviceInfo device_info(const cl::Device& device) {
         info.round_to_nearest = (floats & CL_FP_ROUND_TO_NEAREST) != 0;
         info.inf_nan = (floats & CL_FP_INF_NAN) != 0;
         info.profiling = (device.getInfo<CL_DEVICE_QUEUE_PROPERTIES>() & CL_QUEUE_PROFILING_ENABLE) != 0;
+        info.il_versions = il_versions(device);
         info.available = device.getInfo<CL_DEVICE_AVAILABLE>() == CL_TRUE;
         info.compiler_available = device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() == CL_TRUE;
         return info;
@@ -189,9 +199,9 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
             entry, device_list(devices)));
     }
     if (!is_usable(devices[found])) {
-        throw DeviceError(
-            fmt::format("OpenCL device {} is {}; remedy: choose another device from:{}", full_name(devices[found]),
-                        devices[found].available ? "without a compiler" : "not available", device_list(devices)));
+        throw DeviceError(fmt::format("OpenCL device {} is {}; remedy: choose another device from:{}",
+                                      full_name(devices[found]), unusable_reason(devices[found]),
+                                      device_list(devices)));
     }
     return found;
 }

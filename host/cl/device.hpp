@@ -16,9 +16,12 @@ std::vector<cl::Device> all_devices();
 /// Queries the properties of a device. Throws DeviceError if a query fails.
 DeviceInfo device_info(const cl::Device& device);
 
+/// Returns the reason why raya cannot use the device: it is not available, has no compiler, or does not accept SPIR-V
+/// while uses_il() is true. Empty if the device is usable.
+std::string unusable_reason(const DeviceInfo& device);
+
 /// Returns the index into `devices` of the device that `wanted` selects. `ordinal` is a number for round-robin
-/// selection, such as the index of an MPI rank on its host. A device is usable if it is available and has a compiler.
-/// Values of `wanted`:
+/// selection, such as the index of an MPI rank on its host. "Usable": see unusable_reason(). Values of `wanted`:
 /// - empty: among the usable GPUs, the device with index `ordinal` modulo their number. If no GPU is usable, the
 ///   function chooses among the usable CPUs, and if no CPU is usable, among the other usable devices;
 /// - "0", "1", ...: the index in `devices`, as `raya devices` prints it, if it is less than the number of devices;

@@ -28,6 +28,7 @@ struct DeviceInfo {
     bool denormals = false, round_to_nearest = false, inf_nan = false;
     bool profiling = false;  // the device can record the times of commands
     bool available = false, compiler_available = false;
+    std::string il_versions{};  // as in il_versions(): versions of SPIR-V that the device accepts
 };
 
 /// Returns true for Mesa's llvmpipe, the only device with a known limit of loop iterations.

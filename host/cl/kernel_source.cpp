@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cstdlib>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -14,7 +15,9 @@
 namespace raya {
 namespace {
 
-std::string read_kernel_file(const std::string& file, const std::filesystem::path& folder) {
+std::string read_kernel_file(const std::string& file, std::filesystem::path folder) {
+    if (const char* const variable = std::getenv("RAYA_KERNEL_DIR"); folder.empty() && variable != nullptr)
+        folder = variable;
     if (folder.empty()) {
         const auto found = embedded_files().find("kernels/" + file);
         if (found == embedded_files().end())
@@ -45,16 +48,18 @@ void append_expanded(std::string& source, const std::string& text, const std::st
     source += fmt::format("#line 1 \"{}\"\n", name);
     std::istringstream lines(text);
     int number = 0;
+    bool has_include = false;
     for (std::string line; std::getline(lines, line);) {
         ++number;
         const std::string included = included_file(line, name);
-        if (included.empty()) {
+        if (included.empty())
             source += line + '\n';
-        } else {
-            if (included_files.insert(included).second)
-                append_expanded(source, kernel_file(included, sources), included, sources, included_files);
-            source += fmt::format("#line {} \"{}\"\n", number + 1, name);
-        }
+        else if (included_files.insert(included).second)
+            append_expanded(source, kernel_file(included, sources), included, sources, included_files);
+        has_include |= !included.empty();
+        // The compiler ignores the #line directives of an include that an #if skips, so the end of the #if needs one.
+        const bool may_end_skipped_include = has_include && (line.starts_with("#el") || line.starts_with("#endif"));
+        if (!included.empty() || may_end_skipped_include) source += fmt::format("#line {} \"{}\"\n", number + 1, name);
     }
 }
 

@@ -32,6 +32,7 @@ std::vector<LabelSummary> Profile::summary() const {
         line.submit_ns += duration_ns(command.queued, command.submitted);
         line.start_ns += duration_ns(command.submitted, command.started);
         line.bytes += command.bytes;
+        if (command.host_counts) line.host_counts = line.host_counts.value_or(HostCounts{}) + *command.host_counts;
     }
     for (LabelSummary& line : lines) line.mean_ns = double(line.total_ns) / double(line.launches);
     return lines;

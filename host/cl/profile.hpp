@@ -2,9 +2,12 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "host/cl/host_counters.hpp"
 
 namespace raya {
 
@@ -22,6 +25,7 @@ struct CommandRecord {
     std::string target_name{};                 // name of the kernel, of the buffer, or of both buffers of a copy
     std::uint64_t groups = 0, group_size = 0;  // of a kernel launch; group_size in work-items
     std::vector<ArgumentText> arguments{};     // of a kernel launch; only if Session::observe() requested them
+    std::optional<HostCounts> host_counts{};   // of a kernel launch, after Session::count_host_events()
 };
 
 /// Summary of all commands of one label and kind. total_ns, min_ns, mean_ns and max_ns are nanoseconds from start to
@@ -34,6 +38,7 @@ struct LabelSummary {
     std::uint64_t max_ns = 0;
     std::uint64_t submit_ns = 0, start_ns = 0;  // total delays from queued to submitted, and from submitted to started
     std::uint64_t bytes = 0;                    // total; as CommandRecord::bytes
+    std::optional<HostCounts> host_counts{};    // total; as CommandRecord::host_counts
 };
 
 /// The commands of a session in the order in which they were enqueued.

@@ -11,6 +11,7 @@
 #include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
 #include "host/cl/kernel_binaries.hpp"
+#include "host/cl/spirv.hpp"
 
 namespace raya {
 namespace {
@@ -76,15 +77,18 @@ std::size_t KernelBuild::binary_bytes() const {
 Program::Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,
                  const std::vector<std::string>& options)
     : name_(std::move(name)), options_(joined(options)) {
-    if (load_binary(context, device, source)) return;
+    std::string driver_options = options_;
+    const bool from_spirv = remove_il_option(driver_options);
+    if (load_binary(context, device, source, driver_options)) return;
     const std::string operation = fmt::format("building program '{}'", name_);
     const std::string device_name = guarded(operation, [&] {
-        program_ = cl::Program(context, source);
+        program_ = from_spirv ? spirv_program(context, device, source, driver_options, operation)
+                              : cl::Program(context, source);
         return name_of(device);
     });
     try {
         const DriverCall call(operation.c_str());
-        program_.build(device, options_.c_str());
+        program_.build(device, driver_options.c_str());
     } catch (const cl::Error& error) {
         const std::string log = log_of(program_, device);
         throw DeviceError(fmt::format("{}\n  device: {}\n  options: {}\n  build log:\n{}",
@@ -96,14 +100,15 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
     log_ = log_of(program_, device);
 }
 
-bool Program::load_binary(const cl::Context& context, const cl::Device& device, const std::string& source) {
+bool Program::load_binary(const cl::Context& context, const cl::Device& device, const std::string& source,
+                          const std::string& driver_options) {
     try {
         binary_file_ = kernel_binary_file(device, source, options_);
         const std::optional<KernelBinary> binary = read_kernel_binary(binary_file_);
         if (!binary) return false;
         program_ = cl::Program(context, {device}, {*binary});
         const DriverCall call("loading a kernel's binary");
-        program_.build(device, options_.c_str());
+        program_.build(device, driver_options.c_str());
         binary_file_.clear();
         log_message(kDetailed, fmt::format("build {}: from the binary installed with raya\n", name_));
         return true;

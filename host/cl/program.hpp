@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host/base/clock.hpp"
+#include "host/cl/capture.hpp"
 #include "host/cl/error_names.hpp"
 #include "host/cl/memory.hpp"
 #include "host/cl/opencl.hpp"
@@ -109,6 +110,7 @@ class Kernel {
     }
 
     void set_bytes(cl_uint index, std::size_t bytes, const void* value) {
+        if (Capture::active() != nullptr) Capture::active()->set_argument(kernel_, index, bytes, value);
         guarded(fmt::format("setting argument {} of kernel '{}' ({} bytes)", index, name_, bytes),
                 [&] { return kernel_.setArg(index, bytes, value); });
     }
@@ -152,8 +154,8 @@ struct KernelBuild {
 /// A built OpenCL program, made by Session::build().
 class Program {
   public:
-    /// Builds `source` for `device` with `options`, joined by blanks; `name` is for messages. Throws DeviceError, with
-    /// options, device and the whole build log, if the build fails.
+    /// Builds `source` for `device` with `options`, joined by blanks; `name` is for messages. The option "--il" builds
+    /// from SPIR-V (spirv.hpp). Throws DeviceError, with options, device and the whole build log, if the build fails.
     Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,
             const std::vector<std::string>& options);
 
@@ -178,7 +180,8 @@ class Program {
     cl::Kernel checked_kernel(const std::string& kernel_name, std::size_t argument_count) const;
 
     /// Loads the program from its binary file. Returns false if there is no file or the driver rejects it.
-    bool load_binary(const cl::Context& context, const cl::Device& device, const std::string& source);
+    bool load_binary(const cl::Context& context, const cl::Device& device, const std::string& source,
+                     const std::string& driver_options);
 
     cl::Program program_;
     std::string name_, options_, log_;

@@ -10,15 +10,14 @@
 
 #include "host/base/log.hpp"
 #include "host/base/progress.hpp"
-#include "host/base/whole_file.hpp"
 #include "host/cl/kernel_options.hpp"
+#include "host/cli/bench_baseline.hpp"
 #include "host/cli/bench_build.hpp"
 #include "host/cli/bench_rows.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
-#include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/scene_input.hpp"
@@ -26,7 +25,6 @@
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 #include "host/model/unit_text.hpp"
-#include "host/report/bench_compare.hpp"
 #include "host/report/render_report.hpp"
 
 namespace raya {
@@ -36,55 +34,12 @@ struct BenchCommand {
     RenderOptions render;
     std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
     std::vector<std::string> variants;
-    std::uint32_t samples = 7;           // number of time samples of each row
-    std::string report, page, baseline;  // files of --report, --page and --compare
-    double tolerance_percent = 10;
+    std::uint32_t samples = 7;  // number of time samples of each row
+    ReportFiles files;          // of --report and --page
+    BaselineOptions compare;
     bool denormals = false, build = false;
     std::optional<double> limit_s;  // maximum seconds to compile a kernel
 };
-
-// Returns the report of --compare; without --compare, an empty report. Checks --tolerance and --page, too. Called
-// before the measurements, so that an error is reported before the measurements take their time.
-BenchReport read_baseline(const BenchCommand& command) {
-    if (!(command.tolerance_percent >= 0 && command.tolerance_percent <= 100))
-        throw UserError(fmt::format("--tolerance {}: must be 0..100 percent", command.tolerance_percent));
-    if (!command.page.empty()) check_page_name("--page", command.page);
-    if (command.baseline.empty()) return {};
-    return read_bench_report(command.baseline);
-}
-
-void check_comparable(const BenchCommand& command, const BenchReport& baseline, const BenchReport& measured) {
-    if (command.baseline.empty() || rows_in_common(baseline, measured) > 0) return;
-    const BenchMeasurement &old_row = baseline.rows.front(), &new_row = measured.rows.front();
-    throw UserError(fmt::format(
-        "{}: contains no row of this run: its first row is {}, {}, {}, {}, {} lanes, group {}; the first row of this "
-        "run is {}, {}, {}, {}, {} lanes, group {}; remedy: use the scene and options of the baseline, or write a new "
-        "baseline (raya bench --report)",
-        command.baseline, old_row.scene, old_row.size, old_row.array, old_row.format, old_row.lanes, old_row.group_size,
-        new_row.scene, new_row.size, new_row.array, new_row.format, new_row.lanes, new_row.group_size));
-}
-
-void write_and_compare(const BenchCommand& command, const BenchReport& baseline, BenchReport measured) {
-    BenchComparison comparison;
-    if (!command.baseline.empty()) {
-        comparison = compare_bench(baseline, measured, command.tolerance_percent);
-        measured.compared = {{"baseline", command.baseline},  {"tolerance_percent", command.tolerance_percent},
-                             {"remarks", comparison.remarks}, {"compared", comparison.compared},
-                             {"slower", comparison.slower},   {"other_images", comparison.other_images},
-                             {"rows", comparison.rows}};
-    }
-    write_report_and_page({command.report, command.page}, to_json(measured));
-    if (command.baseline.empty()) return;
-    fmt::print("\ncompared with {}, tolerance {} % of its rates:\n{}", printable(command.baseline),
-               command.tolerance_percent, comparison.text);
-    std::fflush(stdout);
-    if (comparison.failed())
-        throw CheckFailure{fmt::format("{}: {} of {} slower by more than {} %, {} with a different image",
-                                       command.baseline, comparison.slower, counted(comparison.compared, "row"),
-                                       command.tolerance_percent, comparison.other_images)};
-    fmt::print("{} compared, none slower by more than {} %, all images equal\n", counted(comparison.compared, "row"),
-               command.tolerance_percent);
-}
 
 void check_build_options(const BenchCommand& command) {
     if (command.limit_s && !(*command.limit_s > 0 && *command.limit_s <= 1e6))
@@ -94,7 +49,7 @@ void check_build_options(const BenchCommand& command) {
 void write_and_check_builds(const BenchCommand& command, const BenchReport& report) {
     fmt::print("compiled for {} {} {}\n", report.platform, report.device, report.driver);
     print_builds(report.builds);
-    write_report_and_page({command.report, ""}, to_json(report));
+    write_report_and_page({command.files.report, ""}, to_json(report));
     for (const BenchBuild& build : report.builds)
         if (command.limit_s && build.build_s + build.launch_s > *command.limit_s)
             throw CheckFailure{fmt::format("{}, {}, {}, {} lanes: {:.1f} s to compile, above --limit {} s",
@@ -179,7 +134,8 @@ void bench(const CLI::App& parser, BenchCommand command) {
     check_build_options(command);
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
-    const BenchReport baseline = read_baseline(command);
+    if (!command.files.page.empty()) check_page_name("--page", command.files.page);
+    const Baseline baseline = read_baseline(command.compare);
     const std::vector<NumberFormat> formats =
         parse_formats(command.render.format.empty() ? "fp32,spa22" : command.render.format);
     command.render.format.clear();
@@ -196,7 +152,7 @@ void bench(const CLI::App& parser, BenchCommand command) {
     }
     session.announce_compiling();
     std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
-    check_comparable(command, baseline, bench_report(rows, session.device()));
+    check_comparable(command.compare, baseline.report, bench_report(rows, session.device()));
     bar->stage("taking samples");
     take_samples(rows, command.samples);
     bar.reset();
@@ -206,11 +162,11 @@ void bench(const CLI::App& parser, BenchCommand command) {
                counted(rows.front().result.rays, "ray"), counted(command.samples, "sample"));
     print_tables(command, session, rows, formats);
     BenchReport measured = bench_report(rows, session.device());
-    if (!command.page.empty()) {
+    if (!command.files.page.empty()) {
         const ProgressBar measuring(true, "measuring the device's peak");
         add_rooflines(measured, rows, device);
     }
-    write_and_compare(command, baseline, std::move(measured));
+    write_and_compare(command.compare, command.files, baseline, std::move(measured));
 }
 
 std::vector<ShortHelp> bench_short_help() {
@@ -235,7 +191,8 @@ std::vector<ShortHelp> bench_short_help() {
             {"--denormals", more, "Also time every row with denormals flushed to 0"},
             {"--build", more, "Measure only compilation"},
             {"--limit", more, "Maximum seconds to compile a kernel, for --build"},
-            {"--kernel-dir", more, "Read the kernels from this folder"}};
+            {"--kernel-dir", more, "Read the kernels from this folder"},
+            {"--il", more, "Build the kernels from SPIR-V"}};
 }
 
 }  // namespace
@@ -280,24 +237,14 @@ void add_bench_command(CLI::App& program) {
         ->type_name("N")
         ->capture_default_str();
     group.next("Report and comparison");
-    add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
+    add_file(*command, FileUse::kWritten, "--report", options->files.report, "FILE.json",
              "Write the rows as JSON, for a later --compare; -: stdout; the tables then go to stderr");
     add_file(
-        *command, FileUse::kWritten, "--page", options->page, "FILE.html",
+        *command, FileUse::kWritten, "--page", options->files.page, "FILE.html",
         "Write rates, comparison and roofline as an HTML page; raya page makes the same page from a report. Measures "
         "the device's peak for each pair of a format and a number of lanes; each pair takes some seconds")
         ->excludes(build);
-    CLI::Option* compare =
-        add_file(*command, FileUse::kRead, "--compare", options->baseline, "FILE.json",
-                 "Compare the rows with those of an earlier --report: exit code 4 if a row is slower or its image "
-                 "differs")
-            ->excludes(build);
-    add_value(*command, "--tolerance", options->tolerance_percent,
-              "With --compare: tolerance in percent, 0..100; a row is slower if both its best and its median rate fall "
-              "by more than the tolerance")
-        ->type_name("PERCENT")
-        ->capture_default_str()
-        ->needs(compare);
+    add_baseline_options(*command, options->compare, build);
     command->get_option("--format")
         ->description("Formats to compare, comma-separated: fp32, spa22 (e6m15), eXmY[t]; default: fp32,spa22");
     command->callback([command, options] { bench(*command, *options); });

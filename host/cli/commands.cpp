@@ -27,6 +27,7 @@
 #include "host/cli/options.hpp"
 #include "host/cli/parse_failure.hpp"
 #include "host/cli/verbosity_options.hpp"
+#include "host/cli/verify_as.hpp"
 #include "host/error.hpp"
 #include "host/ranks/launch.hpp"
 #include "host/tune/trial.hpp"
@@ -84,7 +85,10 @@ int run_worker(const WorkerRequest& request) {
         return kExitOk;
     };
     try {
-        (request.task == kTrialTask ? run_trial : run_checks)(request.pipe, request.settings);
+        if (request.task == kTrialTask)
+            run_trial(request.pipe, request.settings);
+        else
+            run_checks(request.pipe, request.settings, render_case);
         return kExitOk;
     } catch (const UserError& error) {
         return send_error("user", error);

@@ -25,9 +25,9 @@ void list_devices() {
              std::to_string(default_lanes(info)), std::to_string(default_group_size(info)),
              fmt::format("{}{}", info.local_memory_bytes / 1024, info.local_memory_is_dedicated ? "" : " (global)"),
              std::to_string(info.global_memory_bytes >> 20), yes_or_no(info.correctly_rounded_divide_sqrt),
-             yes_or_no(info.fused_multiply_add), yes_or_no(info.profiling),
-             yes_or_no(info.available && info.compiler_available)});
-        versions.push_back(fmt::format("{}: {}, driver {}", versions.size(), info.version, info.driver));
+             yes_or_no(info.fused_multiply_add), yes_or_no(info.profiling), yes_or_no(unusable_reason(info).empty())});
+        versions.push_back(fmt::format("{}: {}, driver {}{}{}", versions.size(), info.version, info.driver,
+                                       info.il_versions.empty() ? "" : ", IL ", info.il_versions));
     }
     if (versions.empty()) choose_device("");  // throws the error for a computer without devices
     fmt::print("{}\n", text_table(rows));

@@ -8,6 +8,7 @@
 #include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/kernel_source.hpp"
+#include "host/cl/spirv.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 
@@ -89,6 +90,15 @@ class FileCheck {
 
 CLI::Option* set_file_use(CLI::Option* option, FileUse use) {
     return attach_note(option, kFileUseNote, std::to_string(static_cast<int>(use)));
+}
+
+void add_kernel_source_options(CLI::App& command, std::string& folder) {
+    add_file(command, FileUse::kKernelFolder, "--kernel-dir", folder, "DIR",
+             "Read the kernels from this folder, for kernel development");
+    command.add_flag_callback(
+        "--il", use_il,
+        "Compile the kernels to SPIR-V with clang-15 and llvm-spirv-15, and give the driver SPIR-V "
+        "instead of source; like --il in RAYA_BUILD_OPTIONS; the image does not change");
 }
 
 FileUse file_use_of(CLI::Option& option) {

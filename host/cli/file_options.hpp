@@ -21,6 +21,9 @@ CLI::Option* add_file(CLI::App& command, FileUse use, const std::string& name, V
     return set_file_use(add_value(command, name, value, help)->type_name(type), use);
 }
 
+/// Adds --kernel-dir, whose value is stored in `folder`, and --il.
+void add_kernel_source_options(CLI::App& command, std::string& folder);
+
 /// A file and its option. The option's value is the file's name, or the file's name is derived from that value.
 struct NamedFile {
     std::string option, file;

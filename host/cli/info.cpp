@@ -27,9 +27,10 @@ struct InfoCommand {
 };
 
 // Options of raya render that raya info does not have, because they do not affect the memory needs of a PE.
-constexpr std::array<const char*, 16> kExecutionOptions = {
-    "--device", "--lanes",   "--group",     "--no-tuned",     "--kernel-dir",    "--exchange", "--sampling", "--points",
-    "--inject", "--returns", "--threshold", "--packet-words", "--link-exchange", "--packets",  "--replay",   "--async"};
+constexpr std::array<const char*, 17> kExecutionOptions = {
+    "--device",        "--lanes",   "--group",  "--no-tuned", "--kernel-dir", "--exchange",
+    "--sampling",      "--points",  "--inject", "--returns",  "--threshold",  "--packet-words",
+    "--link-exchange", "--packets", "--replay", "--async",    "--il"};
 
 void add_options(CLI::App& command, InfoCommand& options) {
     add_file(command, FileUse::kRead, "SCENE", options.render.scene, "SCENE.nff",

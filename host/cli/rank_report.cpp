@@ -23,7 +23,10 @@ Roofline measured_roofline(RenderRun& run, const RankWork& work) {
                 fmt::format("three measurements of the device's peak differ by {:.0f} %: another program uses the "
                             "device; fractions of the peak are unreliable",
                             100 * peak.scatter));
-        return roofline(peak, work.kernels, work.commands);
+        Roofline measured = roofline(peak, work.kernels, work.commands);
+        if (const HostCounters* counters = run.recorder.host_counters())
+            measured.host_counts_unavailable = counters->unavailable();
+        return measured;
     } catch (const DeviceError& error) {  // not rethrown: the render's figures are valid without a roofline
         none.unavailable = error.what();
         return none;

@@ -61,6 +61,8 @@ std::vector<ShortHelp> render_short_help() {
 
 void check_render(const CLI::App& parser, const RenderCommand& command) {
     check_trace(parser, command.trace);
+    if (command.counters && !command.needs_roofline())
+        throw UserError("--counters: the counts are shown with the roofline: add --profile or --page FILE.html");
     check_checkpoint_options(parser, command.checkpoint);
     if (command.frames.given()) check_frames(command);
     check_output_files(parser, command);
@@ -98,13 +100,13 @@ void add_render_command_options(CLI::App& command, RenderCommand& options) {
     add_trace_options(command, options.trace);
 }
 
-void add_render_command(CLI::App& program, Ranks& ranks) {
+CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<RenderCommand>& options) {
     CLI::App* command = program.add_subcommand("render", "Render an NFF scene on a ring machine or the torus machine");
     add_examples(*command, {{"raya render scenes/centre.nff -o centre.png",
                              "Render on a ring of 256 PEs, in the scene's resolution"},
                             {"raya render scenes/glass.nff --machine torus --size 64 --report glass.json -o glass.png",
                              "Render a small image on a torus of 64 nodes, with a report"}});
-    const auto options = std::make_shared<RenderCommand>();
+    command->callback([options] {});  // keeps the options
     add_short_help(*command, render_short_help());
     const OptionGroup group(*command, kFiles);
     add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
@@ -112,10 +114,22 @@ void add_render_command(CLI::App& program, Ranks& ranks) {
         ->required();
     add_render_command_options(*command, *options);
     command->get_option("--output")->required();
-    const OptionGroup kernels(*command, kKernels);
+    OptionGroup last_options(*command, kDiagnostics);
+    command->add_flag(
+        "--counters", options->counters,
+        "With --profile or --page, and a CPU as the device: count processor time, page faults and, where "
+        "Linux offers them, cycles, instructions, cache misses and branch misses of each kernel. The host "
+        "waits for each launch, which makes renders with many launches slower");
+    last_options.next(kKernels);
     command->add_flag("--cache-kernels", options->cache_kernels,
                       "Store the binaries of this render's kernels in the program's folder: later renders with the "
                       "same kernels and options, on this device and driver, do not compile");
+    return command;
+}
+
+void add_render_command(CLI::App& program, Ranks& ranks) {
+    const auto options = std::make_shared<RenderCommand>();
+    CLI::App* const command = declare_render_command(program, options);
     command->callback([command, options, &ranks] { render(*command, *options, ranks); });
 }
 

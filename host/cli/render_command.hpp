@@ -1,5 +1,6 @@
 // The options of `raya render`, and the steps of a render that are the same for all machines: checks, report, output.
 #pragma once
+#include <memory>
 #include <string>
 
 #include "host/base/log.hpp"
@@ -32,7 +33,7 @@ struct RenderCommand {
     FrameOptions frames;
     CheckpointOptions checkpoint;
     TraceOptions trace;
-    bool profile = false, cache_kernels = false;
+    bool profile = false, counters = false, cache_kernels = false;
     bool summary = true;          // print the report's summary
     bool prints_profile = true;   // print the table of --profile
     ProgressCallback progress{};  // empty: progress bar on a terminal
@@ -81,6 +82,9 @@ std::optional<Render> render_image(const RenderCommand& command, RenderRun& run)
 
 /// Adds all options of `raya render` except SCENE.
 void add_render_command_options(CLI::App& command, RenderCommand& options);
+
+/// Adds the command to the parser without running it: the parser sets `options`.
+CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<RenderCommand>& options);
 
 /// Throws UserError if options are incompatible or a file is not writable.
 void check_render(const CLI::App& parser, const RenderCommand& command);

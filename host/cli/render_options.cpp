@@ -132,8 +132,7 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
               "else 1 on a CPU, 128 elsewhere")
         ->type_name("L");
     add_tuned_option(command, o.no_tuned);
-    add_file(command, FileUse::kKernelFolder, "--kernel-dir", o.kernel_dir, "DIR",
-             "Read the kernels from this folder, for kernel development");
+    add_kernel_source_options(command, o.kernel_dir);
     offer_render_choices(command);
 }
 

@@ -52,11 +52,15 @@ void check_trace(const CLI::App& command, const TraceOptions& trace) {
             fmt::format("--trace {}: choose a name that ends in .json, or in .json.gz for compression", trace.file));
 }
 
-RenderRecorder::RenderRecorder(const TraceOptions& trace, bool profile) : trace_(trace), profile_(profile) {}
+RenderRecorder::RenderRecorder(const TraceOptions& trace, bool profile, bool counters)
+    : trace_(trace), profile_(profile) {
+    if (counters) host_counters_.emplace();
+}
 
 void RenderRecorder::observe(Session& session, Ranks& ranks) {
     if (!traces() && !profile_) return;
     session.observe(spans_, traces() ? trace_.events : 0);
+    if (host_counters_) session.count_host_events(*host_counters_);
     if (traces() && session.profile().timed()) device_clock_offset_ = measure_clock_offset(session);
     if (traces() && ranks.has_several()) align_clocks(ranks);
 }

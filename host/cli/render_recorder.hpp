@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,14 +35,18 @@ void check_trace(const CLI::App& command, const TraceOptions& trace);
 class RenderRecorder {
   public:
     /// `profile`: records the time of each build. Without trace and profile, the recorder has only the spans that its
-    /// owner adds to spans().
-    RenderRecorder(const TraceOptions& trace, bool profile);
+    /// owner adds to spans(). `counters`: counts the host's events during kernels; construct the recorder before the
+    /// first call of an OpenCL driver.
+    RenderRecorder(const TraceOptions& trace, bool profile, bool counters);
 
     bool traces() const { return !trace_.file.empty(); }
     SpanLog& spans() { return spans_; }
 
-    /// Records the session's spans from now on. For a trace, measures the offset of the device's clock to the host's,
-    /// and of this rank's clock to rank 0's.
+    /// Returns null unless the recorder counts the host's events.
+    const HostCounters* host_counters() const { return host_counters_ ? &*host_counters_ : nullptr; }
+
+    /// Records the session's spans from now on, and counts the host's events. For a trace, measures the offset of the
+    /// device's clock to the host's, and of this rank's clock to rank 0's.
     void observe(Session& session, Ranks& ranks);
 
     /// Sends the records of the other ranks to rank 0. Every rank must call gather().
@@ -60,6 +65,7 @@ class RenderRecorder {
 
     const TraceOptions& trace_;
     bool profile_;
+    std::optional<HostCounters> host_counters_;
     std::uint64_t begin_ns_ = host_clock_ns();  // host's clock at time 0 of the trace
     SpanLog spans_;
     ClockOffset device_clock_offset_;  // offset of the device's clock to the host's

@@ -4,9 +4,22 @@
 
 #include "host/cl/device.hpp"
 #include "host/cli/render_command.hpp"
+#include "host/error.hpp"
 #include "host/model/unit_text.hpp"
 
 namespace raya {
+namespace {
+
+void require_host_device(const cl::Device& device) {
+    const DeviceInfo info = device_info(device);
+    if (info.type != "cpu")
+        throw UserError(
+            fmt::format("--counters: {} is not a CPU, and only events of the host's processor are counted; remedy: "
+                        "--device cpu, or the profiler of the device's vendor (docs/profile.md)",
+                        info.name));
+}
+
+}  // namespace
 
 void RenderProgress::stage(const std::string& label) {
     if (bar_ && sequence_size_ == 0) bar_->stage(label);
@@ -38,7 +51,7 @@ void RenderProgress::end() {
 
 RenderRun::RenderRun(const RenderCommand& command, Ranks& all_ranks)
     : ranks(all_ranks),
-      recorder(command.trace, command.needs_roofline()),
+      recorder(command.trace, command.needs_roofline(), command.counters),
       progress(all_ranks.is_first(), "reading the scene"),
       options(command.render),
       input(read_scene_on_rank_0(recorder, options, all_ranks)),
@@ -47,7 +60,7 @@ RenderRun::RenderRun(const RenderCommand& command, Ranks& all_ranks)
 
 RenderRun::RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session)
     : ranks(Ranks::single()),
-      recorder(command.trace, command.needs_roofline()),
+      recorder(command.trace, command.needs_roofline(), false),
       progress(command.progress),
       options(command.render),
       input(std::move(scene)),
@@ -67,6 +80,7 @@ Session& RenderRun::session() {
     progress.stage("preparing");
     device_ =
         recorder.spans().during("choose device", [&] { return choose_device(options.device, ranks.rank_on_host()); });
+    if (recorder.host_counters() != nullptr) require_host_device(device_);
     // OpenImageIO must be loaded after the OpenCL drivers: both use TBB, a process keeps the first TBB that it loads,
     // and Intel's OpenCL runtime needs a newer TBB than OpenImageIO.
     for (const std::string& file : image_files_)

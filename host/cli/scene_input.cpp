@@ -50,7 +50,8 @@ SceneInput read_scene(const std::string& file, bool strict) {
 }
 
 void warn_of_build_options(Warnings& warnings) {
-    static const std::set<std::string> harmless_options = {"-cl-opt-disable",
+    static const std::set<std::string> harmless_options = {"--il",
+                                                           "-cl-opt-disable",
                                                            "-cl-fp32-correctly-rounded-divide-sqrt",
                                                            "-cl-kernel-arg-info",
                                                            "-cl-uniform-work-group-size",

@@ -179,8 +179,7 @@ void add_rendered_options(CLI::App& command, TuneCommand& options) {
         ->capture_default_str();
     add_device_option(command, render.device);
     group.next(kKernels);
-    add_file(command, FileUse::kKernelFolder, "--kernel-dir", render.kernel_dir, "DIR",
-             "Read the kernels from this folder, for kernel development");
+    add_kernel_source_options(command, render.kernel_dir);
 }
 
 void add_search_options(CLI::App& command, TuneCommand& options) {

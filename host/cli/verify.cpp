@@ -1,15 +1,18 @@
 // raya verify: checks a device, its driver and its compiler.
 #include "host/verify/verify.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
-#include <cstdio>
+#include <chrono>
+#include <functional>
+#include <future>
 #include <map>
 #include <memory>
 
-#include "host/base/json.hpp"
 #include "host/base/log.hpp"
+#include "host/base/progress.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
@@ -18,21 +21,24 @@
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/scene_input.hpp"
+#include "host/cli/verify_as.hpp"
+#include "host/cli/verify_output.hpp"
 #include "host/cli/verify_ranks.hpp"
 #include "host/error.hpp"
-#include "host/model/unit_text.hpp"
+#include "host/verify/bisect.hpp"
 #include "host/verify/ci_reports.hpp"
+#include "host/verify/reproduce.hpp"
 #include "host/verify/supervisor.hpp"
-#include "host/version.hpp"
 
 namespace raya {
 namespace {
 
-// A check that takes longer counts as hung. This time includes the builds of its kernels.
-constexpr double kDefaultTimeout_s = 600;
+// A check that takes longer counts as hung: ten build budgets. A check builds at most six programs (test_verify.cpp),
+// each within the budget; the rest is for its launches.
+constexpr double kDefaultTimeout_s = std::chrono::duration<double>(10 * kBuildBudget).count();
 
 struct VerifyCommand {
-    std::string device, report, page, junit, tap, expect, kernel_dir, only, skip, shard;
+    std::string device, report, page, junit, tap, expect, reproduce, bisect, kernel_dir, only, skip, shard, as;
     std::uint32_t lanes = 0, repeat = 1;
     double timeout_s = kDefaultTimeout_s, soak_s = 0;
     std::uint64_t seed = 1;
@@ -40,17 +46,6 @@ struct VerifyCommand {
 
     Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
 };
-
-// Returns the text "57 checks passed, 0 failed, 2 skipped in 12.3 s".
-std::string closing_text(const std::vector<Check>& checks, double seconds) {
-    const std::size_t expected = count_of(checks, Outcome::kExpectedFail),
-                      unexpected = count_of(checks, Outcome::kUnexpectedPass);
-    return fmt::format("{} passed, {} failed, {} skipped{}{} in {:.1f} s",
-                       counted(count_of(checks, Outcome::kPass), "check"), count_of(checks, Outcome::kFail),
-                       count_of(checks, Outcome::kSkip),
-                       expected ? fmt::format(", {} failed as expected", expected) : "",
-                       unexpected ? fmt::format(", {} passed unexpectedly", unexpected) : "", seconds);
-}
 
 // Sets shard and shards from the text "I/N". Throws UserError if it is not valid.
 void set_shard(VerifySettings& settings, const std::string& text) {
@@ -66,145 +61,145 @@ void set_shard(VerifySettings& settings, const std::string& text) {
         throw UserError(fmt::format("--shard {}: must be I/N with I 1..N, such as 2/4", text));
 }
 
+// Sets the options that the render of --as has, too.
+void take_render(VerifyCommand& command) {
+    if (command.as.empty()) return;
+    if (command.brief || command.quick || command.full || command.lanes != 0)
+        throw UserError("--as with --brief, --quick, --full or --lanes: no effect; leave them out");
+    const RenderOptions render = parse_render(command.as).render;
+    if (command.device.empty()) command.device = render.device;
+    if (command.kernel_dir.empty()) command.kernel_dir = render.kernel_dir;
+}
+
 VerifySettings settings_of(const VerifyCommand& command) {
     VerifySettings settings{.depth = command.depth(),
                             .sources = {command.kernel_dir},
-                            .only = command.only,
+                            .only = command.bisect.empty() ? command.only : command.bisect,
                             .skip = command.skip,
                             .repeat = command.repeat,
                             .timeout_s = command.timeout_s,
                             .soak_s = command.soak_s,
                             .seed = command.seed,
-                            .lanes = command.lanes};
+                            .lanes = command.lanes,
+                            .as = command.as};
     set_shard(settings, command.shard);
-    if (!command.expect.empty()) settings.expected_failures = read_expected_failures(command.expect);
+    settings.expected_failures = read_expected_failures(command.expect);
     return settings;
 }
 
-void list_checks(const VerifyCommand& command, const VerifySettings& settings) {
+void list_checks(const VerifyCommand& command, VerifySettings settings) {
+    if (!command.as.empty()) settings.render = std::make_shared<RenderCase>(render_case(command.as));
     const bool all = command.device == "all";
     for (const cl::Device& device : all ? all_devices() : std::vector<cl::Device>{choose_device(command.device)})
         for (const std::string& name : check_names(device, settings))
             fmt::print("{}{}\n", all ? device_info(device).name + ": " : "", name);
 }
 
-// Returns, for each check that failed in a soak test, a line with how often it failed and when it failed first.
-std::string soak_lines(const std::vector<Check>& checks, std::uint64_t seed) {
-    struct Count {
-        std::size_t runs = 0, failures = 0;
-        double first_s = 0;  // sum of the times of the checks up to the first failure
-    };
-    std::map<std::string, Count> counts;
-    double seconds = 0;
-    for (const Check& check : checks) {
-        seconds += check.seconds;
-        Count& count = counts[check.layer + " " + check.name];
-        ++count.runs;
-        if (check.verdict.outcome == Outcome::kFail && count.failures++ == 0) count.first_s = seconds;
-    }
-    std::string lines;
-    for (const auto& [name, count] : counts)
-        if (count.failures > 0)
-            lines += fmt::format("{}: failed {} of {}, first after {:.1f} s\n", name, count.failures,
-                                 counted(count.runs, "time"), count.first_s);
-    return lines + fmt::format("random checks with --seed {}\n", seed);
-}
-
-// Verifies the device that --device and `index` select (supervise()), and prints each check. Sets `device_count` to the
-// number of selected devices.
+// Verifies device number `index` of those that --device selects, and prints each check. Before the first check, calls
+// `take_count` with the number of selected devices.
 DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, const VerifySettings& settings,
-                           std::size_t& device_count) {
-    const bool quiet = is_quiet(), shows_status = shows_progress();
-    const auto print = [&](const std::string& line) {
-        clear_status();
-        fmt::print("{}", line);
-        std::fflush(stdout);
-    };
+                           const std::function<void(std::size_t)>& take_count) {
+    DeviceOutput output(settings, index);
     const SupervisorSink sink{
         .device =
-            [&](const DeviceChecks& device, const std::vector<std::string>& unusable_devices) {
-                if (quiet) return;
-                if (index == 0)
-                    for (const std::string& line : unusable_devices) print(line + "\n");
-                print(fmt::format("{} ({}, driver {})\n", device.name, device.platform, device.driver));
+            [&](const DeviceChecks& device, const std::vector<std::string>& unusable_devices, std::size_t devices) {
+                output.device(device, unusable_devices, devices);
+                take_count(devices);
             },
-        .running =
-            [&](const std::string& layer, const std::string& name, double seconds) {
-                if (shows_status) show_status(fmt::format("running {} {} ... {:.0f} s", layer, name, seconds));
-            },
-        .finished =
-            [&](const Check& check) {
-                const bool prints_all = !quiet && settings.soak_s == 0;
-                if (prints_all || is_unwanted(check.verdict.outcome)) print(check_lines(check));
-            }};
-    DeviceChecks result = supervise(command.device, index, settings, sink, device_count);
-    if (settings.soak_s > 0) print(soak_lines(result.checks, settings.seed));
-    if (!quiet || device_count == 1 || !result.all_passed())
-        print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
+        .running = std::bind_front(&DeviceOutput::running, &output),
+        .finished = std::bind_front(&DeviceOutput::finished, &output)};
+    DeviceChecks result = supervise(command.device, index, settings, sink);
+    output.ended(result);
     return result;
+}
+
+// Verifies the devices that --device selects: in a soak test all at once, otherwise one after another.
+std::vector<DeviceChecks> verify_devices(const VerifyCommand& command, const VerifySettings& settings) {
+    std::vector<std::future<DeviceChecks>> others;
+    const auto add_others = [&](std::size_t devices) {
+        const std::launch policy = settings.soak_s > 0 ? std::launch::async : std::launch::deferred;
+        while (others.size() + 1 < devices)
+            others.push_back(std::async(policy, [&command, &settings, index = others.size() + 1] {
+                return verify_device(command, index, settings, [](std::size_t) {});
+            }));
+    };
+    std::vector<DeviceChecks> all = {verify_device(command, 0, settings, add_others)};
+    for (std::future<DeviceChecks>& other : others) all.push_back(other.get());
+    return all;
 }
 
 // Verifies the device of every rank. Prints failed checks, and a line for each rank.
 std::vector<DeviceChecks> verify_on_ranks(const VerifyCommand& command, const VerifySettings& settings, Ranks& ranks) {
     if (command.device == "all")
         throw UserError("--device all: each rank checks one device; leave it out, or start raya without mpirun");
-    const bool quiet = is_quiet();
+    for (const auto& [option, value] : {std::pair("--reproduce", command.reproduce), {"--bisect", command.bisect}})
+        if (!value.empty())
+            throw UserError(fmt::format(
+                "{} {}: runs in one process; start raya without mpirun on the host of the device", option, value));
     return check_on_ranks(ranks, [&](const PrintLines& print) {
-        const SupervisorSink sink{.finished = [&](const Check& check) {
-            if (is_unwanted(check.verdict.outcome)) print(check_lines(check));
-        }};
-        std::size_t device_count = 1;
-        DeviceChecks result = supervise(command.device, ranks.rank_on_host(), settings, sink, device_count);
-        if (settings.soak_s > 0) print(soak_lines(result.checks, settings.seed));
-        if (!quiet || !result.all_passed())
-            print(fmt::format("{}: {}\n", result.name, closing_text(result.checks, result.seconds)));
+        DeviceOutput output(settings, print);
+        const SupervisorSink sink{.finished = std::bind_front(&DeviceOutput::finished, &output)};
+        DeviceChecks result = supervise(command.device, ranks.rank_on_host(), settings, sink);
+        output.ended(result);
         return result;
     });
 }
 
-Json report_of(const std::vector<DeviceChecks>& device_checks, Depth depth) {
-    Json devices = Json::array();
-    for (const DeviceChecks& device : device_checks) devices.push_back(to_json(device));
-    return {{"kind", kVerifyReportKind},
-            {"program", name_and_version()},
-            {"depth", depth_name(depth)},
-            {"devices", devices}};
+// Finds and prints the changes with which the failed check passes.
+void bisect_failure(const VerifyCommand& command, std::size_t index, const DeviceChecks& device,
+                    const VerifySettings& settings, const std::string& name) {
+    const Bisection found =
+        bisect(command.device, index, device, settings, name, [](const std::vector<std::string>& changes, bool passed) {
+            if (!is_quiet()) fmt::print("{}  {}\n", passed ? "PASS" : "FAIL", fmt::join(changes, ", "));
+            std::fflush(stdout);
+        });
+    if (found.smallest.empty())
+        fmt::print("{}: fails also with all of: {}\n", name, fmt::join(found.tried, ", "));
+    else
+        fmt::print("{}: passes with {}\n", name, fmt::join(found.smallest, ", "));
 }
 
-void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
-    std::vector<Check> checks;
-    double seconds = 0;
-    for (const DeviceChecks& device : device_checks) {
-        checks.insert(checks.end(), device.checks.begin(), device.checks.end());
-        seconds += device.seconds;
-    }
-    fmt::print("{}: {}\n", counted(device_checks.size(), "device"), closing_text(checks, seconds));
+// Bisects the first failure and writes its case, if the options say so.
+void analyse_first_failure(const VerifyCommand& command, const std::vector<DeviceChecks>& device_checks,
+                           const VerifySettings& settings) {
+    for (std::size_t index = 0; index < device_checks.size(); ++index)
+        for (const Check& check : device_checks[index].checks) {
+            if (check.verdict.outcome != Outcome::kFail) continue;
+            const std::string name = check.layer + " " + check.name;
+            if (!command.bisect.empty()) bisect_failure(command, index, device_checks[index], settings, name);
+            if (!command.reproduce.empty())
+                fmt::print("{}",
+                           reproduce(command.device, index, device_checks[index], settings, check, command.reproduce));
+            if (command.bisect.empty() && command.reproduce.empty() && !is_quiet())
+                fmt::print(
+                    "--reproduce DIR writes the first failure as a C program, for a bug report; --bisect \"{}\" "
+                    "finds settings with which it passes\n",
+                    name);
+            return;
+        }
 }
 
-// Verifies one device after another.
-std::vector<DeviceChecks> verify_devices(const VerifyCommand& command, const VerifySettings& settings) {
-    std::vector<DeviceChecks> device_checks;
-    for (std::size_t device_count = 1; device_checks.size() < device_count;)
-        device_checks.push_back(verify_device(command, device_checks.size(), settings, device_count));
-    return device_checks;
-}
-
-void run_verify(const VerifyCommand& command, Ranks& ranks) {
+void run_verify(VerifyCommand command, Ranks& ranks) {
+    take_render(command);
     if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
     if (!command.page.empty()) check_page_name("--page", command.page);
     const VerifySettings settings = settings_of(command);
     if (command.list) return ranks.is_first() ? list_checks(command, settings) : void();
+    if (!command.reproduce.empty()) check_case_folder(command.reproduce);
     Warnings warnings;
     if (ranks.is_first()) warn_of_build_options(warnings);
     const std::vector<DeviceChecks> device_checks =
         ranks.has_several() ? verify_on_ranks(command, settings, ranks) : verify_devices(command, settings);
     if (!ranks.is_first()) return;
     if (device_checks.size() > 1) print_device_totals(device_checks);
-    write_report_and_page({command.report, command.page}, report_of(device_checks, command.depth()));
-    if (!command.junit.empty()) write_whole_file(command.junit, junit_report(device_checks));
+    for (const std::string& text : unmatched_patterns(settings.expected_failures, device_checks))
+        warn(text + "; raya verify --full --list prints the names of all checks");
+    write_report_and_page({command.report, command.page}, verify_report(device_checks, settings));
+    if (!command.junit.empty()) write_whole_file(command.junit, junit_report("raya verify", device_checks));
     if (!command.tap.empty()) write_whole_file(command.tap, tap_report(device_checks));
-    for (const DeviceChecks& device : device_checks)
-        if (!device.all_passed()) throw CheckFailure{};
+    if (std::ranges::all_of(device_checks, &DeviceChecks::all_passed)) return;
+    if (!ranks.has_several()) analyse_first_failure(command, device_checks, settings);
+    throw CheckFailure{};
 }
 
 }  // namespace
@@ -231,6 +226,10 @@ void add_verify_command(CLI::App& program, Ranks& ranks) {
         "default number of lanes, or with --full, every number of lanes")
         ->check(CLI::IsMember({1, 4, 8, 16}))
         ->type_name("V");
+    add_value(*command, "--as", options->as,
+              "Check only what this render uses, such as \"render scene.nff --lanes 8 --accel bvh\": its format and "
+              "lanes, its image, and reference images with its options")
+        ->type_name("\"render ...\"");
     add_value(*command, "--only", options->only,
               "Run only checks whose printed \"LAYER NAME\" contains this text: number, \"image glass\", spa22, ...; * "
               "stands for any text")
@@ -245,9 +244,10 @@ void add_verify_command(CLI::App& program, Ranks& ranks) {
               "Run the I-th of N parts of the selected checks, to divide them over N jobs")
         ->type_name("I/N");
     add_value(*command, "--timeout", options->timeout_s,
-              "Seconds after which a check counts as failed and its process is ended; 0: never")
+              "Seconds after which a check counts as failed and its process is ended, builds included; 0: never")
         ->check(CLI::Range(0., 1e6))
-        ->type_name("S");
+        ->type_name("S")
+        ->capture_default_str();
     add_value(*command, "--soak", options->soak_s,
               "Run random checks with random numbers of lanes for this time, such as 60s, 30m, 2h; print only failures")
         ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}))
@@ -262,16 +262,26 @@ void add_verify_command(CLI::App& program, Ranks& ranks) {
     add_device_option(*command, options->device);
     command->get_option("--device")
         ->description(command->get_option("--device")->get_description() +
-                      "; all: every usable device in turn; under "
-                      "mpirun each rank checks one device");
+                      "; all: every usable device, in turn or, with --soak, at once; under mpirun each rank checks one "
+                      "device");
     group.next(kKernels);
-    add_file(*command, FileUse::kKernelFolder, "--kernel-dir", options->kernel_dir, "DIR",
-             "Read the kernels from this folder, for kernel development");
+    add_kernel_source_options(*command, options->kernel_dir);
     group.next(kDiagnostics);
     add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
              "Write all checks and their failures as JSON; -: stdout; the lines about the checks then go to stderr");
     add_file(*command, FileUse::kWritten, "--junit", options->junit, "FILE.xml", "Write the results as JUnit XML");
     add_file(*command, FileUse::kWritten, "--tap", options->tap, "FILE", "Write the results as TAP, version 14");
+    add_value(
+        *command, "--reproduce", options->reproduce,
+        "If a check fails: write the kernel launch that computes wrong words as a self-contained case, a C program "
+        "with kernel, inputs and expected words, into this new folder")
+        ->type_name("DIR");
+    CLI::Option* const bisected =
+        add_value(*command, "--bisect", options->bisect,
+                  "Run the checks whose names contain this text, as --only; then find the smallest change of build "
+                  "options, macros, lanes, groups or PoCL's variables with which the first that fails passes")
+            ->type_name("TEXT");
+    bisected->excludes("--only");
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
              "Write all checks, and the first failure in full, as an HTML page; raya page makes the same page from a "
              "report");

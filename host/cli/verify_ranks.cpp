@@ -100,8 +100,11 @@ std::vector<DeviceChecks> check_on_ranks(Ranks& ranks,
         own.rank = ranks.rank();
         own.host = ranks.host();
         std::vector<DeviceChecks> all;
-        for (const std::string& text : ranks.gather(to_json(own).dump()))
-            all.push_back(device_checks_of(Json::parse(text, {"the results of a rank"})));
+        for (const std::string& text : ranks.gather(Json{{"device", to_json(own)}, {"names", own.names}}.dump())) {
+            const Json result = Json::parse(text, {"the results of a rank"});
+            all.push_back(device_checks_of(result.at("device")));
+            all.back().names = result.at("names").strings();
+        }
         fail_shared_devices(all);
         return all;
     } catch (const RankFailure& failure) {

@@ -1,15 +1,13 @@
 // raya verify under mpirun: every rank checks its own device, and rank 0 prints and reports the results.
 #pragma once
 #include <functional>
-#include <string>
 #include <vector>
 
+#include "host/cli/verify_output.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/verify/device_checks.hpp"
 
 namespace raya {
-
-using PrintLines = std::function<void(const std::string& lines)>;
 
 /// Collective: calls `check_device(print)` in a thread of every rank. Rank 0 prints the lines that the ranks print,
 /// with rank and host before each text. On rank 0, returns the results of all ranks; on other ranks, an empty vector. A

@@ -26,8 +26,6 @@ const BenchMeasurement* find_row(const Rows& rows, const BenchMeasurement& wante
 /// Returns the change of a rate in percent.
 double percent_change(double before, double now) { return 100 * (now / before - 1); }
 
-std::string change_cell(double value) { return fmt::format("{:+.1f} %", value); }
-
 std::vector<std::string> key_cells(const BenchMeasurement& row) {
     return {row.kernel, row.scene, row.size, row.format, std::to_string(row.lanes), std::to_string(row.group_size)};
 }
@@ -37,24 +35,30 @@ std::vector<std::string> joined(std::vector<std::string> first, const std::vecto
     return first;
 }
 
-std::string rate_cell(double value) { return fmt::format("{:.1f}", value); }
-
-/// Counts a row in `comparison` and returns the verdict on it. `before`, `now`: the row in the baseline and in this
-/// run.
-std::string count_row(BenchComparison& comparison, const BenchMeasurement& before, const BenchMeasurement& now,
-                      double tolerance) {
-    const double best_change = percent_change(before.best_rate(), now.best_rate());
-    const double median_change = percent_change(before.median_rate(), now.median_rate());
+/// Counts a row of both runs in `comparison`, and sets its verdict.
+void count_row(BenchComparison& comparison, ComparedRow& row, double tolerance) {
+    const double best_change = percent_change(row.before->best_rate(), row.now->best_rate());
+    const double median_change = percent_change(row.before->median_rate(), row.now->median_rate());
     ++comparison.compared;
-    if (now.hash != before.hash) {
+    row.has_failed = true;
+    if (row.now->hash != row.before->hash) {
         ++comparison.other_images;
-        return fmt::format("OTHER IMAGE: {}, was {}", now.hash.substr(0, 8), before.hash.substr(0, 8));
-    }
-    if (std::max(best_change, median_change) < -tolerance) {
+        row.verdict = fmt::format("OTHER IMAGE: {}, was {}", row.now->hash.substr(0, 8), row.before->hash.substr(0, 8));
+    } else if (std::max(best_change, median_change) < -tolerance) {
         ++comparison.slower;
-        return "SLOWER";
+        row.verdict = "SLOWER";
+    } else {
+        row.verdict = std::min(best_change, median_change) > tolerance ? "faster" : "as before";
+        row.has_failed = false;
     }
-    return std::min(best_change, median_change) > tolerance ? "faster" : "as before";
+}
+
+/// Returns the table's cells of a rate: this run, the baseline, the change.
+std::vector<std::string> rate_cells(const ComparedRow& row, double (BenchMeasurement::*rate)() const) {
+    const auto cell = [&](const BenchMeasurement* of) { return of ? fmt::format("{:.1f}", (of->*rate)()) : "-"; };
+    const bool has_both = row.now != nullptr && row.before != nullptr;
+    return {cell(row.now), cell(row.before),
+            has_both ? fmt::format("{:+.1f} %", percent_change((row.before->*rate)(), (row.now->*rate)())) : "-"};
 }
 
 /// Adds a remark and a warning if the two runs have different texts for `property`.
@@ -65,16 +69,15 @@ void add_difference(BenchComparison& comparison, const char* property, const std
     comparison.text += "warning: " + comparison.remarks.back() + "\n";
 }
 
-/// Returns the JSON of a row. `before`, `now`: the row in the baseline and in this run; null: the run has no such row.
-Json row_json(const BenchMeasurement* before, const BenchMeasurement* now, const std::string& verdict_text) {
-    Json json = row_key_json(now != nullptr ? *now : *before);
-    json["mrays_per_s"] = now != nullptr ? rates_json(*now) : Json{};
-    json["mrays_per_s_was"] = before != nullptr ? rates_json(*before) : Json{};
-    json["verdict"] = verdict_text;
+}  // namespace
+
+Json to_json(const ComparedRow& row) {
+    Json json = row_key_json(row.now != nullptr ? *row.now : *row.before);
+    json["mrays_per_s"] = row.now != nullptr ? rates_json(*row.now) : Json{};
+    json["mrays_per_s_was"] = row.before != nullptr ? rates_json(*row.before) : Json{};
+    json["verdict"] = row.verdict;
     return json;
 }
-
-}  // namespace
 
 int rows_in_common(const BenchReport& baseline, const BenchReport& now) {
     return static_cast<int>(std::count_if(now.rows.begin(), now.rows.end(),
@@ -89,28 +92,16 @@ BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& no
     std::vector<std::vector<std::string>> table = {{"kernel", "scene", "size", "format", "lanes", "group",
                                                     "best Mrays/s", "was", "change", "median", "was", "change", ""}};
     for (const BenchMeasurement& row : now.rows) {
-        const BenchMeasurement* before = find_row(baseline.rows, row);
-        const std::string verdict_text =
-            before == nullptr ? "not in the baseline" : count_row(comparison, *before, row, tolerance);
-        comparison.rows.push_back(row_json(before, &row, verdict_text));
-        if (before == nullptr) {
-            table.push_back(joined(key_cells(row), {rate_cell(row.best_rate()), "-", "-", rate_cell(row.median_rate()),
-                                                    "-", "-", verdict_text}));
-            continue;
-        }
-        table.push_back(joined(key_cells(row),
-                               {rate_cell(row.best_rate()), rate_cell(before->best_rate()),
-                                change_cell(percent_change(before->best_rate(), row.best_rate())),
-                                rate_cell(row.median_rate()), rate_cell(before->median_rate()),
-                                change_cell(percent_change(before->median_rate(), row.median_rate())), verdict_text}));
+        ComparedRow both{find_row(baseline.rows, row), &row, "not in the baseline"};
+        if (both.before != nullptr) count_row(comparison, both, tolerance);
+        comparison.rows.push_back(both);
     }
-    for (const BenchMeasurement& row : baseline.rows) {
-        if (find_row(now.rows, row) != nullptr) continue;
-        const std::string verdict_text = "in the baseline alone";
-        comparison.rows.push_back(row_json(&row, nullptr, verdict_text));
-        table.push_back(joined(key_cells(row), {"-", rate_cell(row.best_rate()), "-", "-", rate_cell(row.median_rate()),
-                                                "-", verdict_text}));
-    }
+    for (const BenchMeasurement& row : baseline.rows)
+        if (find_row(now.rows, row) == nullptr) comparison.rows.push_back({&row, nullptr, "in the baseline alone"});
+    for (const ComparedRow& row : comparison.rows)
+        table.push_back(joined(joined(key_cells(row.now != nullptr ? *row.now : *row.before),
+                                      rate_cells(row, &BenchMeasurement::best_rate)),
+                               joined(rate_cells(row, &BenchMeasurement::median_rate), {row.verdict})));
     comparison.text += text_table(table);
     return comparison;
 }

@@ -7,13 +7,23 @@
 
 namespace raya {
 
+/// A row in the baseline and in this run. Null: the run has no such row.
+struct ComparedRow {
+    const BenchMeasurement *before, *now;
+    std::string verdict;      // "as before", "faster", "SLOWER", "OTHER IMAGE: ...", or which run alone has the row
+    bool has_failed = false;  // slower, or another image
+};
+
+/// Returns the row's key, the rates of both runs, and the verdict.
+Json to_json(const ComparedRow& row);
+
 /// Result of compare_bench().
 struct BenchComparison {
     std::string text;                    // for the terminal: warnings, and a table with the rows of both runs
     int compared = 0;                    // number of rows that both runs have
     int slower = 0;                      // number of compared rows that are slower by more than the tolerance
     int other_images = 0;                // number of compared rows with different image hashes
-    Json rows = Json::array();           // rows of both runs: key, rates of both runs, verdict
+    std::vector<ComparedRow> rows{};     // rows of both runs; they point into the reports
     std::vector<std::string> remarks{};  // the warnings: differences of device, driver or version
     bool failed() const { return slower + other_images > 0; }
 };

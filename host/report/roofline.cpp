@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "host/base/json.hpp"
 #include "host/model/budget.hpp"
@@ -22,8 +23,9 @@ double seconds_in_format(const KernelWork& w, const DevicePeak& peak) {
            as_double(w.roots) / peak.sqrt_per_s;
 }
 
-RooflineRow row_of(const KernelWork& work, double seconds, const DevicePeak& peak) {
-    RooflineRow row{.work = work, .seconds = seconds};
+RooflineRow row_of(const KernelWork& work, const LabelSummary& launches, const DevicePeak& peak) {
+    const double seconds = 1e-9 * as_double(launches.total_ns);
+    RooflineRow row{.work = work, .seconds = seconds, .host_counts = launches.host_counts};
     const double operations = as_double(work.all_operations()), bytes = as_double(work.bytes);
     row.intensity = bytes > 0 ? operations / bytes : 0;
     const double compute_s = operations / peak.fp32_per_s, copy_s = bytes / peak.copy_bytes_per_s;
@@ -90,6 +92,27 @@ std::string format_remark(const DevicePeak& p) {
            "rejects\n";
 }
 
+// Returns the value with `digits` decimals, or "-" for NaN.
+std::string known(double value, int digits) { return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits); }
+
+std::string host_counts_table(const Roofline& roofline) {
+    std::vector<std::vector<std::string>> rows = {{"kernel", "cores", "Gcycles", "Ginstr", "instr/cycle", "instr/op",
+                                                   "Mcache misses", "Mbranch misses", "page faults"}};
+    for (const RooflineRow& row : roofline.rows) {
+        if (!row.host_counts) return {};
+        const auto& n = row.host_counts->of;
+        const double operations = as_double(row.work.all_operations());
+        rows.push_back({row.work.label, known(1e-9 * n[kCpuNs] / row.seconds, 2), known(1e-9 * n[kCycles], 4),
+                        known(1e-9 * n[kInstructions], 4), known(n[kInstructions] / n[kCycles], 2),
+                        operations > 0 ? known(n[kInstructions] / operations, 2) : "-",
+                        known(1e-6 * n[kCacheMisses], 3), known(1e-6 * n[kBranchMisses], 3), known(n[kPageFaults], 0)});
+    }
+    const std::string& unavailable = roofline.host_counts_unavailable;
+    return "\n" + text_table(rows) +
+           "cores   processor time of all threads / time of the kernel; this column and the others count user code\n" +
+           (unavailable.empty() ? "" : "counts  " + unavailable + "\n");
+}
+
 // Returns a line with the kernel's bound and the percentage of the roof that it achieves.
 std::string verdict(const RooflineRow& r, const DevicePeak& p) {
     const bool compute = r.bound == Bound::kCompute;
@@ -119,7 +142,7 @@ Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
     for (const KernelWork& work : works)
         for (const LabelSummary& c : commands)
             if (c.label == work.label && c.kind == "kernel" && c.total_ns > 0)
-                all.rows.push_back(row_of(work, 1e-9 * as_double(c.total_ns), peak));
+                all.rows.push_back(row_of(work, c, peak));
     return all;
 }
 
@@ -131,7 +154,7 @@ std::string roofline_table(const Roofline& roofline, bool legend) {
     std::string text = text_table(rows) + peak_line(roofline.peak);
     if (legend) text += legend_lines(roofline.peak) + format_remark(roofline.peak);
     for (const RooflineRow& row : roofline.rows) text += verdict(row, roofline.peak);
-    return text;
+    return text + host_counts_table(roofline);
 }
 
 Json peak_json(const DevicePeak& p) {
@@ -144,6 +167,22 @@ Json peak_json(const DevicePeak& p) {
             {"copy_buffer_bytes", p.copy_bytes},
             {"scatter", p.scatter}};
 }
+
+namespace {
+
+Json host_counts_json(const HostCounts& counts) {
+    const auto count = [&](HostEvent event) {
+        return std::isnan(counts.of[event]) ? Json() : Json(std::llround(counts.of[event]));
+    };
+    return {{"cycles", count(kCycles)},
+            {"instructions", count(kInstructions)},
+            {"cache_misses", count(kCacheMisses)},
+            {"branch_misses", count(kBranchMisses)},
+            {"processor_ns", count(kCpuNs)},
+            {"page_faults", count(kPageFaults)}};
+}
+
+}  // namespace
 
 Json roofline_json(const Roofline& roofline) {
     Json rows = Json::array();
@@ -160,6 +199,7 @@ Json roofline_json(const Roofline& roofline) {
                         {"bound", bound_name(r.bound)},
                         {"share_of_roof", r.roof_fraction},
                         {"share_of_format", r.format_fraction ? Json(*r.format_fraction) : Json()}});
+        if (r.host_counts) rows.back()["host_counts"] = host_counts_json(*r.host_counts);
     }
     return rows;
 }

@@ -41,6 +41,7 @@ struct RooflineRow {
     Bound bound = Bound::kCompute;            // the lower roof at this intensity
     double roof_fraction = 0;                 // achieved rate divided by the roof; 1: as fast as the device's peak
     std::optional<double> format_fraction{};  // time at the format's peak rates divided by `seconds`; empty: unknown
+    std::optional<HostCounts> host_counts{};  // events of the host's processor in all launches; empty: not requested
 };
 
 /// Limit of DevicePeak::scatter, above which the peak is unreliable.
@@ -49,7 +50,8 @@ inline constexpr double kMaxScatter = 0.15;
 struct Roofline {
     DevicePeak peak{};
     std::vector<RooflineRow> rows{};
-    std::string unavailable{};  // reason why there is no roofline; empty: there is one
+    std::string unavailable{};              // reason why there is no roofline; empty: there is one
+    std::string host_counts_unavailable{};  // reason why RooflineRow::host_counts lacks events; empty: it lacks none
 };
 
 /// Returns a row for each kernel of `works` that `commands` contains with a time > 0; no rows if the peak is unknown.
@@ -57,7 +59,7 @@ Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
                   const std::vector<LabelSummary>& commands);
 
 /// Returns the table, the peak, for each kernel its bound and fraction of the roof, and with `legend` the meaning of
-/// the columns.
+/// the columns; then the table of host_counts, if the rows have them.
 std::string roofline_table(const Roofline& roofline, bool legend = true);
 
 Json peak_json(const DevicePeak& peak);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "host/base/whole_file.hpp"
@@ -65,6 +66,14 @@ std::string junit_case(const Check& check) {
     return text + "/>\n";
 }
 
+std::string contents_of(const std::filesystem::path& path) {
+    try {
+        return path.empty() ? "" : read_file(path);
+    } catch (const UnreadableFile& error) {
+        throw UserError(fmt::format("--expect {}: cannot be read: {}", path.string(), error.what()));
+    }
+}
+
 // Returns the number of checks with one of two outcomes.
 std::size_t sum_of(const DeviceChecks& device, Outcome a, Outcome b) {
     return count_of(device.checks, a) + count_of(device.checks, b);
@@ -73,7 +82,7 @@ std::size_t sum_of(const DeviceChecks& device, Outcome a, Outcome b) {
 }  // namespace
 
 std::vector<ExpectedFailure> read_expected_failures(const std::filesystem::path& path) {
-    std::istringstream text(read_file(path));
+    std::istringstream text(contents_of(path));
     std::vector<ExpectedFailure> failures;
     std::size_t number = 0;
     for (std::string line; std::getline(text, line);) {
@@ -88,13 +97,30 @@ std::vector<ExpectedFailure> read_expected_failures(const std::filesystem::path&
         if (fields.size() < 2 || fields.size() > 3 || fields[0].empty() || fields[1].empty())
             throw UserError(
                 fmt::format("{}:{}: expected PATTERN | REASON or PATTERN | REASON | LINK", path.string(), number));
-        failures.push_back({fields[0], fields[1], fields.size() > 2 ? fields[2] : ""});
+        failures.push_back(
+            {fmt::format("{}:{}", path.string(), number), fields[0], fields[1], fields.size() > 2 ? fields[2] : ""});
     }
     return failures;
 }
 
-std::string junit_report(const std::vector<DeviceChecks>& devices) {
-    std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"raya verify\">\n";
+std::vector<std::string> unmatched_patterns(const std::vector<ExpectedFailure>& failures,
+                                            const std::vector<DeviceChecks>& devices) {
+    std::vector<std::string> warnings;
+    for (const ExpectedFailure& e : failures) {
+        const auto is_matched = [&](const DeviceChecks& device) {
+            return std::ranges::any_of(device.names, [&](const auto& name) { return name_matches(name, e.pattern); }) ||
+                   std::ranges::any_of(device.checks,
+                                       [&](const Check& c) { return name_matches(c.layer + " " + c.name, e.pattern); });
+        };
+        if (std::ranges::none_of(devices, is_matched))
+            warnings.push_back(fmt::format("{}: \"{}\" matches no check", e.place, e.pattern));
+    }
+    return warnings;
+}
+
+std::string junit_report(const std::string& command, const std::vector<DeviceChecks>& devices) {
+    std::string text =
+        fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"{}\">\n", xml_text(command));
     for (const DeviceChecks& device : devices) {
         text += fmt::format(
             "  <testsuite name=\"{}\"{} tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\" time=\"{:.3f}\">\n"
@@ -120,8 +146,7 @@ std::string tap_report(const std::vector<DeviceChecks>& devices) {
                 fmt::format("{} {} - {} {}{}", has_failed(v.outcome) ? "not ok" : "ok", ++number, tap_text(check.layer),
                             tap_text(check.name), devices.size() > 1 ? " on " + tap_text(device.title()) : "");
             if (v.outcome == Outcome::kSkip) lines += " # SKIP " + tap_text(v.result);
-            if (v.outcome == Outcome::kExpectedFail || v.outcome == Outcome::kUnexpectedPass)
-                lines += " # TODO " + tap_text(v.result);
+            if (has_expectation(v.outcome)) lines += " # TODO " + tap_text(v.result);
             lines += '\n';
             if (v.outcome != Outcome::kFail) continue;
             std::istringstream details(check_lines(check));

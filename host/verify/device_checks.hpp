@@ -16,6 +16,7 @@ struct DeviceChecks {
     std::string pci_address{};            // see DeviceInfo
     std::optional<std::uint32_t> rank{};  // with several ranks: the rank that checked its device
     std::string host{};                   // with several ranks: the rank's host
+    std::vector<std::string> names{};     // "LAYER NAME" of each check of Depth::kFull, selected or not; not in reports
     std::vector<Check> checks{};
     double seconds = 0;  // sum of the checks' times
 

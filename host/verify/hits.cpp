@@ -64,22 +64,6 @@ std::vector<std::string> hit_remedies(const std::vector<std::string>& lanes_reme
     return remedies;
 }
 
-void verify_hits(Verification& v, const HitBuild& build) {
-    const auto check = [&](const std::string& subject, const std::function<Verdict(HitRunner&)>& body) {
-        v.check("geometry", fmt::format("{}, {}", subject, build.name()), [&](Session& session) {
-            HitRunner runner(session, build);
-            return with_remedies(body(runner), runner.options(), hit_remedies(v.lanes_remedies(build.lanes)));
-        });
-    };
-    for (const KnownScene& known : known_scenes())
-        check("known hits of " + known.name, [&](HitRunner& runner) { return check_known_hits(runner, known); });
-    const std::size_t rays_per_scene = v.depth() == Depth::kBrief ? 128 : 4096;
-    if (build.grid)
-        check("grid", [&](HitRunner& runner) {
-            return check_grid_traversal(runner, {"polygons", "cones", "spheres"}, rays_per_scene);
-        });
-}
-
 }  // namespace
 
 void Rays::add(const std::array<float, 3>& origin, const std::array<float, 3>& direction, float limit) {
@@ -130,6 +114,13 @@ Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, st
         first_wrong = i;
     }
     if (wrong_rays == 0) return passed(pass_text);
+    KnownWords objects(expected.objects.size()), distances(expected.distances.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        objects.set(i, expected.objects[i]);
+        distances.set(i, expected.distances[i]);
+    }
+    report_expected("objects", objects);
+    report_expected("distances", distances);
     return failed(fmt::format("{} of {} rays wrong", wrong_rays, count),
                   {.where = fmt::format("{}\n{}", describe(first_wrong), rays.text(first_wrong)),
                    .expected = expected.text(first_wrong),
@@ -179,6 +170,22 @@ Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& 
     const std::size_t rays = scenes.size() * rays_per_scene;
     if (hits < rays_per_scene) return failed(fmt::format("only {} of {} rays hit an object", hits, rays), {});
     return passed(fmt::format("{} rays, {} hits, with and without grid", rays, hits));
+}
+
+void verify_hits(Verification& v, const HitBuild& build) {
+    const auto check = [&](const std::string& subject, const std::function<Verdict(HitRunner&)>& body) {
+        v.check("geometry", fmt::format("{}, {}", subject, build.name()), [&](Session& session) {
+            HitRunner runner(session, build);
+            return with_remedies(body(runner), runner.options(), hit_remedies(v.lanes_remedies(build.lanes)));
+        });
+    };
+    for (const KnownScene& known : known_scenes())
+        check("known hits of " + known.name, [&](HitRunner& runner) { return check_known_hits(runner, known); });
+    const std::size_t rays_per_scene = v.depth() == Depth::kBrief ? 128 : 4096;
+    if (build.grid)
+        check("grid", [&](HitRunner& runner) {
+            return check_grid_traversal(runner, {"polygons", "cones", "spheres"}, rays_per_scene);
+        });
 }
 
 void verify_geometry(Verification& v) {

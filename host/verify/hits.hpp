@@ -102,4 +102,9 @@ Verdict check_known_hits(HitRunner& runner, const KnownScene& known);
 /// a multiple of kMaxLanes. The build must include the grid traversal.
 Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_per_scene);
 
+class Verification;
+
+/// Adds the checks of one build to layer "geometry": known hits, and the grid traversal if the build has it.
+void verify_hits(Verification& verification, const HitBuild& build);
+
 }  // namespace raya

@@ -34,9 +34,9 @@ struct Rendering {
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     LinkMove link_move = LinkMove::kCopies;
-    bool global_words = false;  // job words are in global memory, as if local memory were too small
-    bool refined = false;       // division, square root and fma are refined, as if the device did not round them
-                                // correctly
+    bool global_words = false;   // job words are in global memory, as if local memory were too small
+    bool fallback_code = false;  // as if the device did not round division, square root and fma correctly, and the
+                                 // compiler had none of the builtins that raya uses
 
     // Returns the name of the renderer with its accelerator or torus, such as "ring", "bvh" or "torus2d 3x2x2 root". It
     // is the key in StoredImage::counts: renderings of an image by the same renderer have equal counts.
@@ -55,15 +55,17 @@ struct Rendering {
         if (work_per_launch) text += fmt::format(", launches of {} {}", work_per_launch, torus ? "units" : "tests");
         if (link_move == LinkMove::kKernel) text += ", links by a kernel";
         if (global_words) text += ", global words";
-        if (refined) text += ", division refined";
+        if (fallback_code) text += ", fallback code";
         if (lanes) text += fmt::format(", {}x{}", lanes, group_size);
+        if (!lanes && group_size) text += fmt::format(", groups of {}", group_size);
         return fmt::format("{}: {}", image, text);
     }
 };
 
 KernelChoice kernels_for(KernelChoice choice, const Rendering& r) {
     choice.local_words = !r.global_words;
-    choice.exact_arithmetic = !r.refined;
+    choice.exact_arithmetic = !r.fallback_code;
+    if (r.fallback_code) choice.sources.more_options.emplace_back(kNoBuiltins);
     return choice;
 }
 
@@ -117,18 +119,6 @@ Rendered render(const KernelChoice& kernels, Session& session, const Rendering& 
     return r.torus ? render_on_torus(kernels, session, r) : render_on_ring(kernels, session, r);
 }
 
-std::string colour_text(const std::array<std::uint32_t, 3>& bits) {
-    const auto value = [&](std::size_t k) { return std::bit_cast<float>(bits[k]); };
-    return fmt::format("0x{:08x} 0x{:08x} 0x{:08x} = ({:.9g}, {:.9g}, {:.9g})", bits[0], bits[1], bits[2], value(0),
-                       value(1), value(2));
-}
-
-std::array<std::uint32_t, 3> pixel_bits(const Image& image, std::size_t pixel) {
-    std::array<std::uint32_t, 3> bits{};
-    for (std::size_t k = 0; k < 3; ++k) bits[k] = std::bit_cast<std::uint32_t>(image.rgb[3 * pixel + k]);
-    return bits;
-}
-
 // Renders the image with reference_settings() and without compiler optimisation. Returns nullopt if that fails.
 std::optional<Image> unoptimised_image(const Verification& v, Session& session, const ReferenceImage& image) {
     RingSettings settings = reference_settings(image);
@@ -161,27 +151,15 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
     const ReferenceImage& image = reference_image_named(r.image);
     const StoredImage& stored = stored_image(image);
     const Rendered got = render(v.kernels(r.lanes, r.group_size), session, r);
-    if (pixel_hash(got.image) == stored.hash)
-        return check_counts(stored.counts.at(r.check_kind()), got.counts, stored.hash.substr(0, 8), got.options);
-    std::size_t wrong_pixels = 0, first_wrong = 0;
-    const std::size_t pixels = stored.image.rgb.size() / 3;
-    for (std::size_t i = pixels; i-- > 0;) {
-        if (pixel_bits(got.image, i) == pixel_bits(stored.image, i)) continue;
-        ++wrong_pixels;
-        first_wrong = i;
-    }
-    return failed(fmt::format("{} of {} pixels wrong", wrong_pixels, pixels),
-                  {.where = fmt::format("row {}, column {} (red, green, blue)", first_wrong / kReferenceSide,
-                                        first_wrong % kReferenceSide),
-                   .expected = colour_text(pixel_bits(stored.image, first_wrong)),
-                   .got = colour_text(pixel_bits(got.image, first_wrong)),
-                   .options = got.options,
-                   .remedies = image_remedies(v, session, image)});
+    const Verdict pixels = compare_images(stored.image, got.image);
+    if (pixels.outcome == Outcome::kPass)
+        return check_counts(stored.counts.at(r.check_kind()), got.counts, pixels.result, got.options);
+    return with_remedies(pixels, got.options, image_remedies(v, session, image));
 }
 
 // Returns renderings that together use every kernel and option. Building kernels takes most of a rendering's time, so
 // renderings with equal build options are adjacent and use the same build. For the same reason some renderings of depth
-// kQuick combine several features, such as global words and refined division. The renderings of depth kBrief need three
+// kQuick combine several features, such as global words and fallback code. The renderings of depth kBrief need three
 // builds: one for each machine and one for a reduced format.
 std::vector<Rendering> standard_renderings() {
     constexpr auto k2d = Links::kTorus2d;
@@ -197,7 +175,7 @@ std::vector<Rendering> standard_renderings() {
              .work_per_launch = 40},
             {.image = "glass fp32", .min_depth = Depth::kQuick, .mapping = tiles_mapping(5, 4), .pes = 7},
             {.image = "glass fp32", .global_words = true},
-            {.image = "glass fp32", .refined = true},
+            {.image = "glass fp32", .fallback_code = true},
             {.image = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
             {.image = "glass fp32", .lanes = 4, .group_size = 32, .mapping = random_mapping(1), .pes = 5},
             {.image = "ties fp32",
@@ -205,23 +183,26 @@ std::vector<Rendering> standard_renderings() {
              .mapping = blocks_mapping(),
              .pes = 5,
              .global_words = true,
-             .refined = true},
+             .fallback_code = true},
             {.image = "ties fp32"},
             {.image = "ties fp32", .accel = AccelKind::kGrid},
             {.image = "ties fp32", .accel = AccelKind::kBvh},
             {.image = "ties fp32", .torus = true},
             {.image = "polygons fp32", .mapping = tiles_mapping(5, 4), .pes = 7},
             {.image = "polygons fp32", .min_depth = Depth::kQuick, .accel = AccelKind::kGrid},
-            {.image = "polygons fp32", .accel = AccelKind::kGrid, .global_words = true},
+            {.image = "polygons fp32", .accel = AccelKind::kGrid, .global_words = true, .fallback_code = true},
             {.image = "polygons fp32", .min_depth = Depth::kQuick, .accel = AccelKind::kBvh},
-            {.image = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true},
-            {.image = "cones fp32", .accel = AccelKind::kBvh},
+            {.image = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true, .fallback_code = true},
+            {.image = "cones fp32", .lanes = 8, .group_size = 1, .accel = AccelKind::kBvh, .fallback_code = true},
+            {.image = "polygons fp32", .lanes = 4, .group_size = 1, .accel = AccelKind::kBvh, .fallback_code = true},
+            {.image = "cones fp32", .min_depth = Depth::kQuick, .accel = AccelKind::kBvh},
             {.image = "polygons fp32", .min_depth = Depth::kQuick, .torus = true},
             {.image = "polygons fp32",
              .min_depth = Depth::kQuick,
              .work_per_launch = 3,
              .torus = true,
              .link_move = LinkMove::kKernel},
+            {.image = "polygons fp32", .min_depth = Depth::kQuick, .group_size = 32, .torus = true},
             {.image = "polygons fp32", .torus = true, .global_words = true},
             {.image = "polygons fp32",
              .min_depth = Depth::kBrief,
@@ -235,16 +216,16 @@ std::vector<Rendering> standard_renderings() {
              .min_depth = Depth::kQuick,
              .mapping = cyclic_mapping(16),
              .pes = kReferenceSide},
-            {.image = "cones e5m10", .min_depth = Depth::kQuick, .refined = true},
-            {.image = "mirrors spa22", .refined = true},
-            {.image = "polygons spa22", .torus = true, .refined = true},
+            {.image = "cones e5m10", .min_depth = Depth::kQuick, .fallback_code = true},
+            {.image = "mirrors spa22", .fallback_code = true},
+            {.image = "polygons spa22", .torus = true, .fallback_code = true},
             {.image = "mirrors spa22 axes", .mapping = cyclic_mapping(3), .pes = 100},
             {.image = "planes fp32 corners", .accel = AccelKind::kGrid},
-            {.image = "spheres e8m12t"},
+            {.image = "spheres e8m12t", .min_depth = Depth::kQuick},
             {.image = "glass e8m21"},
             {.image = "mirrors spa22", .torus = true, .links = k2d},
             {.image = "polygons spa22", .accel = AccelKind::kGrid},
-            {.image = "polygons spa22", .accel = AccelKind::kBvh},
+            {.image = "polygons spa22", .min_depth = Depth::kQuick, .accel = AccelKind::kBvh},
             {.image = "spheres e8m12t", .accel = AccelKind::kBvh},
             {.image = "polygons spa22", .torus = true, .nodes = {1, 3, 2}, .inject = kRoot},
             {.image = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d}};

@@ -91,14 +91,16 @@ std::pair<std::vector<raya_torus>, std::vector<std::uint32_t>> torus_cases(std::
     return {toruses, nodes};
 }
 
-// Compares results of several words per case. `names`: names of the words of a case. `describe(i)` returns the
-// description of case i.
+// Compares the buffer `results`, which has several words per case, with `expected`. `names`: names of the words of a
+// case. `describe(i)` returns the description of case i.
 template <class Describe>
-Verdict compare_cases(const Words& expected, const Words& got, const std::vector<std::string>& names,
-                      const Describe& describe, const std::string& pass_text) {
+Verdict compare_cases(const Words& expected, CheckRunner& runner, const Buffer<std::uint32_t>& results,
+                      const std::vector<std::string>& names, const Describe& describe, const std::string& pass_text) {
+    const Words got = runner.read(results);
     const std::size_t stride = names.size();
     const auto differ = std::mismatch(expected.begin(), expected.end(), got.begin());
     if (differ.first == expected.end()) return passed(pass_text);
+    report_expected(results.name(), KnownWords(expected));
     const auto first_wrong = static_cast<std::size_t>(differ.first - expected.begin());
     std::size_t wrong_cases = 0;
     for (std::size_t i = 0; i < expected.size(); i += stride)
@@ -141,7 +143,7 @@ Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases)
         return fmt::format("pixel (row {}, column {}) of {}x{} on {} PEs, {}", p[i].row, p[i].column, m[i].width,
                            m[i].height, m[i].pes, mapping_text(m[i]));
     };
-    return compare_cases(expected, runner.read(owners),
+    return compare_cases(expected, runner, owners,
                          {"owner", "size of the share", "number in the share", "row", "column", "neighbours"}, describe,
                          fmt::format("{} pixels", cases));
 }
@@ -167,7 +169,7 @@ Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
                            sides_text({t[i].sides[0], t[i].sides[1], t[i].sides[2]}));
     };
     return compare_cases(
-        expected, runner.read(routes),
+        expected, runner, routes,
         {"next link", "return link", "end of +x", "end of -x", "end of +y", "end of -y", "end of +z", "end of -z"},
         describe, fmt::format("{} pairs of nodes", cases));
 }
@@ -190,9 +192,9 @@ Verdict check_local_memory(CheckRunner& runner, std::uint32_t group_size) {
                                        Local{2 * words}, Local{1}, reversed, times_taken);
     const auto describe = [&](std::size_t i) { return fmt::format("group {}, word {}", i / words, i % words); };
     const std::string pass_text = fmt::format("{} groups of {} words", kGroups, words);
-    const Verdict verdict = compare_cases(expected, runner.read(reversed), {"local memory"}, describe, pass_text);
+    const Verdict verdict = compare_cases(expected, runner, reversed, {"local memory"}, describe, pass_text);
     if (verdict.outcome != Outcome::kPass) return verdict;
-    return compare_cases(Words(source.size(), 1), runner.read(times_taken),
+    return compare_cases(Words(source.size(), 1), runner, times_taken,
                          {"times that a number was taken from the counter"}, describe, pass_text);
 }
 

@@ -60,6 +60,7 @@ Program build_number_program(Session& session, const NumberBuild& build) {
         .lanes = build.lanes, .format = build.format, .exact_divide = build.trusted, .exact_fma = build.trusted};
     KernelSources sources = build.sources;
     if (!build.optimised) sources.more_options.emplace_back("-cl-opt-disable");
+    if (!build.trusted) sources.more_options.emplace_back(kNoBuiltins);
     return Kernels(session, options, sources).program("checks/numbers.cl");
 }
 
@@ -98,7 +99,7 @@ void NumberRows::pad() {
 }
 
 std::string NumberBuild::name() const {
-    return fmt::format("{}, {}{}{}", format_name(format), counted(lanes, "lane"), trusted ? "" : ", division refined",
+    return fmt::format("{}, {}{}{}", format_name(format), counted(lanes, "lane"), trusted ? "" : ", fallback code",
                        optimised ? "" : ", -cl-opt-disable");
 }
 
@@ -133,6 +134,7 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
         return answers.operation >= kAnsweredOperations;
     });
     const NumberResults results = run(rows, with_functions);
+    KnownWords known(results.size() * rows.count());
     std::size_t wrong = 0, compared = 0, skipped = 0;
     std::string operations;
     Fault fault;
@@ -143,7 +145,9 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
             const std::uint32_t got = results[answers.operation].at(row), correct = answers.results[i];
             const bool skip = !has_denormals_ && has_denormal(answers.operation, operands_of(rows, row), correct);
             (skip ? skipped : compared) += 1;
-            if (skip || agrees(got, correct)) continue;
+            if (skip) continue;
+            known.set(answers.operation * rows.count() + row, agrees(got, correct) ? got : correct);
+            if (agrees(got, correct)) continue;
             if (wrong++ == 0) fault = fault_of(format_, answers.operation, operands_of(rows, row), correct, got);
             ++wrong_of_operation;
         }
@@ -152,7 +156,10 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
                 fmt::format("{}{} {} of {}", operations.empty() ? "" : ", ", kNumberOperations[answers.operation].name,
                             wrong_of_operation, answers.results.size());
     }
-    if (wrong) return failed("wrong: " + operations, fault);
+    if (wrong) {
+        report_expected("results", known);
+        return failed("wrong: " + operations, fault);
+    }
     const std::string denormals = skipped ? fmt::format(", {} with denormal numbers skipped", skipped) : "";
     return passed(fmt::format("{} answers{}", compared, denormals));
 }
@@ -219,6 +226,15 @@ void verify_numbers(Verification& v) {
         const bool promises_rounding = v.device().correctly_rounded_divide_sqrt || v.device().fused_multiply_add;
         if (v.full() && promises_rounding) verify_format(v, answers, v.lanes_or_default(), false);
     }
+}
+
+void verify_number_format(Verification& v, const NumberFormat& format, std::uint32_t lanes) {
+    const auto& all = known_answers();
+    const auto found = std::ranges::find(all, format, &FormatAnswers::format);
+    if (found != all.end()) return verify_format(v, *found, lanes, true);
+    const NumberBuild build{.format = format, .lanes = lanes};
+    v.check("number", build.name(),
+            [&](Session&) { return skipped(fmt::format("there are no stored results in {}", format_name(format))); });
 }
 
 std::vector<FormatAnswers> parse_known_answers(const std::string& text) {

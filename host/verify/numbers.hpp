@@ -83,7 +83,7 @@ struct NumberBuild {
     bool optimised = true;  // false: -cl-opt-disable
     KernelSources sources{};
 
-    /// Returns text such as "e6m15, 16 lanes, division refined".
+    /// Returns text such as "e6m15, 16 lanes, fallback code".
     std::string name() const;
 };
 
@@ -142,5 +142,11 @@ std::string known_answers_text(const std::vector<FormatAnswers>& all);
 
 /// Returns the answers of known_answers.csv, which is embedded in the program.
 const std::vector<FormatAnswers>& known_answers();
+
+class Verification;
+
+/// Adds a check of all operations in one format to layer "number". If known_answers.csv does not have the format, the
+/// check is skipped.
+void verify_number_format(Verification& verification, const NumberFormat& format, std::uint32_t lanes);
 
 }  // namespace raya

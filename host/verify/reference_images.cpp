@@ -55,6 +55,18 @@ void read_row(const std::string& line, const Image& previous, Image& image) {
     image.width = static_cast<int>(image.rgb.size() / 3) / image.height;
 }
 
+std::string pixel_text(const std::array<std::uint32_t, 3>& bits) {
+    const auto value = [&](std::size_t k) { return std::bit_cast<float>(bits[k]); };
+    return fmt::format("0x{:08x} 0x{:08x} 0x{:08x} = ({:.9g}, {:.9g}, {:.9g})", bits[0], bits[1], bits[2], value(0),
+                       value(1), value(2));
+}
+
+std::array<std::uint32_t, 3> pixel_bits(const Image& image, std::size_t pixel) {
+    std::array<std::uint32_t, 3> bits{};
+    for (std::size_t k = 0; k < 3; ++k) bits[k] = std::bit_cast<std::uint32_t>(image.rgb[3 * pixel + k]);
+    return bits;
+}
+
 }  // namespace
 
 const std::vector<ReferenceImage>& reference_images() {
@@ -148,6 +160,22 @@ const StoredImage& stored_image(const ReferenceImage& image) {
         std::find_if(all.begin(), all.end(), [&](const StoredImage& stored) { return stored.name == image.name; });
     if (found == all.end()) throw std::logic_error("reference images: no '" + image.name + "'");
     return *found;
+}
+
+Verdict compare_images(const Image& expected, const Image& got) {
+    std::size_t wrong_pixels = 0, first_wrong = 0;
+    const std::size_t pixels = expected.rgb.size() / 3, width = static_cast<std::size_t>(expected.width);
+    for (std::size_t i = pixels; i-- > 0;) {
+        if (pixel_bits(got, i) == pixel_bits(expected, i)) continue;
+        ++wrong_pixels;
+        first_wrong = i;
+    }
+    if (wrong_pixels == 0) return passed(pixel_hash(got).substr(0, 8));
+    return failed(
+        fmt::format("{} of {} pixels wrong", wrong_pixels, pixels),
+        {.where = fmt::format("row {}, column {} (red, green, blue)", first_wrong / width, first_wrong % width),
+         .expected = pixel_text(pixel_bits(expected, first_wrong)),
+         .got = pixel_text(pixel_bits(got, first_wrong))});
 }
 
 std::string counts_text(const EventCounts& events,

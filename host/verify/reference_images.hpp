@@ -71,6 +71,10 @@ std::string counts_text(const EventCounts& events,
 Verdict check_counts(const std::string& expected, const std::string& got, const std::string& pass_text,
                      const std::string& options);
 
+/// Compares two images of the same size bit by bit. If they are equal, the verdict is a pass with the first digits of
+/// the hash; else a failure with the first wrong pixel.
+Verdict compare_images(const Image& expected, const Image& got);
+
 /// Renders the image once for each check kind that `raya verify` has for it. Returns [check kind]: counts_text(). The
 /// counts do not depend on lanes, group size, number of PEs or launches.
 std::map<std::string, std::string> counts_by_check_kind(Session& session, const ReferenceImage& image);

@@ -11,20 +11,18 @@
 #include "host/base/child_process.hpp"
 #include "host/base/clock.hpp"
 #include "host/base/json.hpp"
+#include "host/cl/capture.hpp"
 #include "host/cl/driver.hpp"
 #include "host/error.hpp"
 
 namespace raya {
-namespace {
-
-// --- Settings as JSON, and functions of the child process
-
 Json settings_json(const VerifySettings& s, const std::string& selector, std::size_t index) {
     return {{"device", selector},
             {"index", index},
             {"depth", depth_name(s.depth)},
             {"kernel_dir", s.sources.folder.string()},
             {"only", s.only},
+            {"is_whole_name", s.is_whole_name ? 1 : 0},
             {"skip", s.skip},
             {"shard", s.shard},
             {"shards", s.shards},
@@ -32,8 +30,14 @@ Json settings_json(const VerifySettings& s, const std::string& selector, std::si
             {"soak_s", s.soak_s},
             {"seed", s.seed},
             {"lanes", s.lanes},
+            {"group_size", s.group_size},
+            {"as", s.as},
             {"done", s.done}};
 }
+
+namespace {
+
+// --- Functions of the child process
 
 VerifySettings settings_of(const Json& json) {
     const std::string& depth = json.at("depth").text();
@@ -50,7 +54,10 @@ VerifySettings settings_of(const Json& json) {
             .repeat = number("repeat"),
             .soak_s = json.at("soak_s").number(),
             .seed = json.at("seed").integer(),
+            .is_whole_name = json.at("is_whole_name").integer() != 0,
             .lanes = number("lanes"),
+            .group_size = number("group_size"),
+            .as = json.at("as").text(),
             .done = json.at("done").integer()};
 }
 
@@ -65,11 +72,10 @@ SelectedDevices selected_devices(const std::string& selector, std::size_t index)
     SelectedDevices selected;
     for (const cl::Device& device : all_devices()) {
         const DeviceInfo info = device_info(device);
-        if (info.available && info.compiler_available)
+        if (const std::string reason = unusable_reason(info); reason.empty())
             selected.devices.push_back(device);
         else
-            selected.left_out.push_back(
-                fmt::format("{} ({}): skipped: not available, or without a compiler", info.name, info.platform));
+            selected.left_out.push_back(fmt::format("{} ({}): skipped: {}", info.name, info.platform, reason));
     }
     if (selected.devices.empty()) choose_device("");  // throws DeviceError with a remedy
     return selected;
@@ -151,7 +157,6 @@ class Supervision {
     }
 
     DeviceChecks take_checks() { return std::move(all_); }
-    std::size_t devices() const { return devices_; }
 
   private:
     struct Running {
@@ -181,7 +186,8 @@ class Supervision {
         if (devices_ > 0) return;  // already reported by the first process
         devices_ = line.at("devices").integer();
         all_ = device_checks_of(line.at("device"));
-        if (sink_.device) sink_.device(all_, line.at("left_out").strings());
+        all_.names = line.at("names").strings();
+        if (sink_.device) sink_.device(all_, line.at("left_out").strings(), devices_);
     }
 
     void finish(Check check) {
@@ -190,25 +196,10 @@ class Supervision {
                 "run raya verify without --kernel-dir; if it passes, these kernels are wrong"};
         settings_.done += running_.has_value();
         running_.reset();
-        apply_expectation(check);
+        apply_expectations(check, settings_.expected_failures);
         all_.seconds += check.seconds;
         all_.checks.push_back(check);
         if (sink_.finished) sink_.finished(check);
-    }
-
-    // Changes the outcome of a check that is expected to fail.
-    void apply_expectation(Check& check) const {
-        Verdict& v = check.verdict;
-        if (v.outcome == Outcome::kSkip) return;
-        for (const ExpectedFailure& e : settings_.expected_failures) {
-            if (!name_matches(check.layer + " " + check.name, e.pattern)) continue;
-            const std::string why = e.link.empty() ? e.reason : e.reason + ", " + e.link;
-            const bool passes = v.outcome == Outcome::kPass;
-            v.outcome = passes ? Outcome::kUnexpectedPass : Outcome::kExpectedFail;
-            v.result = passes ? fmt::format("passed, but --expect lists it as failing ({}): {}", why, v.result)
-                              : fmt::format("{} (expected: {})", v.result, why);
-            return;
-        }
     }
 
     Check timed_out_check() const {
@@ -257,24 +248,30 @@ class Supervision {
 }  // namespace
 
 DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
-                       const SupervisorSink& sink, std::size_t& devices) {
+                       const SupervisorSink& sink) {
     Supervision supervision(settings, sink);
     while (supervision.run_remaining(selector, index)) continue;
-    devices = supervision.devices();
     return supervision.take_checks();
 }
 
-void run_checks(int pipe, const Json& request) {
-    const VerifySettings settings = settings_of(request);
+void run_checks(int pipe, const Json& request, const std::function<RenderCase(const std::string&)>& render_case) {
+    VerifySettings settings = settings_of(request);
+    if (!settings.as.empty()) settings.render = std::make_shared<RenderCase>(render_case(settings.as));
     const std::string& selector = request.at("device").text();
     const std::size_t index = request.at("index").integer();
     const SelectedDevices selected = selected_devices(selector, index);
     if (settings.done == 0)
         for (const cl::Device& device : selected.devices) refuse_empty_selection(device, settings);
     const cl::Device& device = selected.devices.at(selector == "all" ? index : 0);
+    const VerifySettings full{.depth = Depth::kFull, .sources = settings.sources};
     send_line(pipe, {{"devices", selected.devices.size()},
                      {"left_out", selected.left_out},
-                     {"device", to_json(device_checks_of(device_info(device)))}});
+                     {"device", to_json(device_checks_of(device_info(device)))},
+                     {"names", check_names(device, full)}});
+    std::optional<Capture> capture;
+    if (const Json* c = request.find("capture"))
+        capture.emplace(c->at("step").integer(), c->at("folder").text(),
+                        [&](const Json& line) { send_line(pipe, line); });
     const CheckSink sink{.started =
                              [&](const std::string& layer, const std::string& name) {
                                  send_line(pipe, {{"started", {{"layer", layer}, {"name", name}}}});

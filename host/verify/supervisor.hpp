@@ -1,9 +1,9 @@
 // Runs a device's checks in a child process, because a crash in a driver ends the process. After a crash another child
 // process continues with the next check. The child writes one JSON object per line:
 //
-//     {"devices": N, "left_out": [TEXT, ...], "device": {...}}
-//                           the first line: number of selected devices, a text for each unusable device, and
-//                           the device that is checked, as in reports, without checks
+//     {"devices": N, "left_out": [TEXT, ...], "device": {...}, "names": [...]}
+//                           the first line: number of selected devices, a text for each unusable device, the device
+//                           that is checked, as in reports but without checks, and the names of all its checks
 //     {"started": {"layer": LAYER, "name": NAME}}    a check starts
 //     {"check": {...}}      the check is done; the object is that of to_json() in verify.hpp
 //     {"ended": true}       all checks are done
@@ -15,14 +15,16 @@
 #include <vector>
 
 #include "host/verify/device_checks.hpp"
+#include "host/verify/render_case.hpp"
 #include "host/verify/verify.hpp"
 
 namespace raya {
 
 /// Callbacks of supervise().
 struct SupervisorSink {
-    /// Called before a device's first check. `left_out`: one line for each unusable device.
-    std::function<void(const DeviceChecks&, const std::vector<std::string>& left_out)> device{};
+    /// Called before a device's first check. `left_out`: one line for each unusable device; `devices`: number of
+    /// selected devices.
+    std::function<void(const DeviceChecks&, const std::vector<std::string>& left_out, std::size_t devices)> device{};
     /// Called about once a second while a check runs, with the check's run time in seconds.
     std::function<void(const std::string& layer, const std::string& name, double seconds)> running{};
     /// Called after each check.
@@ -31,15 +33,20 @@ struct SupervisorSink {
 
 /// Checks the device that `selector` and `index` select: of "all", usable device number `index`, from 0; of any other
 /// text, choose_device(selector, index). If the child process ends early, or a check takes longer than
-/// settings.timeout_s, the running check counts as failed, and the next checks run in a new process. Sets `devices` to
-/// the number of usable devices for "all", else to 1. Throws the UserError or DeviceError that the child process
-/// reports, and DeviceError if the driver ends the process before the first check.
+/// settings.timeout_s, the running check counts as failed, and the next checks run in a new process. Throws the
+/// UserError or DeviceError that the child process reports, and DeviceError if the driver ends the process before the
+/// first check. Several threads may call it at once.
 DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
-                       const SupervisorSink& sink, std::size_t& devices);
+                       const SupervisorSink& sink);
+
+/// Returns the request of the child process's task: settings and device, see supervise(). With a member "capture",
+/// {"step": N, "folder": TEXT}, the child also captures step N and writes the lines of Capture (host/cl/capture.hpp).
+Json settings_json(const VerifySettings& settings, const std::string& selector, std::size_t index);
 
 /// Name and function of the child process's task (host/base/child_process.hpp). run_checks() writes the lines to the
 /// file descriptor `pipe`, except the line "error": run_checks() throws the exception, and its caller writes the line.
+/// `render_case` parses VerifySettings::as.
 inline constexpr const char* kVerifyTask = "verify";
-void run_checks(int pipe, const Json& request);
+void run_checks(int pipe, const Json& request, const std::function<RenderCase(const std::string&)>& render_case);
 
 }  // namespace raya

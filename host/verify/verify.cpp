@@ -9,11 +9,15 @@
 #include "host/base/clock.hpp"
 #include "host/base/json.hpp"
 #include "host/cl/program.hpp"
+#include "host/cl/spirv.hpp"
 #include "host/error.hpp"
 #include "host/scene/split_mix.hpp"
+#include "host/verify/render_case.hpp"
 
 namespace raya {
 namespace {
+
+constexpr const char* kWithoutIl = "run raya verify without --il; if it passes, the SPIR-V is the cause";
 
 bool contains_any(const std::string& message, const std::vector<const char*>& texts) {
     return std::any_of(texts.begin(), texts.end(),
@@ -53,7 +57,9 @@ Verdict verdict_of(const std::function<Verdict()>& body) {
         return failed(message.substr(0, end), fault);
     };
     try {
-        return body();
+        Verdict verdict = body();
+        if (uses_il()) verdict.fault.remedies.emplace(verdict.fault.remedies.begin(), kWithoutIl);
+        return verdict;
     } catch (const DeviceError& error) {
         return failure(error.what(), true);
     } catch (const std::exception& error) {
@@ -72,6 +78,7 @@ std::string indented(const std::string& label, const std::string& text) {
 }
 
 void visit_layers(Verification& verification) {
+    if (verification.render() != nullptr) return verify_render_case(verification, *verification.render());
     verify_numbers(verification);
     verify_geometry(verification);
     verify_machines(verification);
@@ -103,6 +110,20 @@ bool name_matches(const std::string& full_name, const std::string& pattern) {
         glob += c;
     }
     return ::fnmatch((glob + "*").c_str(), full_name.c_str(), 0) == 0;
+}
+
+void apply_expectations(Check& check, const std::vector<ExpectedFailure>& expected_failures) {
+    Verdict& v = check.verdict;
+    if (v.outcome == Outcome::kSkip) return;
+    for (const ExpectedFailure& e : expected_failures) {
+        if (!name_matches(check.layer + " " + check.name, e.pattern)) continue;
+        const std::string why = e.link.empty() ? e.reason : e.reason + ", " + e.link;
+        const bool passes = v.outcome == Outcome::kPass;
+        v.outcome = passes ? Outcome::kUnexpectedPass : Outcome::kExpectedFail;
+        v.result = passes ? fmt::format("passed, but --expect lists it as failing ({}): {}", why, v.result)
+                          : fmt::format("{} (expected: {})", v.result, why);
+        return;
+    }
 }
 
 Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body) {
@@ -146,6 +167,7 @@ Json to_json(const Check& c) {
 
 std::vector<std::string> compiler_remedies() {
     std::vector<std::string> all;
+    if (uses_il()) all.emplace_back(kWithoutIl);
     if (user_build_options().find("-cl-opt-disable") == std::string::npos)
         all.emplace_back("RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify: compiles without optimisation");
     all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
@@ -206,7 +228,9 @@ void Verification::check(const std::string& layer, const std::string& name,
 }
 
 KernelChoice Verification::kernels(std::uint32_t lanes, std::uint32_t group_size) const {
-    return {.lanes = lanes ? lanes : settings_.lanes, .group_size = group_size, .sources = settings_.sources};
+    return {.lanes = lanes ? lanes : settings_.lanes,
+            .group_size = settings_.group_size ? settings_.group_size : group_size,
+            .sources = settings_.sources};
 }
 
 std::vector<std::uint32_t> Verification::lanes() const {
@@ -228,11 +252,12 @@ std::vector<Check> verify(const cl::Device& device, const VerifySettings& settin
 
 void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
     std::vector<VerifySettings> choices;
-    for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) {
+    std::vector<std::uint32_t> lanes_choices = {1, 4, 8, 16};
+    if (settings.lanes != 0 || settings.render) lanes_choices = {settings.lanes};
+    for (const std::uint32_t lanes : lanes_choices) {
         VerifySettings one = settings;
         one.lanes = lanes;
         one.done = 0;
-        if (settings.lanes != 0 && settings.lanes != lanes) continue;
         const std::vector<std::string> names = check_names(device, one);
         one.is_whole_name = true;
         one.skip.clear();
@@ -248,7 +273,7 @@ void verify_at_random(const cl::Device& device, const VerifySettings& settings, 
         const VerifySettings& one = choices[random.next() % choices.size()];
         if (n < settings.done) continue;
         verify(device, one, {.started = sink.started, .finished = [&](Check check) {
-                                 check.verdict.result += fmt::format(", --lanes {}", one.lanes);
+                                 if (one.lanes != 0) check.verdict.result += fmt::format(", --lanes {}", one.lanes);
                                  sink.finished(check);
                              }});
     }

@@ -2,6 +2,7 @@
 // and compares them with known results.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -61,8 +62,14 @@ bool name_matches(const std::string& full_name, const std::string& pattern);
 
 /// A check that is known to fail.
 struct ExpectedFailure {
+    std::string place;                  // "FILE:LINE"
     std::string pattern, reason, link;  // pattern: see name_matches()
 };
+
+/// Changes the outcome of a check that is expected to fail: a failure becomes kExpectedFail, a pass kUnexpectedPass.
+void apply_expectations(Check& check, const std::vector<ExpectedFailure>& expected_failures);
+
+struct RenderCase;
 
 struct VerifySettings {
     Depth depth = Depth::kQuick;
@@ -76,9 +83,12 @@ struct VerifySettings {
     std::uint64_t seed = 1;  // of verify_at_random()
     bool is_whole_name = false;                        // `only` is a whole "LAYER NAME"
     std::vector<ExpectedFailure> expected_failures{};  // supervise() changes the outcome of checks that match
-    std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
-                              // Depth::kFull, all four numbers
-    std::size_t done = 0;     // number of checks, from the first on, that are already done; verify() skips them
+    std::uint32_t lanes = 0;       // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
+                                   // Depth::kFull, all four numbers
+    std::uint32_t group_size = 0;  // of the kernels of images, in work-items; 0: as each check defines
+    std::string as{};              // if not empty: check only this render (docs/verify.md)
+    std::shared_ptr<const RenderCase> render{};  // `as`, parsed
+    std::size_t done = 0;  // number of checks, from the first on, that are already done; verify() skips them
 };
 
 /// Callbacks: `started` is called with the layer and name of every check before it runs, `finished` after it has run.
@@ -99,6 +109,9 @@ void verify_at_random(const cl::Device& device, const VerifySettings& settings, 
 /// Returns "LAYER NAME" of every check that verify() would run, in the same order.
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings);
 
+/// Build option with which kernels use no builtins of clang, but their fallback code.
+inline constexpr const char* kNoBuiltins = "-DRAYA_BUILTINS=0";
+
 /// Device, settings and results of a run of verify(). The functions below, one per layer, call check() for each check.
 class Verification {
   public:
@@ -113,6 +126,8 @@ class Verification {
     void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
 
     const KernelSources& sources() const { return settings_.sources; }
+    /// Returns the only render to check; null: all layers are checked.
+    const RenderCase* render() const { return settings_.render.get(); }
     /// Returns the sources and options of a renderer's kernels. If `lanes` is 0, the options have given_lanes() lanes.
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const;
 

@@ -1,11 +1,13 @@
 // Choice of a device, its properties, and error texts. Without an OpenCL device these tests fail.
 #include <catch2/catch.hpp>
 #include <cctype>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "host/cl/device.hpp"
 #include "host/cl/error_names.hpp"
+#include "host/cl/spirv.hpp"
 
 using namespace raya;
 using Catch::Contains;
@@ -116,6 +118,24 @@ TEST_CASE("a device that does not exist is refused with the list of devices", "[
     const std::string real_name = device_info(all_devices()[0]).name;
     CHECK_THROWS_WITH(choose_device("no such device"), Contains("no such device") && Contains(real_name));
     CHECK_THROWS_AS(choose_device("no such device"), DeviceError);
+}
+
+TEST_CASE("with --il, only devices that accept SPIR-V are usable", "[cl]") {
+    std::vector<DeviceInfo> devices = kDevices;
+    devices[3].il_versions = "SPIR-V_1.0";
+    CHECK(device_index("", devices) == 2);
+    CHECK_FALSE(uses_il());
+    use_il();
+    CHECK(uses_il());
+    CHECK(device_index("", devices) == 3);
+    CHECK_THAT(error_message_of("770", devices), Contains("unable to accept SPIR-V (--il)"));
+    CHECK_THAT(error_message_of("", kDevices), Contains("no available OpenCL device accepts SPIR-V"));
+    ::unsetenv("RAYA_BUILD_OPTIONS");
+    std::string options = "-DA=1 --il -cl-std=CL1.2";
+    CHECK(remove_il_option(options));
+    CHECK(options == "-DA=1 -cl-std=CL1.2");
+    CHECK_FALSE(remove_il_option(options));
+    CHECK(options == "-DA=1 -cl-std=CL1.2");
 }
 
 TEST_CASE("errors have names and remedies", "[cl]") {

@@ -10,6 +10,8 @@
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 overflows"  the third call starts two threads that overflow their stacks
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 exit"   the third call ends the program with exit code 1
 //   RAYA_FAULT="clFinish 1 slow"              the first and all later calls take 2.5 seconds longer
+//   RAYA_FAULT="clBuildProgram 0 fma(a,b,c)=(a*b+c)"  a compiler with a fault: it replaces the call of a function. With
+//                                             1 instead of 0: only in builds without -cl-opt-disable
 //   RAYA_FAULT="clGetDeviceInfo 4100 8"       the query 0x1004 (CL_DEVICE_MAX_WORK_GROUP_SIZE) returns 8
 //   RAYA_FAULT="clGetDeviceInfo 16655 59"     the query 0x410F (CL_DEVICE_PCI_BUS_INFO_KHR) returns the domain 59
 //   RAYA_FAULT="clGetKernelWorkGroupInfo 4528 8"  the query 0x11B0 (CL_KERNEL_WORK_GROUP_SIZE) returns 8
@@ -82,6 +84,11 @@ bool corrupts_copy(const char* call, const char* action) {
     const Fault& fault = injected_fault();
     static std::atomic<int> calls{0};
     return fault.action == action && fault.call == call && ++calls % fault.number == 0;
+}
+
+/// Returns true if the injected fault is a compiler that replaces calls of a function.
+bool replaces_calls() {
+    return injected_fault().call == "clBuildProgram" && injected_fault().action.find('=') != std::string::npos;
 }
 
 template <class Function>
@@ -161,6 +168,29 @@ cl_context CL_API_CALL clCreateContext(const cl_context_properties* properties, 
                                        cl_int* error) {
     return create_or_fail<decltype(clCreateContext)>("clCreateContext", error, properties, count, devices, notify,
                                                      user);
+}
+
+cl_program CL_API_CALL clCreateProgramWithSource(cl_context context, cl_uint count, const char** texts,
+                                                 const size_t* sizes, cl_int* error) {
+    std::string define = injected_fault().action;
+    if (!replaces_calls()) define = "RAYA_NO_FAULT=";
+    define.replace(define.find('='), 1, " ");
+    std::string source = "#ifdef RAYA_FAULT\n#define " + define + "\n#endif\n";
+    for (cl_uint i = 0; i < count; ++i)
+        source += sizes != nullptr && sizes[i] != 0 ? std::string(texts[i], sizes[i]) : std::string(texts[i]);
+    const char* text = source.c_str();
+    return driver_function<decltype(clCreateProgramWithSource)>("clCreateProgramWithSource")(context, 1, &text, nullptr,
+                                                                                             error);
+}
+
+cl_int CL_API_CALL clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
+                                  void(CL_CALLBACK* notify)(cl_program, void*), void* user) {
+    const Fault& fault = injected_fault();
+    std::string all = options != nullptr ? options : "";
+    if (replaces_calls() && (fault.number == 0 || all.find("-cl-opt-disable") == all.npos)) all += " -DRAYA_FAULT";
+    if (!replaces_calls() && inject_fault("clBuildProgram") != CL_SUCCESS) return fault.result;
+    return driver_function<decltype(clBuildProgram)>("clBuildProgram")(program, count, devices, all.c_str(), notify,
+                                                                       user);
 }
 
 cl_mem CL_API_CALL clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {

@@ -97,6 +97,54 @@ TEST_CASE("bench --report, --compare: a later run is compared with the rows of t
                                           Catch::Contains("8 bounces, accel none") && Catch::Contains("1 bounces"));
 }
 
+TEST_CASE("bench --compare --junit --tap --expect: one test case for each row", "[cli]") {
+    const ScratchFolder folder, outputs;
+    const std::string junit = folder / "b.xml", tap = folder / "b.tap", list = folder / "expect.txt";
+    REQUIRE(run_raya(small_bench({"--report", folder / "base.json"})).code == 0);
+    const std::string fast = write_changed_baseline(folder, "fast.json", 1e3),
+                      slow = write_changed_baseline(folder, "slow.json", 1e-3);
+    const std::string name =
+        "bench trace, spheres.nff, 32x32, 32 PEs, cyclic:16, 8 bounces, accel none, fp32, 4 lanes, ";
+    const auto compare = [&](const std::string& baseline, const Arguments& more = {}) {
+        Arguments all = {"--compare", baseline, "--junit", junit, "--tap", tap};
+        all.insert(all.end(), more.begin(), more.end());
+        return run_raya(small_bench(all));
+    };
+    CHECK(compare(slow).code == 0);
+    CHECK_THAT(file_contents(junit),
+               Catch::Contains("<testsuites name=\"raya bench\">") &&
+                   Catch::Contains("tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"0\"") &&
+                   Catch::Contains("<testcase classname=\"raya.bench\" name=\"trace, spheres.nff"));
+    CHECK_THAT(file_contents(tap), Catch::Contains("\nok 1 - " + name));
+    CHECK(compare(fast).code == 4);
+    CHECK_THAT(file_contents(junit),
+               Catch::Contains("failures=\"1\"") && Catch::Contains("<failure message=\"SLOWER: best "));
+    CHECK_THAT(file_contents(tap), Catch::Contains("\nnot ok 1 - " + name));
+    write_whole_file(list, "trace*fp32, 4 lanes | slow driver | https://example.org/2\nother | no row\n");
+    const RunOutcome expected = compare(fast, {"--expect", list});
+    INFO(expected.describe());
+    CHECK(expected.code == 0);
+    CHECK_THAT(expected.out, Catch::Contains("XFAIL bench") && Catch::Contains("(expected: slow driver, https://") &&
+                                 Catch::Contains("1 row compared; --expect: 1 as listed, 0 not slower"));
+    CHECK_THAT(expected.err, Catch::Contains(list + ":2: \"other\" matches no check"));
+    CHECK_THAT(file_contents(tap), Catch::Contains("\nnot ok 1 - " + name) && Catch::Contains(" # TODO SLOWER"));
+    const RunOutcome unexpected = compare(slow, {"--expect", list});
+    INFO(unexpected.describe());
+    CHECK(unexpected.code == 4);
+    CHECK_THAT(unexpected.err, Catch::Contains("--expect: 0 as listed, 1 not slower"));
+    // A baseline without this row: another group size.
+    Document json = json_of(slow);
+    json["rows"].push_back(json["rows"][0]);
+    json["rows"][1]["group"] = 999;
+    std::ofstream(slow) << json;
+    CHECK(compare(slow).code == 0);
+    CHECK_THAT(file_contents(tap), Catch::Contains("1..2\n") &&
+                                       Catch::Contains("\nok 2 - " + name + "group 999 # SKIP in the baseline alone"));
+    check_refused(outputs, small_bench({"--compare", slow, "--expect", folder / "none"}), 2,
+                  {"--expect", "cannot be read: No such file or directory"});
+    check_refused(outputs, small_bench({"--junit", outputs / "b.xml"}), 2, {"--junit, --tap, --expect: need --compare"});
+}
+
 TEST_CASE("bench: refuses invalid baselines, reports and tolerances", "[cli]") {
     const ScratchFolder folder, outputs;
     std::ofstream(folder / "no.json") << "no JSON";

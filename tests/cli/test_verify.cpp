@@ -2,10 +2,12 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "host/verify/soak.hpp"
 #include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
+#include "tests/paths.h"
 #include "tests/verify/faults.hpp"
 
 namespace raya {
@@ -54,6 +56,7 @@ TEST_CASE("verify --expect: listed failures do not count, and listed checks that
     const RunOutcome unexpected = run_raya(verify);
     INFO(unexpected.describe());
     CHECK(unexpected.code == 4);
+    CHECK_THAT(unexpected.err, !Catch::Contains("matches no check"));
     CHECK_THAT(unexpected.out, Catch::Contains("XPASS machine") && Catch::Contains("XFAIL machine   mapping: blocks") &&
                                    Catch::Contains("0 failed, 0 skipped, 2 failed as expected"));
     CHECK_THAT(file_contents(junit),
@@ -70,6 +73,15 @@ TEST_CASE("verify --expect: listed failures do not count, and listed checks that
                                          Catch::Contains("(expected: wrong mapping)"));
     CHECK_THAT(file_contents(tap),
                Catch::StartsWith("TAP version 14\n1..") && Catch::Contains("not ok ") && Catch::Contains(" # TODO "));
+    // A pattern of a check that is not selected, and two without any check.
+    write_whole_file(list,
+                     "mapping: blocks | a\nmapping: cyclic*block | b\nimage glass | c\nno such | d\n\nimge | e\n");
+    const RunOutcome unmatched = run_raya(verify);
+    INFO(unmatched.describe());
+    CHECK(unmatched.code == 0);
+    CHECK_THAT(unmatched.err, Catch::Contains(list + ":4: \"no such\" matches no check") &&
+                                  Catch::Contains(list + ":6: \"imge\" matches no check") &&
+                                  !Catch::Contains("image glass"));
     write_whole_file(list, "mapping: blocks\n");
     const ScratchFolder outputs;
     check_refused(outputs, verify, 2, {list + ":1: expected PATTERN | REASON or PATTERN | REASON | LINK"});
@@ -100,6 +112,21 @@ TEST_CASE("verify --shard, --skip, --list: every check is in exactly one shard",
     check_refused(scratch, {"verify", "--only", "number fp32", "--shard", "5/9"}, 2, {"select no check of"});
 }
 
+TEST_CASE("verify --list: names are those of tests/verify/check_names.txt", "[cli][verify]") {
+    // Lists of expected failures and CI dashboards contain the names. If you change one, write the file again and say
+    // so in CHANGELOG.md: build/raya verify --quick --lanes 4 --list > tests/verify/check_names.txt
+    const RunOutcome run = run_raya({"verify", "--quick", "--lanes", "4", "--list"});
+    INFO(run.describe());
+    CHECK(run.out == file_contents(RAYA_SOURCE_DIR "/tests/verify/check_names.txt"));
+    const ScratchFolder scratch;
+    const std::string report = scratch / "v.json";
+    REQUIRE(run_raya({"verify", "--quick", "--lanes", "4", "--only", "machine", "--report", report}).code == 0);
+    const Document checks = Document::parse(file_contents(report))["devices"][0]["checks"];
+    REQUIRE(checks.size() == 24);
+    for (const Document& check : checks)
+        CHECK_THAT(run.out, Catch::Contains("machine " + check["name"].get<std::string>() + "\n"));
+}
+
 TEST_CASE("verify --timeout: ends a check that hangs, and continues with the next", "[cli][verify]") {
     const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine mapping: rows", "--timeout", "1"},
                                     device_with_fault("clFinish 1 slow"));
@@ -108,12 +135,28 @@ TEST_CASE("verify --timeout: ends a check that hangs, and continues with the nex
     CHECK_THAT(run.out, Catch::Contains("no result after") && Catch::Contains("--timeout SECONDS"));
 }
 
+TEST_CASE("verify: no check builds more than six programs, for which the default of --timeout allows",
+          "[cli][verify]") {
+    const ScratchFolder scratch;
+    const std::string log = scratch / "log";
+    const RunOutcome run =
+        run_raya({"verify", "--only", "torus3d 2x2x2, launches of 3 units, links by a kernel", "--lanes", "4"},
+                 {.variables = {{"RAYA_KERNEL_LOG", log}}});
+    INFO(run.describe());
+    CHECK(run.code == 0);
+    std::size_t builds = 0;
+    std::istringstream lines(file_contents(log));
+    for (std::string line; std::getline(lines, line);) builds += contains(line, "\tbuild\t");
+    CHECK(builds == 6);  // the most of all checks: inject, trace_voxel, route, accept, exchange, compose
+    CHECK_THAT(run_raya({"verify", "--help"}).out, Catch::Contains("--timeout S") && Catch::Contains("600"));
+}
+
 TEST_CASE("verify --soak: finds a bit that flips once in many copies, with its rate, and repeats by the seed",
           "[cli][verify]") {
     const ScratchFolder scratch;
     const auto soak = [&](const RunOptions& options) {
         const std::string report = scratch / "v.json";
-        const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine", "--lanes", "4", "--soak", "3s",
+        const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine ring", "--lanes", "4", "--soak", "3s",
                                          "--seed", "7", "--report", report},
                                         options);
         INFO(run.describe());
@@ -130,7 +173,47 @@ TEST_CASE("verify --soak: finds a bit that flips once in many copies, with its r
     const auto [wrong, same_names] = soak(device_with_fault("clEnqueueCopyBuffer 40 flip"));
     CHECK(wrong.code == 4);
     CHECK(same_names == names);
-    CHECK(has_line(wrong.out, "machine .*: failed [0-9]+ of [0-9]+ times?, first after [0-9.]+ s"));
+    CHECK(has_line(wrong.out, "after [0-9.]+ s: FAIL  machine .*"));
+    // The fault hits the 8th rotation of each check, so all failures of a check have the same first wrong word.
+    CHECK(has_line(
+        wrong.out,
+        "machine ring: rotations of [0-9]+ PEs: failed ([0-9]+) of [0-9]+ times?, first after [0-9.]+ s; \\1 of "
+        "\\1 failures? with the same first wrong word: rotation 8 of .* PEs, PE 0, word 0: expected 0x.*, got "
+        "0x.*"));
+}
+
+TEST_CASE("verify --soak --device all: checks all devices at once", "[cli][verify]") {
+    const ScratchFolder scratch;
+    const std::string report = scratch / "v.json";
+    const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine ring", "--lanes", "4", "--soak", "3s",
+                                     "--device", "all", "--report", report},
+                                    {.variables = {{"POCL_DEVICES", "pthread basic"}}});
+    INFO(run.describe());
+    CHECK(run.code == 0);
+    const Document devices = Document::parse(file_contents(report))["devices"];
+    REQUIRE(devices.size() == 2);
+    for (const Document& device : devices) CHECK(device["passed"].get<int>() >= 5);
+    CHECK(devices[0]["checks"][0]["name"] == devices[1]["checks"][0]["name"]);  // the same seed
+    // Both tests start before one of them ends.
+    const auto start_of = [&](const char* device) { return run.out.find(std::string(device) + "-"); };
+    CHECK(std::max(start_of("pthread"), start_of("basic")) < run.out.find("random checks with --seed"));
+}
+
+TEST_CASE("verify: a soak test repeats the first wrong word only if it is the same", "[verify]") {
+    SoakCounts counts;
+    Check check{"machine", "bus", 1, passed("")};
+    CHECK(counts.add(check, 1).empty());
+    check.verdict = failed("wrong", {.where = "word 3", .expected = "1", .got = "2", .remedies = {"a remedy"}});
+    CHECK_THAT(counts.add(check, 2), Catch::StartsWith("after 2.0 s: FAIL  machine") && Catch::Contains("a remedy"));
+    CHECK_THAT(counts.add(check, 3), Catch::StartsWith("after 3.0 s: FAIL") && !Catch::Contains("a remedy"));
+    check.verdict.fault.got = "3";
+    counts.add(check, 4);
+    check.verdict.outcome = Outcome::kSkip;
+    CHECK(counts.add(check, 5).empty());
+    CHECK(
+        counts.summary() ==
+        "machine bus: failed 3 of 5 times, first after 2.0 s; 2 of 3 failures with the same first wrong word: word 3: "
+        "expected 1, got 2\n");
 }
 
 TEST_CASE("verify --kernel-dir: refuses a folder without all kernels, before any check", "[cli][verify]") {

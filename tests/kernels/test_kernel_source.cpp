@@ -156,3 +156,15 @@ TEST_CASE("a build log names the file and line of an error", "[kernels]") {
     CHECK_THROWS_WITH(session.build("mine.cl", source, {}), Contains("broken.clh:2") && Contains("first_mistake") &&
                                                                 Contains("mine.cl:3") && Contains("second_mistake"));
 }
+
+TEST_CASE("a build log names the line of an error after an include that the preprocessor skips", "[kernels]") {
+    const ScratchFolder folder;
+    write(folder / "skipped.clh", "// a comment\n// another\n");
+    const std::string text =
+        "#if 0\n#include \"skipped.clh\"\n#elif 1\nint two(void) { return first_mistake; }\n#endif\n"
+        "kernel void f(global int* a) { a[0] = second_mistake; }\n";
+    const Session session(choose_device(""));
+    CHECK_THROWS_WITH(
+        session.build("mine.cl", expand_kernel_source(text, "mine.cl", {folder.path()}), {}),
+        Contains("mine.cl:4") && Contains("first_mistake") && Contains("mine.cl:6") && Contains("second_mistake"));
+}

@@ -1,8 +1,9 @@
 // Tests a device for known defects of OpenCL implementations: runs a minimal kernel for each defect, and compares the
 // result with the correct result and with known wrong results.
-// Usage: defects [DEVICE]
+// Usage: defects [DEVICE [PLATFORM NAME]]
 //   Prints a line for each run of a kernel of tests/portability: right, an expected failure with its reason, or WRONG.
-//   The line also states if an expected failure no longer occurs.
+//   The line also states if an expected failure no longer occurs. PLATFORM and NAME replace the names of the device, so
+//   that a test can expect the failures of another device.
 // Each kernel runs in its own process, because some kernels crash the compiler.
 // Exit code: 0 if all results are right or expected, 1 if one is WRONG.
 #include <fmt/core.h>
@@ -99,12 +100,13 @@ bool occurs_on(const KnownFailure& known, const DeviceInfo& device) {
            device.name.find(known.device) != std::string::npos;
 }
 
-/// Prints the output line for a defect; returns true if the result is right or an expected failure.
-bool report(const Defect& defect, Session& session) {
+/// Prints the output line for a defect of `device`, the device of `session`; returns true if the result is right or an
+/// expected failure.
+bool report(const Defect& defect, Session& session, const DeviceInfo& device) {
     const cl_uint got = run_kernel(defect, session);
     const std::string description = text_of(defect);
     for (const KnownFailure& known : defect.known_failures) {
-        if (!occurs_on(known, session.device())) continue;
+        if (!occurs_on(known, device)) continue;
         if (got == defect.right) {
             fmt::print("{}: right, {} was expected: {}\n", description,
                        known.crashes ? "a crash" : std::to_string(known.wrong), known.reason);
@@ -157,8 +159,13 @@ bool succeeded(int status) { return WIFEXITED(status) && WEXITSTATUS(status) == 
 
 int main(int argc, char** argv) {
     const std::string device = argc > 1 ? argv[1] : "";
+    const auto info_of_device = [&] {
+        DeviceInfo info = device_info(choose_device(device));
+        if (argc > 3) info.platform = argv[2], info.name = argv[3];
+        return info;
+    };
     bool all_right = succeeded(run_in_child([&] {
-        const DeviceInfo info = device_info(choose_device(device));
+        const DeviceInfo info = info_of_device();
         fmt::print("{}, {}, driver {}\n", info.platform, info.name, info.driver);
         return 0;
     }));
@@ -166,12 +173,11 @@ int main(int argc, char** argv) {
     for (const Defect& defect : kDefects) {
         int status = run_in_child([&] {
             Session session(choose_device(device));
-            return report(defect, session) ? 0 : 1;
+            return report(defect, session, info_of_device()) ? 0 : 1;
         });
         if (WIFSIGNALED(status))
-            status = run_in_child([&, signal = WTERMSIG(status)] {
-                return report_crash(defect, signal, device_info(choose_device(device))) ? 0 : 1;
-            });
+            status = run_in_child(
+                [&, signal = WTERMSIG(status)] { return report_crash(defect, signal, info_of_device()) ? 0 : 1; });
         all_right = succeeded(status) && all_right;
     }
     return all_right ? 0 : 1;

@@ -127,7 +127,8 @@ TEST_CASE("mpirun verify: a rank without a device, and ranks that share a GPU, a
         INFO(run.describe());
         CHECK(run.code == 4);
         CHECK_THAT(run.out, Catch::Contains(place_of(1) + ": FAIL  device    of this rank only") &&
-                                Catch::Contains("rank 0 has checked the same device"));
+                                Catch::Contains("rank 0 has checked the same device") &&
+                                Catch::Contains(", PCI 003b:00:00.0: "));
         const std::vector<Document> devices = verify.devices();
         CHECK(devices[0]["right"] == true);
         CHECK(devices[1]["right"] == false);
@@ -162,6 +163,8 @@ TEST_CASE("mpirun verify: a killed rank ends all ranks and their child processes
 TEST_CASE("mpirun verify: options that no rank accepts are refused once", "[ranks][.mpirun]") {
     const std::pair<Arguments, std::string> cases[] = {
         {{"--device", "all"}, "--device all: each rank checks one device"},
+        {{"--reproduce", "folder"}, "--reproduce folder: runs in one process"},
+        {{"--bisect", "number"}, "--bisect number: runs in one process"},
         {{"--only", "no such check"}, "no check of"}};
     for (const Mpi& mpi : installed_mpis())
         for (const auto& [options, message] : cases) {

@@ -1,5 +1,6 @@
 // Tests of the roofline model, with figures that can be calculated by hand.
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "host/model/budget.hpp"
 #include "host/report/profile_table.hpp"
@@ -86,7 +87,8 @@ TEST_CASE("roofline_table: contains the bound of each kernel and its percentage 
         {kernel("trace", 100), kernel("route", 100)});
     const std::string table = roofline_table(all);
     CAPTURE(table);
-    CHECK_THAT(table, Contains("trace: compute bound, 10.00 % of the fp32 multiply-add rate, 100.00 % of the rates of e6m15"));
+    CHECK_THAT(table,
+               Contains("trace: compute bound, 10.00 % of the fp32 multiply-add rate, 100.00 % of the rates of e6m15"));
     CHECK_THAT(table, Contains("route: bandwidth bound, 50.00 % of the copy bandwidth\n"));
     CHECK_THAT(table,
                Contains("100.00 Gop/s multiply-adds in fp32; in e6m15: 10.00 multiply-adds, 1.00 divisions, 2.00"));
@@ -96,6 +98,28 @@ TEST_CASE("roofline_table: contains the bound of each kernel and its percentage 
     CHECK(json[0]["operations_per_s"] == Approx(1e10));
     CHECK(json[0]["share_of_roof"] == Approx(0.1));
     CHECK(json[1]["share_of_format"].is_null());
+}
+
+TEST_CASE("roofline_table: has the events of the host's processor if they were counted", "[report]") {
+    LabelSummary launches = kernel("trace", 1'000'000);
+    launches.host_counts.emplace().of = {4e6, 8e6, NAN, 5000, 1'500'000, 7};
+    const KernelWork work{.label = "trace", .operations = 2'000'000};
+    Roofline all = roofline(kPeak, {work}, {launches});
+    all.host_counts_unavailable = "no cache misses: not offered";
+    const std::string table = roofline_table(all);
+    CAPTURE(table);
+    CHECK_THAT(table,
+               Contains("\ntrace    1.50   0.0040  0.0080         2.00      4.00              -           0.005  "
+                        "          7\n"));
+    CHECK_THAT(table, Contains("\ncounts  no cache misses: not offered\n"));
+    const Document counts = read_back(roofline_json(all))[0]["host_counts"];
+    CHECK(counts["cycles"] == 4'000'000);
+    CHECK(counts["cache_misses"].is_null());
+    CHECK(counts["processor_ns"] == 1'500'000);
+    CHECK(counts["page_faults"] == 7);
+    const Roofline uncounted = roofline(kPeak, {work}, {kernel("trace", 1)});
+    CHECK_THAT(roofline_table(uncounted), !Contains("cores"));
+    CHECK_FALSE(read_back(roofline_json(uncounted))[0].contains("host_counts"));
 }
 
 TEST_CASE("profile_table: lists builds and waiting times separately from commands", "[report]") {

@@ -1,24 +1,31 @@
 #!/usr/bin/env python3
-"""Checks the workflow of docs/ci and the commands of docs/ci.md: programs and options exist; packages are those of tools/setup or tools/portability;
-uploaded files are written; ctest writes the same report file as in tools/test. The checks themselves are tested with injected faults.
+"""Checks the workflows of docs/ci and the commands of docs/ci.md: programs and options exist; packages are those of tools/setup, tools/portability or
+docs/packages.md; files that a job uploads or summarises are written in it; ctest has the report file and the labels of tools/test; shards and
+artifacts are complete. The checks themselves are tested with injected faults. tests/tools/run_workflow.py runs the workflows.
 
     tests/tools/test_ci_recipe.py RAYA     RAYA: the built program. Exit code 77 if Python has no yaml (Debian: python3-yaml)
 """
-import functools, json, re, shlex, shutil, subprocess, sys, tempfile
+import functools, itertools, json, re, shlex, shutil, subprocess, sys, tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-WORKFLOW = ROOT / "docs/ci/raya-portability.yml"
+WORKFLOW, BUNDLE_WORKFLOW = ROOT / "docs/ci/raya-portability.yml", ROOT / "docs/ci/raya-verify.yml"
 PAGE = ROOT / "docs/ci.md"
-SHELL = {"mkdir", "apt-get", "[", "echo", "cat"}
+SHELL = {"mkdir", "apt-get", "[", "echo", "cat", "tar", "curl"}
 NO_SUCH = "--no-such-option"
 
 # (text of the workflow, faulty replacement)
-FAULTS = [("verify --quick", "verify --quik"), ("verify --quick", "verify --lanes 3"), ("--tolerance 30", "--tolerance much"),
+BUNDLE_FAULTS = [("raya verify --quick", "raya verify --quik"), ("{name: verify, path: verify.xml}", "{name: verify, path: v.xml}"),
+                 ("pocl-opencl-icd", "pocl")]
+FAULTS = [('"long|sweep"', "long"), ("--shard ${{ matrix.shard }}/3", "--shard ${{ matrix.shard }}/4"), ("shard: [1, 2, 3]", "shard: [1, 2]"),
+          ("ccache\n          tools", "ccachee\n          tools"), ("--junit verify.xml", "--junit v.xml"), ("--junit rates.xml", "--junit r.xml"),
+          ("-czf build.tar.gz", "-czf built.tar.gz"), ("{name: build, path", "{name: built, path"), ("--junit portability.xml", "--junit p.xml"),
+          ("tools/ci_summary build/junit.xml", "tools/ci_summary junit.xml"),
+          ("verify --quick", "verify --quik"), ("verify --quick", "verify --lanes 3"), ("--tolerance 30", "--tolerance much"),
           ("build/raya verify", "build/raya verifies"), ("cmake --preset release", "cmake --preset relase"),
           ("cmake --build build -j2", "cmake --build bild -j2"), ("--output-on-failure", "--output-on-failures"),
           ("--output-junit junit.xml", "--output-junit tests.xml"), ("build/junit.xml", "junit.xml"), ("tools/setup\n", "tools/setup --all\n"),
-          ("tools/setup\n", "tools/set-up\n"), ("tools/portability >", "tools/portability --wirte >"),
+          ("tools/setup\n", "tools/set-up\n"), ("tools/portability --shard", "tools/portability --shrad"),
           ("mesa-opencl-icd", "mesa-opencl"), ("--report verify.json", "--report verified.json")]
 
 
@@ -33,8 +40,8 @@ def commands(script):
                 written[-1] = token
             elif token in (">", ">>"):
                 written.append(None)
-            elif token not in (";", "&&", "||"):
-                arguments += [token] if arguments or token not in ("if", "then", "else", "fi") else []
+            elif token not in (";", "&&", "||", "|"):
+                arguments += [token] if arguments or token not in ("if", "then", "else", "fi", "sudo") else []
             elif arguments:
                 yield arguments, written
                 arguments, written = [], []
@@ -51,12 +58,15 @@ def packages_of_setup():
 
 
 def optional_packages():
-    """Debian packages that tools/portability names in its messages."""
-    return set(re.findall(r"\(Debian: ([\w-]+)\)", (ROOT / "tools/portability_implementations.py").read_text()))
+    """Debian packages that tools/portability names in its messages, and those of docs/packages.md."""
+    cells = re.findall(r"^\| ([\w, .-]+?)[ ;]", (ROOT / "docs/packages.md").read_text(), re.M)
+    named = {name for cell in cells for name in cell.split(", ")}
+    return named | set(re.findall(r"\(Debian: ([\w-]+)\)", (ROOT / "tools/portability_implementations.py").read_text()))
 
 
-def junit_of(arguments):
-    return arguments[arguments.index("--output-junit") + 1] if "--output-junit" in arguments else None
+def after(arguments, option):
+    """Returns the argument after the option; None if the option is not given."""
+    return arguments[arguments.index(option) + 1] if option in arguments else None
 
 
 def wrong_with_raya(arguments, raya, scratch):
@@ -72,6 +82,8 @@ def wrong_with_tool(arguments):
     if "argparse" in tool.read_text():
         code, output = output_of([tool, *arguments[1:], NO_SUCH])
         return "" if code == 2 and f"unrecognized arguments: {NO_SUCH}\n" in output else output.strip().splitlines()[-1]
+    if arguments[0] == "tools/ci_summary":  # files_read() checks its files
+        return "" if len(arguments) > 1 else "no file"
     return "" if set(arguments[1:]) <= ({"--print"} if arguments[0] == "tools/setup" else set()) else f"unknown options {arguments[1:]}"
 
 
@@ -86,10 +98,14 @@ def wrong_with_cmake(arguments):
 def wrong_with_ctest(arguments):
     known = output_of(["ctest", "--help"])[1]
     missing = [w for w in arguments[1:] if w.startswith("-") and not re.search(rf"(^|\s){re.sub(r'(?<=^-j)[0-9]+$', '', w)}\b", known)]
-    wanted = junit_of(shlex.split(re.search(r"^ *ctest .*", (ROOT / "tools/test").read_text(), re.M)[0]))
+    tool = (ROOT / "tools/test").read_text()
+    wanted = after(shlex.split(re.search(r"^ *ctest .*", tool, re.M)[0]), "--output-junit")
+    labels = after(shlex.split(re.search(r"^ *run_tests build -LE .*", tool, re.M)[0]), "-LE")
     if missing:
         return f"ctest has no options {missing}"
-    return "" if junit_of(arguments) == wanted else f"writes a report file other than that of tools/test, {wanted}"
+    if after(arguments, "-LE") != labels:
+        return f"runs other tests than tools/test, which has -LE {labels}"
+    return "" if after(arguments, "--output-junit") == wanted else f"writes a report file other than that of tools/test, {wanted}"
 
 
 def wrong_with_packages(arguments):
@@ -103,10 +119,12 @@ def wrong_with_packages(arguments):
 def wrong_with(arguments, raya, scratch):
     """Returns a text that says what is wrong with one command; "" if the command is right."""
     name = arguments[0]
-    if name == "build/raya":
+    if name in ("build/raya", "raya-*/raya"):
         return wrong_with_raya(arguments, raya, scratch)
     if name.startswith("tools/"):
         return wrong_with_tool(arguments)
+    if name == "ccache":
+        return "" if arguments[1:] == ("--show-stats",) else "unknown option"
     known = {"cmake": wrong_with_cmake, "ctest": wrong_with_ctest, "apt-get": wrong_with_packages}
     if name in known:
         return known[name](arguments)
@@ -115,25 +133,67 @@ def wrong_with(arguments, raya, scratch):
 
 def files_of(arguments, written):
     """Files that a command writes, relative to the repository's root."""
-    reports = [after for word, after in zip(arguments, arguments[1:]) if word == "--report"]
-    return {*written, *reports, *([f"build/{junit_of(arguments)}"] if junit_of(arguments) else [])}
+    reports = [next_one for word, next_one in zip(arguments, arguments[1:]) if word in ("--report", "--junit", "-czf")]
+    return {*written, *reports, *([f"build/{after(arguments, '--output-junit')}"] if "--output-junit" in arguments else [])}
 
 
-def faults_of(workflow, page, raya, scratch):
-    """Returns (texts that say what is wrong in the workflow and in the page, total number of their commands)."""
+def files_read(arguments):
+    """Files that a command reads and an earlier one of the job, or of the job that made an artifact, must write."""
+    return {"tools/ci_summary": arguments[1:], "cat": arguments[1:], "tar": arguments[2:] if "-xzf" in arguments else []}.get(arguments[0], [])
+
+
+def faults_of_job(name, job, uploads):
+    """Returns (commands, texts that say what is wrong with the files of a job). uploads: {artifact: its files}; adds those of this job."""
+    steps = job["steps"]
+    pairs = [pair for step in steps for pair in commands(step.get("run", ""))]
+    written = set().union(*(files_of(*pair) for pair in pairs))
+    faults = []
+    for step in steps:
+        action, options = step.get("uses", "").split("@")[0], step.get("with", {})
+        if action == "actions/download-artifact":
+            written |= uploads.get(options["name"], set())
+            faults += [] if options["name"] in uploads else [f"{name}: no earlier job uploads {options['name']}"]
+        elif action == "actions/upload-artifact":
+            uploads[options["name"]] = set(options["path"].split())
+            faults += [f"{name}: {file} is uploaded, but no step writes it" for file in options["path"].split() if file not in written]
+    read = {file for arguments, _ in pairs for file in files_read(arguments)}
+    return pairs, faults + [f"{name}: {file} is read, but no step writes it" for file in sorted(read - written)]
+
+
+def wrong_shards(job):
+    """Returns a text if the shards of the commands differ from those of the job's matrix."""
+    counts = {int(count) for step in job["steps"] for count in re.findall(r"--shard \$\{\{ matrix.shard \}\}/(\d+)", step.get("run", ""))}
+    shards = job.get("strategy", {}).get("matrix", {}).get("shard", [])
+    return "" if all(shards == list(range(1, count + 1)) for count in counts) else f"shards {shards} are not all of {counts}"
+
+
+def checked(pairs, raya, scratch):
+    """Returns a text for each command that is wrong."""
+    wrong = [(arguments, wrong_with(tuple(arguments), raya, scratch)) for arguments, _ in pairs]
+    return [f"{' '.join(arguments)}: {text}" for arguments, text in wrong if text]
+
+
+def faults_of(workflow, raya, scratch):
+    """Returns (texts that say what is wrong in the workflow, number of its commands)."""
     import yaml
-    steps = [step for job in yaml.safe_load(workflow)["jobs"].values() for step in job["steps"]]
-    workflow_commands = [pair for step in steps for pair in commands(step.get("run", ""))]
-    # The page's commands: indented lines that start with a program.
+    faults, uploads, all_pairs = [], {}, []
+    for name, job in yaml.safe_load(workflow)["jobs"].items():
+        faults += [f"{name}: {text}" for text in [wrong_shards(job)] if text]
+        job = yaml.safe_load(re.sub(r"\$\{\{ matrix\.\w+ \}\}", "1", yaml.safe_dump(job)))
+        pairs, wrong = faults_of_job(name, job, uploads)
+        faults += wrong + checked(pairs, raya, scratch)
+        uses_container = any(arguments[0].startswith(("tools/", "build/")) for arguments, _ in pairs)
+        faults += [] if ["tools/setup"] in [arguments for arguments, _ in pairs] or not uses_container else [f"{name}: no step runs tools/setup"]
+        all_pairs += pairs
+    return faults, len(all_pairs)
+
+
+def faults_of_page(page, raya, scratch):
+    """Returns (texts that say what is wrong in the page, number of its commands): its indented lines that start with a program."""
     lines = [line.strip() for line in page.splitlines() if line.startswith("    ")]
-    page_commands = [pair for line in lines if line.startswith(("build/raya", "tools/", "ctest", "cmake", "apt-get")) for pair in commands(line)]
-    checked = [(arguments, wrong_with(tuple(arguments), raya, scratch)) for arguments, _ in workflow_commands + page_commands]
-    faults = [f"{' '.join(arguments)}: {wrong}" for arguments, wrong in checked if wrong]
-    written = set().union(*(files_of(*pair) for pair in workflow_commands))
-    uploaded = [name for step in steps for name in step.get("with", {}).get("path", "").split() if "upload" in step.get("uses", "")]
-    faults += [f"{name} is uploaded, but no step writes it" for name in uploaded if name not in written]
-    faults += [] if ["tools/setup"] in [arguments for arguments, _ in workflow_commands] else ["no step runs tools/setup"]
-    return faults, len(workflow_commands + page_commands)
+    programs = ("build/raya", "tools/", "ctest", "cmake", "apt-get")
+    pairs = list(itertools.chain.from_iterable(commands(line) for line in lines if line.startswith(programs)))
+    return checked(pairs, raya, scratch), len(pairs)
 
 
 def main():
@@ -143,16 +203,20 @@ def main():
         print("skipped: this Python has no yaml (Debian: python3-yaml)")
         return 77
     raya = str(Path(sys.argv[1]).resolve())
-    workflow, page = WORKFLOW.read_text(), PAGE.read_text()
+    count, injected = 0, 0
     with tempfile.TemporaryDirectory() as scratch:
-        faults, count = faults_of(workflow, page, raya, scratch)
-        for old, new in FAULTS:
-            if old not in workflow:
-                faults.append(f"the workflow has no '{old}' any more: update FAULTS of this test")
-            elif not faults_of(workflow.replace(old, new), "", raya, scratch)[0]:
-                faults.append(f"'{new}' instead of '{old}' is not detected")
-    print("\n".join(faults) or f"{count} commands: all right; {len(FAULTS)} injected faults: all detected")
-    return 1 if faults or count < 15 else 0
+        faults, count = faults_of_page(PAGE.read_text(), raya, scratch)
+        for file, injections in ((WORKFLOW, FAULTS), (BUNDLE_WORKFLOW, BUNDLE_FAULTS)):
+            workflow = file.read_text()
+            more, number = faults_of(workflow, raya, scratch)
+            faults, count, injected = faults + more, count + number, injected + len(injections)
+            for old, new in injections:
+                if old not in workflow:
+                    faults.append(f"{file.name} has no '{old}' any more: update the faults of this test")
+                elif not faults_of(workflow.replace(old, new), raya, scratch)[0]:
+                    faults.append(f"'{new}' instead of '{old}' is not detected")
+    print("\n".join(faults) or f"{count} commands: all right; {injected} injected faults: all detected")
+    return 1 if faults or count < 30 else 0
 
 
 if __name__ == "__main__":

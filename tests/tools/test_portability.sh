@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # Tests tools/portability with mock programs instead of raya and its tests: matrix and exit code for right, wrong and missing results.
-#   test_portability.sh RAYA PATCH_KERNELS     the built program, for the kernels under Oclgrind; tests/kernels/patch_kernels.cpp
+#   test_portability.sh RAYA PATCH_KERNELS DEFECTS     the built program, for the kernels under Oclgrind; tests/kernels/patch_kernels.cpp;
+#                                                      tests/portability/defects.cpp
 set -euo pipefail
 raya=$(readlink -f "$1")
 patch_kernels=$(readlink -f "$2")
+defects=$(readlink -f "$3")
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
 build=$(mktemp -d)
 trap 'rm -rf "$build"' EXIT
@@ -16,9 +18,13 @@ case $1 in
     --version) echo "raya 0.0.0" ;;
     verify)
         [[ $2 == --help ]] && { echo "  --quick"; exit 0; }
+        [[ $2 == --list && $RAYA_BUILD_OPTIONS == --il && ! -e $0.spirv ]] && exit 3
+        [[ $2 == --list ]] && exit 0
         status=PASS
         [[ ${POCL_WORK_GROUP_METHOD-} == loops ]] && status=FAIL
         [[ -e $0.slow ]] && sleep 20
+        while [[ $1 != --timeout ]]; do shift; done
+        [[ ! -e $0.timeouts ]] || echo "$2" >>"$0.timeouts"
         while [[ $1 != --only ]]; do shift; done
         layer=${2% }
         [[ $layer == image ]] && check='"name": "groups", "status": "SKIP", "result": "one work-item only"'
@@ -42,10 +48,11 @@ case $1 in
             "tests": {"sphere": 1, "plane": 2, "polygon": 3, "cone": 4}, "shading": {"hits": 40, "lit": 0, "highlights": 0}}' >"$2" ;;
 esac
 RAYA
-cat >"$build/tests/portability_defects" <<'DEFECTS'
+cat >"$build/tests/portability_defects" <<DEFECTS
 #!/usr/bin/env bash
+[[ ! -e \$0.gone ]] || exec "$defects" "" rusticl llvmpipe
 echo "long_loop, n = 9: expected failure, 8 instead of 9: a reason"
-[[ ${RAYA_BUILD_OPTIONS-} == "" ]]
+[[ \${RAYA_BUILD_OPTIONS-} == "" ]]
 DEFECTS
 cat >"$build/tests/test_number" <<'VECTORS'
 #!/usr/bin/env bash
@@ -111,6 +118,15 @@ expect "PoCL loopvec, image: SKIP groups: one work-item only"
 [[ $out == *$'\n'"8 cells: 5 right, 0 FAIL, 3 undecided." ]] || fail "the last line does not count the cells"
 expect "PoCL loopvec, defects: long_loop, n = 9: expected failure, 8 instead of 9: a reason"
 
+# Known defects of llvmpipe that do not occur on PoCL are named.
+touch "$build/tests/portability_defects.gone"
+matrix --only "PoCL loopvec" --checks defects
+((code == 0)) || fail "exit code $code where known defects no longer occur"
+expect "| none, 3 gone |"
+expect "PoCL loopvec, defects: long_loop, n = 100000, 1 x 1 work-items: right, 65535 was expected: Mesa's llvmpipe ends every loop"
+expect "right, a crash was expected"
+rm "$build/tests/portability_defects.gone"
+
 matrix --only PoCL
 ((code == 1)) || fail "exit code $code where something is wrong"
 expect "| PoCL loops | toy | OpenCL 3.0, driver 1 | FAIL 1/1 |"
@@ -119,16 +135,86 @@ expect "| PoCL -cl-opt-disable | toy | OpenCL 3.0, driver 1 | 1 right | - | - | 
 expect "| PoCL basic | toy | OpenCL 3.0, driver 1 | 1 right | - | - | - | 40000 per format right | FAIL 24/24 |"
 expect "basic; right: 5a5a5a5a"
 
+# Files for CI. PoCL loops computes wrong numbers; a list of expected failures turns that around; a pattern without a cell causes a warning.
+read_junit() {  # read_junit PYTHON_EXPRESSION: prints it for the element `suites`
+    python3 -c "import sys, xml.etree.ElementTree as xml; suites = xml.parse(sys.argv[1]).getroot(); print($1)" "$build/junit.xml"
+}
+ci=(--only PoCL --skip "PoCL*3.0" --checks number,image --junit "$build/junit.xml" --tap "$build/tap")
+matrix "${ci[@]}"
+((code == 1)) || fail "exit code $code where one cell is wrong"
+[[ $(read_junit '[(s.get("name"), s.get("tests"), s.get("failures"), s.get("skipped")) for s in suites][2]') == "('PoCL loops', '2', '1', '1')" ]] ||
+    fail "$(<"$build/junit.xml")"
+[[ $(read_junit '[c.get("name") for c in suites.iter("testcase") if c.find("failure") is not None]') == "['PoCL loops, number']" ]] ||
+    fail "$(<"$build/junit.xml")"
+grep -q '^1\.\.10$' "$build/tap" || fail "$(<"$build/tap")"
+grep -q '^not ok 5 - PoCL loops, number$' "$build/tap" || fail "$(<"$build/tap")"
+grep -q '^# FAIL add: bits differ$' "$build/tap" || fail "$(<"$build/tap")"
+grep -q '^ok 6 - PoCL loops, image # SKIP -$' "$build/tap" || fail "$(<"$build/tap")"
+printf '# list\nloops*number | bits differ | https://example.org/1\nno such cell | a reason\n' >"$build/expect"
+matrix "${ci[@]}" --expect "$build/expect"
+((code == 0)) || fail "exit code $code where the wrong cell was expected"
+expect "10 cells: 4 right, 0 FAIL, 5 undecided, 1 XFAIL."
+expect "PoCL loops, number: FAIL 1/1 (expected: bits differ, https://example.org/1)"
+grep -qF "$build/expect:3: \"no such cell\" matches no check" "$build/stderr" || fail "no warning: $(<"$build/stderr")"
+[[ $(grep -c "matches no check" "$build/stderr") == 1 ]] || fail "$(<"$build/stderr")"
+grep -q '^not ok 5 - PoCL loops, number # TODO FAIL 1/1 (expected: bits differ' "$build/tap" || fail "$(<"$build/tap")"
+echo "PoCL basic, number | a reason" >"$build/expect"
+matrix "${ci[@]}" --expect "$build/expect" --skip "PoCL loops" --checks number,build
+((code == 1)) || fail "exit code $code where a cell passed unexpectedly"
+expect "XPASS 1 right"
+[[ $(read_junit '[c.find("failure").get("message") for c in suites.iter("testcase") if c.find("failure") is not None]') == \
+    "['passed, but --expect lists it as failing (a reason): 1 right']" ]] || fail "$(<"$build/junit.xml")"
+echo "PoCL basic, number" >"$build/expect"
+matrix --expect "$build/expect"
+((code == 2)) || fail "exit code $code of a line without a reason"
+grep -qF "$build/expect:1: expected PATTERN | REASON" "$build/stderr" || fail "$(<"$build/stderr")"
+
+# Every cell is in exactly one shard.
+for shard in 1/3 2/3 3/3; do
+    matrix --only PoCL --skip "3.0 (PyPI)" --checks number,image,build --shard $shard --tap "$build/tap"
+    sed -n 's/^.*ok [0-9]* - \([^#]*[^ #]\).*/\1/p' "$build/tap"
+done >"$build/shards"
+matrix --only PoCL --skip "3.0 (PyPI)" --checks number,image,build --tap "$build/tap"
+sed -n 's/^.*ok [0-9]* - \([^#]*[^ #]\).*/\1/p' "$build/tap" | sort | diff - <(sort "$build/shards") || fail "the shards differ from the whole"
+(($(wc -l <"$build/shards") == 15)) || fail "$(<"$build/shards")"
+for shard in 0/2 3/2 2 1/2x; do
+    matrix --shard $shard
+    ((code == 2)) || fail "exit code $code of --shard $shard"
+done
+
+# A cell that is wrong in its third run only.
+cat >"$build/flaky" <<'FLAKY'
+#!/usr/bin/env bash
+folder=$(dirname "$0")
+[[ $1 != bench ]] || echo run >>"$folder/runs"
+[[ $1 != bench ]] || (($(wc -l <"$folder/runs") != 3)) || touch "$folder/raya.budget"
+exec "$folder/raya" "$@"
+FLAKY
+chmod +x "$build/flaky"
+matrix --raya "$build/flaky" --only "PoCL loopvec" --checks build --repeat 5
+((code == 1)) || fail "exit code $code for a cell that is wrong once"
+expect "PoCL loopvec, build: in run 3 of 5"
+rm "$build/raya.budget"
+: >"$build/runs"
+matrix --raya "$build/flaky" --only "PoCL loopvec" --checks build --repeat 2
+((code == 0 && $(wc -l <"$build/runs") == 2)) || fail "exit code $code of two right runs"
+
+# A check of verify may take ten build budgets of the implementation.
+: >"$build/raya.timeouts"
+matrix --only "PoCL loopvec" --checks number
+((code == 0)) && [[ $(<"$build/raya.timeouts") == 600 ]] || fail "verify has --timeout $(<"$build/raya.timeouts")"
+rm "$build/raya.timeouts"
+
 # Tests matrices without a right cell, where every check is skipped or too slow; then a check that passes and then crashes.
 matrix --only "PoCL loopvec" --checks image,machine
 ((code == 1)) || fail "exit code $code where nothing was decided"
 expect "2 cells: 0 right, 0 FAIL, 2 undecided. No right cell: PoCL loopvec."
 touch "$build/raya.slow"
-matrix --only "PoCL loopvec" --checks number --limit 1
+matrix --only "PoCL loopvec" --checks number --timeout 1
 ((code == 1)) || fail "exit code $code where all was too slow"
 expect "| too slow |"
 expect "PoCL loopvec, number: not done after 1 s"
-matrix --only "PoCL loopvec" --checks number,renders --limit 1
+matrix --only "PoCL loopvec" --checks number,renders --timeout 1
 ((code == 0)) || fail "exit code $code where one check was too slow"
 expect "2 cells: 1 right, 0 FAIL, 1 undecided."
 rm "$build/raya.slow"
@@ -138,12 +224,23 @@ matrix --only "PoCL loopvec" --checks number,renders
 expect "number: exit code -11, though no check failed"
 rm "$build/raya.crash"
 
+# Kernels as SPIR-V, on an implementation that does not accept it, and on one that does.
+if command -v clang-15 llvm-spirv-15 >"$build/paths" && (($(wc -l <"$build/paths") == 2)); then
+    matrix --only "PoCL, SPIR-V" --list
+    expect "PoCL, SPIR-V: no device accepts SPIR-V"
+    touch "$build/raya.spirv"
+    matrix --only "PoCL, SPIR-V" --checks number,renders,defects
+    ((code == 1)) || fail "exit code $code with SPIR-V"
+    expect "| PoCL, SPIR-V | toy | OpenCL 3.0, driver 1 | 1 right | 24 right | FAIL |"  # the mock fails with RAYA_BUILD_OPTIONS
+    rm "$build/raya.spirv"
+fi
+
 # Oclgrind: a render without a fault; then a kernel that makes the same image but also writes beyond a buffer.
 "$patch_kernels" "$build/kernels"
 mv "$build/raya" "$build/mock_raya"
 cat >"$build/raya" <<RAYA
 #!/usr/bin/env bash
-"$build/mock_raya" "\$@"
+"$build/mock_raya" "\$@" || exit
 [[ \$1 != render ]] || exec "$raya" render "$root/scenes/planes.nff" -o "$build/x.pfm" --quiet --size 2 --pes 1 --lanes 1 --kernel-dir "$build/kernels"
 RAYA
 chmod +x "$build/raya"
@@ -166,7 +263,7 @@ ls /etc/OpenCL/vendors | grep -vqE '^(pocl|rusticl|mesa)[.]icd$' || expect "GPU:
 
 # --write is refused if only a part of the matrix is requested.
 page=$(<"$root/docs/portability.md")
-for part in "--only PoCL" "--checks renders" "--only PoCL --checks defects"; do
+for part in "--only PoCL" "--checks renders" "--only PoCL --checks defects" "--skip PoCL" "--shard 1/2"; do
     # shellcheck disable=SC2086  # several words
     matrix --write $part
     ((code == 2)) || fail "exit code $code of --write $part"

@@ -117,6 +117,8 @@ def check_missing_devices(scratch):
     raya.write_text("#!/bin/sh\ncase $OCL_ICD_VENDORS in */other.icd) exit 1 ;; esac; exit 3\n")  # 3: no device; 1: a fault
     raya.chmod(0o755)
     found = portability_implementations.known_implementations(scratch)
+    expect({"PoCL, SPIR-V", "Oclgrind, SPIR-V", "gpu, SPIR-V"} <= {i.name for i in found}, "no rows of SPIR-V")
+    expect(not any(i.name in ("PoCL loops, SPIR-V", "PoCL basic, SPIR-V") for i in found), "variants have rows of SPIR-V")
     portability_implementations.mark_missing_devices(found, str(raya))
     unavailable = {i.name: i.unavailable for i in found}
     expect(unavailable["gpu"] == "its driver is installed, but reports no device", f"a driver without its device: {unavailable['gpu']}")

@@ -136,7 +136,7 @@ class Reports:
         def render(scene, *options, output="x.ppm", launcher=()):
             self.make("render", "render", scene, *options, *quick_options, "-o", output, launcher=launcher)
 
-        render(spheres, *ring, "--page", "r.html")
+        render(spheres, *ring, "--page", "r.html", "--counters")
         render(odd, *ring, "--mapping", "rows", "--light", "1,2,3", output="x.pfm")
         render(spheres, *ring, "--antialias", "filter", "--exchange", "bus", "--tone", "reinhard", "--gamma", "2", "--fold", "block")
         render(spheres, *ring, "--antialias", "supersample", "--points", "diagonals")
@@ -165,6 +165,8 @@ class Reports:
         self.make("verify", *check)
         if self.mpirun:
             self.make("verify", *check, launcher=[self.mpirun, "-n", "2"])
+        # The only check is skipped, because there are no stored results in this format.
+        self.make("verify", "verify", "--as", f"render {scene} --lanes 1 --format e7m11", "--only", "number", "--report", "r.json", code=4)
         self.run(self.patch_kernels, "kernels", *FAULT)
         self.make("verify", *check, "--kernel-dir", "kernels", code=4)
         for arguments in ((self.odd_scene(), "--accel", "grid"), (SCENES / "centre.nff", "--offset", "3")):

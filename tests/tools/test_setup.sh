@@ -42,7 +42,7 @@ expect 2 "unknown option '--nonsense'"
 run_setup --studies --nonsense --gpu
 expect 2 "unknown option '--nonsense'"
 run_setup --gpu --print --package
-expect 0 "$line g++ cmake" "oclgrind clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools dpkg-dev lintian man-db zsh fish"
+expect 0 "$line g++ cmake" "oclgrind clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools cvise dpkg-dev lintian man-db zsh fish"
 [[ $out != *debootstrap* ]] || { echo "FAILED: a group that was not named"; exit 1; }
 
 # Nothing is missing.
@@ -60,10 +60,12 @@ run_setup --browser
 expect 1 "neither root nor sudo" "$line chromium"
 run_setup --gpu
 expect 1 "neither root nor sudo" "$line clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools"
+run_setup --profile
+expect 1 "neither root nor sudo" "$line linux-perf llvm-15"
 run_setup --package
 expect 1 "neither root nor sudo" "$line dpkg-dev lintian man-db zsh fish"
 run_setup --bare-root --gpu --studies --bare-root
-expect 1 "neither root nor sudo" "$line debootstrap clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools libsimgrid-dev"
+expect 1 "neither root nor sudo" "$line debootstrap clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools cvise libsimgrid-dev"
 
 # Two packages are missing, one of them removed but not purged; neither root nor sudo.
 mock_program dpkg-query "printf '%s installed\n' ${all[*]} | { while read -r p s; do [[ \$p == cmake || \$p == catch2 ]] || echo \$p \$s; done; }

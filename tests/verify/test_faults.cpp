@@ -101,15 +101,15 @@ TEST_CASE("faults of arithmetic, hits and grid: image checks fail too", "[verify
         Names wrong;  // names of the checks that must fail
     };
     const Row rows[] = {
-        {kRoundingFault, "image cones e5m10", {"cones e5m10: cyclic:8 on 20, division refined"}},
+        {kRoundingFault, "image cones e5m10", {"cones e5m10: cyclic:8 on 20, fallback code"}},
         {kContractionFault, "image glass fp32: cyclic:8 on 20", {"glass fp32: cyclic:8 on 20"}},
         {kDivisionFault,
-         "image ties fp32: blocks on 5, global words, division refined",
+         "image ties fp32: blocks on 5, global words, fallback code",
          {}},  // the build options exclude the patched code
         {kDivisionFault,
          "image glass fp32: cyclic:8 on 7",
          {"glass fp32: cyclic:8 on 7, block fold, launches of 40 tests"}},
-        {kTieFault, "image ties", {"ties fp32: blocks on 5, global words, division refined"}},
+        {kTieFault, "image ties", {"ties fp32: blocks on 5, global words, fallback code"}},
         {kGridFault, "image polygons fp32: cyclic:8 on 20, grid", {"polygons fp32: cyclic:8 on 20, grid"}},
         {kGridFault,
          "image polygons fp32: torus3d 2x2x2, ",

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from gpu.clang import first_error
 from gpu.figures import Core, Fault, Figures, kernel_name
+from gpu.spirv import faults_of
 
 KB = 1024
 CORES = {"dg2": Core(128, 128, 128 * KB, 64 * KB, KB), "pvc": Core(64, 64, 128 * KB, 128 * KB, KB)}
@@ -97,18 +98,3 @@ def section(elf, name):
         if names[header[0]:].split(b"\0")[0] == name.encode():
             return elf[header[4]:header[4] + header[5]].decode()
     raise ValueError(f"no {name} in ocloc's binary")
-
-
-def faults_of(code):
-    """Returns texts on the faults in a SPIR-V module: double precision, and undefined functions."""
-    words = struct.unpack(f"<{len(code) // 4}I", code)
-    position, found = 5, []
-    while position < len(words):
-        length, operation = words[position] >> 16, words[position] & 0xFFFF
-        if operation == 22 and words[position + 2] == 64:  # OpTypeFloat
-            found.append("double precision: OpTypeFloat 64")
-        if operation == 71 and words[position + 2] == 41 and words[position + length - 1] == 1:  # OpDecorate, LinkageAttributes, Import
-            name = code[4 * (position + 3):4 * (position + length - 1)].split(b"\0")[0].decode()
-            found += [] if name.startswith("__spirv_BuiltIn") else [f"unresolved: {name}"]
-        position += length
-    return found

@@ -1,0 +1,116 @@
+#include "host/verify/bisect.hpp"
+
+#include <algorithm>
+#include <regex>
+#include <span>
+
+#include "host/verify/rerun.hpp"
+
+namespace raya {
+namespace {
+
+struct Change {
+    std::string text, variable{}, value{};  // an environment variable, or, if `variable` is empty:
+    std::uint32_t lanes = 0, group = 0;     // numbers for VerifySettings; 0: unchanged
+};
+
+// Returns the name of the same check with one lane: "fp32, 1 lane" for "fp32, 16 lanes".
+std::string name_with_one_lane(const std::string& name) {
+    const std::string once = std::regex_replace(name, std::regex(R"(\b\d+ lanes)"), "1 lane");
+    return std::regex_replace(once, std::regex(R"(, \d+x(\d+)$)"), ", 1x$1");
+}
+
+bool exists(const VerifySettings& settings, const std::string& selector, std::size_t index, const std::string& name) {
+    const std::vector<cl::Device> devices =
+        selector == "all" ? all_devices() : std::vector<cl::Device>{choose_device(selector)};
+    return !check_names(devices.at(index), settings_of_one(settings, name)).empty();
+}
+
+class Bisector {
+  public:
+    Bisector(CheckRun failing, const std::string& name, bool is_pocl,
+             std::function<void(const std::vector<std::string>&, bool)> finished)
+        : failing_(std::move(failing)), name_(name), finished_(std::move(finished)) {
+        for (const char* const option : {"-cl-opt-disable", kNoBuiltins, "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0"})
+            changes_.push_back({std::string("RAYA_BUILD_OPTIONS=") + option, "RAYA_BUILD_OPTIONS", option});
+        changes_.push_back({.text = "groups of 1 work-item (--group 1)", .group = 1});
+        VerifySettings one_lane = failing_.settings;
+        one_lane.lanes = 1;
+        if (failing_.settings.lanes != 1 &&
+            exists(one_lane, failing_.selector, failing_.index, name_with_one_lane(name_)))
+            changes_.push_back({.text = "--lanes 1", .lanes = 1});
+        if (!is_pocl) return;
+        for (const auto& [variable, value] : {std::pair{"POCL_WORK_GROUP_METHOD", "loops"},
+                                              {"POCL_MAX_PTHREAD_COUNT", "1"},
+                                              {"POCL_CPU_MAX_CU_COUNT", "1"},
+                                              {"POCL_WORK_GROUP_SPECIALIZATION", "0"}})
+            changes_.push_back({std::string(variable) + "=" + value, variable, value});
+    }
+
+    Bisection run() {
+        Bisection result;
+        for (const Change& change : changes_) result.tried.push_back(change.text);
+        if (!passes(changes_)) return result;
+        for (const Change& change : minimal({}, changes_, false)) result.smallest.push_back(change.text);
+        return result;
+    }
+
+  private:
+    using Changes = std::vector<Change>;
+
+    static Changes together(Changes a, const Changes& b) {
+        a.insert(a.end(), b.begin(), b.end());
+        return a;
+    }
+
+    // Returns a smallest part of `candidates` that, together with `given`, makes the check pass. `has_new`: `given` has
+    // changes with which the check has not been tried.
+    Changes minimal(const Changes& given, const Changes& candidates, bool has_new) {
+        if (has_new && passes(given)) return {};
+        if (candidates.size() == 1) return candidates;
+        const auto middle = candidates.begin() + static_cast<std::ptrdiff_t>(candidates.size() / 2);
+        const Changes first(candidates.begin(), middle), second(middle, candidates.end());
+        const Changes of_second = minimal(together(given, first), second, !first.empty());
+        const Changes of_first = minimal(together(given, of_second), first, !of_second.empty());
+        return together(of_first, of_second);
+    }
+
+    bool passes(const Changes& changes) {
+        const CaseFolder cache(std::filesystem::temp_directory_path() / ("raya-bisect-" + std::to_string(::getpid())));
+        CheckRun variant = failing_;
+        std::string name = name_, options;
+        for (const Change& change : changes) {
+            if (change.variable == "RAYA_BUILD_OPTIONS")
+                options += (options.empty() ? "" : " ") + change.value;
+            else if (!change.variable.empty())
+                variant.environment[change.variable] = change.value;
+            if (change.lanes != 0) name = name_with_one_lane(name);
+            if (change.lanes != 0) variant.settings.lanes = change.lanes;
+            if (change.group != 0) variant.settings.group_size = change.group;
+        }
+        if (!options.empty()) variant.environment["RAYA_BUILD_OPTIONS"] = with_build_option(options);
+        variant.environment["POCL_CACHE_DIR"] = cache.path().string();
+        variant.settings = settings_of_one(variant.settings, name);
+        const bool passed = observe(variant).passed;
+        std::vector<std::string> texts;
+        for (const Change& change : changes) texts.push_back(change.text);
+        finished_(texts, passed);
+        return passed;
+    }
+
+    CheckRun failing_;
+    std::string name_;
+    std::function<void(const std::vector<std::string>&, bool)> finished_;
+    Changes changes_;
+};
+
+}  // namespace
+
+Bisection bisect(const std::string& selector, std::size_t index, const DeviceChecks& device,
+                 const VerifySettings& settings, const std::string& full_name,
+                 const std::function<void(const std::vector<std::string>& changes, bool passed)>& finished) {
+    const bool is_pocl = device.platform == "Portable Computing Language";
+    return Bisector({"", selector, index, settings}, full_name, is_pocl, finished).run();
+}
+
+}  // namespace raya

@@ -1,0 +1,61 @@
+// Repeats one check in a child process with other settings, to find the cause of its failure.
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/verify/supervisor.hpp"
+
+namespace raya {
+
+/// How to run a check.
+struct CheckRun {
+    std::string name;      // for people: "-cl-opt-disable"
+    std::string selector;  // of the device, with `index` as in supervise()
+    std::size_t index = 0;
+    VerifySettings settings;                           // select one check
+    std::map<std::string, std::string> environment{};  // variables of the child process
+};
+
+/// A build or a launch of a run; see Capture (host/cl/capture.hpp).
+struct Step {
+    std::string name;
+    bool done = false;
+    std::map<std::string, std::string> outputs{};  // hashes by argument
+};
+
+/// One run of a check.
+struct Observation {
+    std::vector<Step> steps;   // steps[n - 1] is step n
+    std::size_t expected = 0;  // step of which the check gave the correct words; 0: none
+    bool passed = false;
+};
+
+/// Returns the settings to run only the check of this name, "LAYER NAME", once.
+VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name);
+
+/// Runs the check of `run`. Captures step number `step`, if not 0, in `folder`. Ends the run after
+/// settings.timeout_s, or, if `ends_at_step`, when the inputs of the step have been captured.
+Observation observe(const CheckRun& run, std::size_t step = 0, const std::filesystem::path& folder = {},
+                    bool ends_at_step = false);
+
+/// Returns the value of RAYA_BUILD_OPTIONS with one more option.
+std::string with_build_option(const std::string& option);
+
+/// A new, empty folder, removed by the destructor.
+class CaseFolder {
+  public:
+    explicit CaseFolder(std::filesystem::path path);
+    ~CaseFolder();
+    CaseFolder(const CaseFolder&) = delete;
+    CaseFolder& operator=(const CaseFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+}  // namespace raya
