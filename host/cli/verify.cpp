@@ -182,6 +182,33 @@ void run_verify(VerifyCommand command) {
     throw CheckFailure{};
 }
 
+std::vector<ShortHelp> verify_short_help() {
+    const char *const options = "Options", *const failures = "Failures", *const more = "More options";
+    return {{"--quick", options, "Default lanes, common formats, 19 images (default)"},
+            {"--brief", options, "Few kernels with few rays, for slow devices"},
+            {"--full", options, "All formats, lanes and group sizes: minutes"},
+            {"--lanes", options, "Check only this number of lanes: 1, 4, 8 or 16"},
+            {"--only", options, "Only checks whose names contain this text"},
+            {"--skip", options, "No checks whose names contain this text"},
+            {"--device", options, "OpenCL device: number, type, part of its name, all"},
+            {"--as", options, "Check what \"render SCENE OPTIONS\" uses"},
+            {"--report", options, "Write all checks as JSON; -: stdout"},
+            {"--junit", options, "Write the results as JUnit XML"},
+            {"--tap", options, "Write the results as TAP"},
+            {"--page", options, "Write the results as an HTML page"},
+            {"--reproduce", failures, "Write the first failure as a C program with data"},
+            {"--bisect", failures, "Find settings with which a failing check passes"},
+            {"--expect", failures, "List of checks that are known to fail"},
+            {"--timeout", failures, "Seconds after which a check counts as failed"},
+            {"--soak", more, "Random checks for this time, such as 30m or 2h"},
+            {"--seed", more, "Seed of --soak"},
+            {"--repeat", more, "Number of runs of each check"},
+            {"--shard", more, "The I-th of N parts of the checks"},
+            {"--list", more, "Print the names of the checks, and run none"},
+            {"--kernel-dir", more, "Read the kernels from this folder"},
+            {"--il", more, "Build the kernels from SPIR-V"}};
+}
+
 }  // namespace
 
 void add_verify_command(CLI::App& program) {
@@ -250,11 +277,10 @@ void add_verify_command(CLI::App& program) {
              "Write all checks and their failures as JSON; -: stdout; the lines about the checks then go to stderr");
     add_file(*command, FileUse::kWritten, "--junit", options->junit, "FILE.xml", "Write the results as JUnit XML");
     add_file(*command, FileUse::kWritten, "--tap", options->tap, "FILE", "Write the results as TAP, version 14");
-    add_value(
-        *command, "--reproduce", options->reproduce,
+    add_file(
+        *command, FileUse::kWrittenFolder, "--reproduce", options->reproduce, "DIR",
         "If a check fails: write the kernel launch that computes wrong words as a self-contained case, a C program "
-        "with kernel, inputs and expected words, into this new folder")
-        ->type_name("DIR");
+        "with kernel, inputs and expected words, into this new folder");
     CLI::Option* const bisected =
         add_value(*command, "--bisect", options->bisect,
                   "Run the checks whose names contain this text, as --only; then find the smallest change of build "
@@ -264,6 +290,7 @@ void add_verify_command(CLI::App& program) {
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
              "Write all checks, and the first failure in full, as an HTML page; raya page makes the same page from a "
              "report");
+    add_short_help(*command, verify_short_help());
     command->callback([options] { run_verify(*options); });
 }
 
