@@ -128,23 +128,6 @@ std::vector<DeviceChecks> verify_devices(const VerifyCommand& command, const Ver
     return all;
 }
 
-// Verifies the device of every rank. Prints failed checks, and a line for each rank.
-std::vector<DeviceChecks> verify_on_ranks(const VerifyCommand& command, const VerifySettings& settings, Ranks& ranks) {
-    if (command.device == "all")
-        throw UserError("--device all: each rank checks one device; leave it out, or start raya without mpirun");
-    for (const auto& [option, value] : {std::pair("--reproduce", command.reproduce), {"--bisect", command.bisect}})
-        if (!value.empty())
-            throw UserError(fmt::format(
-                "{} {}: runs in one process; start raya without mpirun on the host of the device", option, value));
-    return check_on_ranks(ranks, [&](const PrintLines& print) {
-        DeviceOutput output(settings, print);
-        const SupervisorSink sink{.finished = std::bind_front(&DeviceOutput::finished, &output)};
-        DeviceChecks result = supervise(command.device, ranks.rank_on_host(), settings, sink);
-        output.ended(result);
-        return result;
-    });
-}
-
 // Finds and prints the changes with which the failed check passes.
 void bisect_failure(const VerifyCommand& command, std::size_t index, const DeviceChecks& device,
                     const VerifySettings& settings, const std::string& name) {
@@ -185,11 +168,13 @@ void run_verify(VerifyCommand command, Ranks& ranks) {
     if (!command.page.empty()) check_page_name("--page", command.page);
     const VerifySettings settings = settings_of(command);
     if (command.list) return ranks.is_first() ? list_checks(command, settings) : void();
+    if (ranks.has_several() && (command.device == "all" || !command.reproduce.empty() || !command.bisect.empty()))
+        throw UserError("--device all, --reproduce, --bisect: start raya without mpirun, on the host of the device");
     if (!command.reproduce.empty()) check_case_folder(command.reproduce);
     Warnings warnings;
     if (ranks.is_first()) warn_of_build_options(warnings);
     const std::vector<DeviceChecks> device_checks =
-        ranks.has_several() ? verify_on_ranks(command, settings, ranks) : verify_devices(command, settings);
+        ranks.has_several() ? verify_on_ranks(command.device, settings, ranks) : verify_devices(command, settings);
     if (!ranks.is_first()) return;
     if (device_checks.size() > 1) print_device_totals(device_checks);
     for (const std::string& text : unmatched_patterns(settings.expected_failures, device_checks))
@@ -200,6 +185,33 @@ void run_verify(VerifyCommand command, Ranks& ranks) {
     if (std::ranges::all_of(device_checks, &DeviceChecks::all_passed)) return;
     if (!ranks.has_several()) analyse_first_failure(command, device_checks, settings);
     throw CheckFailure{};
+}
+
+std::vector<ShortHelp> verify_short_help() {
+    const char *const options = "Options", *const failures = "Failures", *const more = "More options";
+    return {{"--quick", options, "Default lanes, common formats, 19 images (default)"},
+            {"--brief", options, "Few kernels with few rays, for slow devices"},
+            {"--full", options, "All formats, lanes and group sizes: minutes"},
+            {"--lanes", options, "Check only this number of lanes: 1, 4, 8 or 16"},
+            {"--only", options, "Only checks whose names contain this text"},
+            {"--skip", options, "No checks whose names contain this text"},
+            {"--device", options, "OpenCL device: number, type, part of its name, all"},
+            {"--as", options, "Check what \"render SCENE OPTIONS\" uses"},
+            {"--report", options, "Write all checks as JSON; -: stdout"},
+            {"--junit", options, "Write the results as JUnit XML"},
+            {"--tap", options, "Write the results as TAP"},
+            {"--page", options, "Write the results as an HTML page"},
+            {"--reproduce", failures, "Write the first failure as a C program with data"},
+            {"--bisect", failures, "Find settings with which a failing check passes"},
+            {"--expect", failures, "List of checks that are known to fail"},
+            {"--timeout", failures, "Seconds after which a check counts as failed"},
+            {"--soak", more, "Random checks for this time, such as 30m or 2h"},
+            {"--seed", more, "Seed of --soak"},
+            {"--repeat", more, "Number of runs of each check"},
+            {"--shard", more, "The I-th of N parts of the checks"},
+            {"--list", more, "Print the names of the checks, and run none"},
+            {"--kernel-dir", more, "Read the kernels from this folder"},
+            {"--il", more, "Build the kernels from SPIR-V"}};
 }
 
 }  // namespace
@@ -271,11 +283,10 @@ void add_verify_command(CLI::App& program, Ranks& ranks) {
              "Write all checks and their failures as JSON; -: stdout; the lines about the checks then go to stderr");
     add_file(*command, FileUse::kWritten, "--junit", options->junit, "FILE.xml", "Write the results as JUnit XML");
     add_file(*command, FileUse::kWritten, "--tap", options->tap, "FILE", "Write the results as TAP, version 14");
-    add_value(
-        *command, "--reproduce", options->reproduce,
+    add_file(
+        *command, FileUse::kWrittenFolder, "--reproduce", options->reproduce, "DIR",
         "If a check fails: write the kernel launch that computes wrong words as a self-contained case, a C program "
-        "with kernel, inputs and expected words, into this new folder")
-        ->type_name("DIR");
+        "with kernel, inputs and expected words, into this new folder");
     CLI::Option* const bisected =
         add_value(*command, "--bisect", options->bisect,
                   "Run the checks whose names contain this text, as --only; then find the smallest change of build "
@@ -285,6 +296,7 @@ void add_verify_command(CLI::App& program, Ranks& ranks) {
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
              "Write all checks, and the first failure in full, as an HTML page; raya page makes the same page from a "
              "report");
+    add_short_help(*command, verify_short_help());
     command->callback([options, &ranks] { run_verify(*options, ranks); });
 }
 

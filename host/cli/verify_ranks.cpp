@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <chrono>
+#include <functional>
 #include <future>
 #include <map>
 #include <mutex>
@@ -11,6 +12,7 @@
 #include <utility>
 
 #include "host/base/log.hpp"
+#include "host/cli/verify_output.hpp"
 #include "host/error.hpp"
 
 namespace raya {
@@ -81,19 +83,27 @@ void fail_shared_devices(std::vector<DeviceChecks>& devices) {
     }
 }
 
+DeviceChecks check_device(const std::string& device, const VerifySettings& settings, std::uint32_t rank_on_host,
+                          const PrintLines& print) {
+    DeviceOutput output(settings, print);
+    const SupervisorSink sink{.finished = std::bind_front(&DeviceOutput::finished, &output)};
+    try {
+        DeviceChecks result = supervise(device, rank_on_host, settings, sink);
+        output.ended(result);
+        return result;
+    } catch (const DeviceError& error) {
+        return missing_device(error, print);
+    }
+}
+
 }  // namespace
 
-std::vector<DeviceChecks> check_on_ranks(Ranks& ranks,
-                                         const std::function<DeviceChecks(const PrintLines&)>& check_device) {
+std::vector<DeviceChecks> verify_on_ranks(const std::string& device, const VerifySettings& settings, Ranks& ranks) {
     UnsentLines lines;
     const std::string prefix = fmt::format("rank {} on {}: ", ranks.rank(), ranks.host());
-    const PrintLines print = [&](const std::string& text) { lines.add(prefix + text); };
     std::future<DeviceChecks> checks = std::async(std::launch::async, [&] {
-        try {
-            return check_device(print);
-        } catch (const DeviceError& error) {
-            return missing_device(error, print);
-        }
+        return check_device(device, settings, ranks.rank_on_host(),
+                            [&](const std::string& text) { lines.add(prefix + text); });
     });
     try {
         DeviceChecks own = exchange_lines(ranks, checks, lines);

@@ -162,9 +162,9 @@ TEST_CASE("mpirun verify: a killed rank ends all ranks and their child processes
 
 TEST_CASE("mpirun verify: options that no rank accepts are refused once", "[ranks][.mpirun]") {
     const std::pair<Arguments, std::string> cases[] = {
-        {{"--device", "all"}, "--device all: each rank checks one device"},
-        {{"--reproduce", "folder"}, "--reproduce folder: runs in one process"},
-        {{"--bisect", "number"}, "--bisect number: runs in one process"},
+        {{"--device", "all"}, "--device all, --reproduce, --bisect: start raya without mpirun"},
+        {{"--reproduce", "folder"}, "--device all, --reproduce, --bisect: start raya without mpirun"},
+        {{"--bisect", "number"}, "--device all, --reproduce, --bisect: start raya without mpirun"},
         {{"--only", "no such check"}, "no check of"}};
     for (const Mpi& mpi : installed_mpis())
         for (const auto& [options, message] : cases) {
