@@ -34,12 +34,12 @@ namespace {
 
 // A check that takes longer counts as hung: ten build budgets. A check builds at most six programs (test_verify.cpp),
 // each within the budget; the rest is for its launches.
-constexpr double kDefaultTimeout_s = std::chrono::duration<double>(10 * kBuildBudget).count();
+constexpr std::chrono::duration<double> kDefaultTimeout = 10 * kBuildBudget;
 
 struct VerifyCommand {
     std::string device, report, page, junit, tap, expect, reproduce, bisect, kernel_dir, only, skip, shard, as;
     std::uint32_t lanes = 0, repeat = 1;
-    double timeout_s = kDefaultTimeout_s, soak_s = 0;
+    double timeout_s = kDefaultTimeout.count(), soak_s = 0;
     std::uint64_t seed = 1;
     bool brief = false, quick = false, full = false, list = false;
 
