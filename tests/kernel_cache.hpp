@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/base/temporary_folder.hpp"
+#include "host/base/temporary_folder.hpp"
 
 namespace raya {
 

@@ -6,6 +6,7 @@
 
 #include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
+#include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/error.hpp"
 #include "host/model/unit_text.hpp"

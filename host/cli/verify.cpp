@@ -35,12 +35,12 @@ namespace {
 
 // A check that takes longer counts as hung: ten build budgets. A check builds at most six programs (test_verify.cpp),
 // each within the budget; the rest is for its launches.
-constexpr double kDefaultTimeout_s = std::chrono::duration<double>(10 * kBuildBudget).count();
+constexpr std::chrono::duration<double> kDefaultTimeout = 10 * kBuildBudget;
 
 struct VerifyCommand {
     std::string device, report, page, junit, tap, expect, reproduce, bisect, kernel_dir, only, skip, shard, as;
     std::uint32_t lanes = 0, repeat = 1;
-    double timeout_s = kDefaultTimeout_s, soak_s = 0;
+    double timeout_s = kDefaultTimeout.count(), soak_s = 0;
     std::uint64_t seed = 1;
     bool brief = false, quick = false, full = false, list = false;
 
@@ -128,38 +128,27 @@ std::vector<DeviceChecks> verify_devices(const VerifyCommand& command, const Ver
     return all;
 }
 
-// Finds and prints the changes with which the failed check passes.
-void bisect_failure(const VerifyCommand& command, std::size_t index, const DeviceChecks& device,
-                    const VerifySettings& settings, const std::string& name) {
-    const Bisection found =
-        bisect(command.device, index, device, settings, name, [](const std::vector<std::string>& changes, bool passed) {
-            if (!is_quiet()) fmt::print("{}  {}\n", passed ? "PASS" : "FAIL", fmt::join(changes, ", "));
+// Bisects the first failure of the device and writes its case, if the options say so.
+void analyse_first_failure(const VerifyCommand& command, const DeviceChecks& device, const VerifySettings& settings) {
+    const auto check =
+        std::ranges::find_if(device.checks, [](const Check& c) { return c.verdict.outcome == Outcome::kFail; });
+    if (check == device.checks.end()) return;
+    const std::string name = check->layer + " " + check->name;
+    if (!command.bisect.empty())
+        bisect(command.device, device, settings, name, [](const std::string& line) {
+            fmt::print("{}\n", line);
             std::fflush(stdout);
         });
-    if (found.smallest.empty())
-        fmt::print("{}: fails also with all of: {}\n", name, fmt::join(found.tried, ", "));
-    else
-        fmt::print("{}: passes with {}\n", name, fmt::join(found.smallest, ", "));
-}
-
-// Bisects the first failure and writes its case, if the options say so.
-void analyse_first_failure(const VerifyCommand& command, const std::vector<DeviceChecks>& device_checks,
-                           const VerifySettings& settings) {
-    for (std::size_t index = 0; index < device_checks.size(); ++index)
-        for (const Check& check : device_checks[index].checks) {
-            if (check.verdict.outcome != Outcome::kFail) continue;
-            const std::string name = check.layer + " " + check.name;
-            if (!command.bisect.empty()) bisect_failure(command, index, device_checks[index], settings, name);
-            if (!command.reproduce.empty())
-                fmt::print("{}",
-                           reproduce(command.device, index, device_checks[index], settings, check, command.reproduce));
-            if (command.bisect.empty() && command.reproduce.empty() && !is_quiet())
-                fmt::print(
-                    "--reproduce DIR writes the first failure as a C program, for a bug report; --bisect \"{}\" "
-                    "finds settings with which it passes\n",
-                    name);
-            return;
+    if (!command.reproduce.empty()) try {
+            fmt::print("{}", reproduce(command.device, device, settings, *check, command.reproduce));
+        } catch (const UserError& error) {
+            warn(error.what());
         }
+    if (command.bisect.empty() && command.reproduce.empty() && !is_quiet())
+        fmt::print(
+            "--reproduce DIR writes the first failure as a C program, for a bug report; --bisect \"{}\" finds settings "
+            "with which it passes\n",
+            name);
 }
 
 void run_verify(VerifyCommand command, Ranks& ranks) {
@@ -171,6 +160,10 @@ void run_verify(VerifyCommand command, Ranks& ranks) {
     if (ranks.has_several() && (command.device == "all" || !command.reproduce.empty() || !command.bisect.empty()))
         throw UserError("--device all, --reproduce, --bisect: start raya without mpirun, on the host of the device");
     if (!command.reproduce.empty()) check_case_folder(command.reproduce);
+    if ((!command.reproduce.empty() || !command.bisect.empty()) && (command.device == "all" || settings.soak_s > 0))
+        throw UserError(
+            "--reproduce, --bisect: not with --device all or --soak; remedy: repeat the failed check with "
+            "--only, --lanes and --device");
     Warnings warnings;
     if (ranks.is_first()) warn_of_build_options(warnings);
     const std::vector<DeviceChecks> device_checks =
@@ -183,7 +176,8 @@ void run_verify(VerifyCommand command, Ranks& ranks) {
     if (!command.junit.empty()) write_whole_file(command.junit, junit_report("raya verify", device_checks));
     if (!command.tap.empty()) write_whole_file(command.tap, tap_report(device_checks));
     if (std::ranges::all_of(device_checks, &DeviceChecks::all_passed)) return;
-    if (!ranks.has_several()) analyse_first_failure(command, device_checks, settings);
+    if (device_checks.size() == 1 && settings.soak_s == 0)
+        analyse_first_failure(command, device_checks.front(), settings);
     throw CheckFailure{};
 }
 

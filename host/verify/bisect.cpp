@@ -1,9 +1,13 @@
 #include "host/verify/bisect.hpp"
 
-#include <algorithm>
-#include <regex>
-#include <span>
+#include <fmt/core.h>
 
+#include <cstdint>
+#include <regex>
+#include <utility>
+#include <vector>
+
+#include "host/base/temporary_folder.hpp"
 #include "host/verify/rerun.hpp"
 
 namespace raya {
@@ -20,24 +24,21 @@ std::string name_with_one_lane(const std::string& name) {
     return std::regex_replace(once, std::regex(R"(, \d+x(\d+)$)"), ", 1x$1");
 }
 
-bool exists(const VerifySettings& settings, const std::string& selector, std::size_t index, const std::string& name) {
-    const std::vector<cl::Device> devices =
-        selector == "all" ? all_devices() : std::vector<cl::Device>{choose_device(selector)};
-    return !check_names(devices.at(index), settings_of_one(settings, name)).empty();
+bool exists(const VerifySettings& settings, const std::string& selector, const std::string& name) {
+    return !check_names(choose_device(selector), settings_of_one(settings, name)).empty();
 }
 
 class Bisector {
   public:
-    Bisector(CheckRun failing, const std::string& name, bool is_pocl,
-             std::function<void(const std::vector<std::string>&, bool)> finished)
-        : failing_(std::move(failing)), name_(name), finished_(std::move(finished)) {
+    Bisector(CheckRun failing, const std::string& name, bool is_pocl, std::function<void(const std::string&)> print)
+        : failing_(std::move(failing)), name_(name), print_(std::move(print)) {
         for (const char* const option : {"-cl-opt-disable", kNoBuiltins, "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0"})
             changes_.push_back({std::string("RAYA_BUILD_OPTIONS=") + option, "RAYA_BUILD_OPTIONS", option});
         changes_.push_back({.text = "groups of 1 work-item (--group 1)", .group = 1});
         VerifySettings one_lane = failing_.settings;
         one_lane.lanes = 1;
-        if (failing_.settings.lanes != 1 &&
-            exists(one_lane, failing_.selector, failing_.index, name_with_one_lane(name_)))
+        if (failing_.settings.as.empty() && failing_.settings.lanes != 1 &&
+            exists(one_lane, failing_.selector, name_with_one_lane(name_)))
             changes_.push_back({.text = "--lanes 1", .lanes = 1});
         if (!is_pocl) return;
         for (const auto& [variable, value] : {std::pair{"POCL_WORK_GROUP_METHOD", "loops"},
@@ -47,16 +48,19 @@ class Bisector {
             changes_.push_back({std::string(variable) + "=" + value, variable, value});
     }
 
-    Bisection run() {
-        Bisection result;
-        for (const Change& change : changes_) result.tried.push_back(change.text);
-        if (!passes(changes_)) return result;
-        for (const Change& change : minimal({}, changes_, false)) result.smallest.push_back(change.text);
-        return result;
+    void run() {
+        if (!passes(changes_)) return print_(name_ + ": fails also with all of these changes");
+        print_(fmt::format("{}: passes with {}", name_, text_of(minimal({}, changes_, false))));
     }
 
   private:
     using Changes = std::vector<Change>;
+
+    static std::string text_of(const Changes& changes) {
+        std::string text;
+        for (const Change& change : changes) text += (text.empty() ? "" : ", ") + change.text;
+        return text;
+    }
 
     static Changes together(Changes a, const Changes& b) {
         a.insert(a.end(), b.begin(), b.end());
@@ -76,7 +80,7 @@ class Bisector {
     }
 
     bool passes(const Changes& changes) {
-        const CaseFolder cache(std::filesystem::temp_directory_path() / ("raya-bisect-" + std::to_string(::getpid())));
+        const TemporaryFolder cache("raya-bisect");
         CheckRun variant = failing_;
         std::string name = name_, options;
         for (const Change& change : changes) {
@@ -92,25 +96,22 @@ class Bisector {
         variant.environment["POCL_CACHE_DIR"] = cache.path().string();
         variant.settings = settings_of_one(variant.settings, name);
         const bool passed = observe(variant).passed;
-        std::vector<std::string> texts;
-        for (const Change& change : changes) texts.push_back(change.text);
-        finished_(texts, passed);
+        print_(fmt::format("{}  {}", passed ? "PASS" : "FAIL", text_of(changes)));
         return passed;
     }
 
     CheckRun failing_;
     std::string name_;
-    std::function<void(const std::vector<std::string>&, bool)> finished_;
+    std::function<void(const std::string&)> print_;
     Changes changes_;
 };
 
 }  // namespace
 
-Bisection bisect(const std::string& selector, std::size_t index, const DeviceChecks& device,
-                 const VerifySettings& settings, const std::string& full_name,
-                 const std::function<void(const std::vector<std::string>& changes, bool passed)>& finished) {
+void bisect(const std::string& selector, const DeviceChecks& device, const VerifySettings& settings,
+            const std::string& full_name, const std::function<void(const std::string& line)>& print) {
     const bool is_pocl = device.platform == "Portable Computing Language";
-    return Bisector({"", selector, index, settings}, full_name, is_pocl, finished).run();
+    Bisector({"", selector, settings, {}}, full_name, is_pocl, print).run();
 }
 
 }  // namespace raya

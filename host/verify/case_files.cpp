@@ -11,6 +11,7 @@
 #include "host/base/json.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/kernel_source.hpp"
+#include "host/cl/spirv.hpp"
 #include "host/embedded.hpp"
 #include "host/version.hpp"
 
@@ -105,6 +106,7 @@ void write_case(const fs::path& folder, const DeviceChecks& device, const Check&
                 const std::string& reference, const fs::path& kernels) {
     const Json launch = Json::parse(read_file(folder / "launch.json"), {"launch.json"});
     std::string options = launch.at("options").text();
+    remove_il_option(options);  // the case builds the source
     const std::string definitions = take_definitions(options), program = launch.at("program").text();
     if (!kernels.empty() && embedded_files().contains("kernels/" + program))
         write_whole_file(folder / "right.cl", kernel_source(program));

@@ -14,6 +14,7 @@
 #include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_renderer.hpp"
 #include "host/verify/hits.hpp"
+#include "host/verify/numbers.hpp"
 #include "host/verify/reference_images.hpp"
 #include "host/verify/verify.hpp"
 

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "host/base/temporary_folder.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
 #include "host/error.hpp"
@@ -44,7 +45,6 @@ std::vector<CheckRun> references(const CheckRun& failing) {
     for (std::size_t i = 0; i < all_devices().size(); ++i) {
         all.push_back(failing);
         all.back().selector = std::to_string(i);
-        all.back().index = 0;
         all.back().name = device_info(all_devices()[i]).name;
     }
     return all;
@@ -70,7 +70,7 @@ std::pair<std::size_t, std::string> capture_wrong_step(const CheckRun& failing, 
         observe(failing, seen.expected, folder);
         return {seen.expected, "the check's known results"};
     }
-    const CaseFolder scratch(folder.string() + ".reference");
+    const TemporaryFolder scratch("raya-reference");
     bool any_passes = false;
     for (const CheckRun& reference : references(failing)) {
         const Observation first = observe(reference), second = observe(reference);
@@ -95,16 +95,21 @@ std::pair<std::size_t, std::string> capture_wrong_step(const CheckRun& failing, 
 }  // namespace
 
 void check_case_folder(const fs::path& folder) {
-    if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
+    const bool exists = fs::exists(folder);
+    if (exists && !(fs::is_directory(folder) && fs::is_empty(folder)))
         throw UserError(
             fmt::format("--reproduce {}: is not an empty folder; remedy: name a new folder", folder.string()));
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw UserError(fmt::format("--reproduce {}: cannot be made: {}", folder.string(), error.message()));
+    if (!exists) fs::remove(folder);
 }
 
-std::string reproduce(const std::string& selector, std::size_t index, const DeviceChecks& device,
-                      const VerifySettings& settings, const Check& check, const fs::path& folder) {
+std::string reproduce(const std::string& selector, const DeviceChecks& device, const VerifySettings& settings,
+                      const Check& check, const fs::path& folder) {
     check_case_folder(folder);
-    const CheckRun failing{"", selector, index, settings_of_one(settings, check.layer + " " + check.name)};
-    const CaseFolder scratch(fs::path(folder).lexically_normal().string() + ".new");
+    const CheckRun failing{"", selector, settings_of_one(settings, check.layer + " " + check.name)};
+    const TemporaryFolder scratch(fs::absolute(folder / "").parent_path().string());
     const Observation seen = observe(failing);
     if (seen.passed) no_case(check, "it passes when it runs alone");
     if (seen.steps.empty()) no_case(check, "it fails before the first build of a kernel");
@@ -115,6 +120,8 @@ std::string reproduce(const std::string& selector, std::size_t index, const Devi
     else
         observe(failing, step, scratch.path(), true);
     write_case(scratch.path(), device, check, seen.steps.at(step - 1).name, reference, settings.sources.folder);
+    fs::permissions(scratch.path(), fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec |
+                                        fs::perms::others_read | fs::perms::others_exec);
     fs::remove(folder);  // an empty folder
     fs::rename(scratch.path(), folder);
     return fmt::format("{}: a case of '{} {}', {}; make -C {} && {}/repro\n", folder.string(), check.layer, check.name,

@@ -8,8 +8,8 @@
 
 namespace raya {
 
-/// Writes a case of the failed check `check` into the folder `folder`, which must not exist or be empty. `device` is
-/// number `index` of the devices that `selector` selects; see supervise().
+/// Writes a case of the failed check `check` into the folder `folder`, which must not exist or be empty. `selector`
+/// selects the device, as in choose_device().
 ///
 /// Finds the first kernel launch with wrong results: the check gives the correct words of its launch, or the check is
 /// repeated with a reference that passes, and the first launch whose outputs differ is the wrong one. The reference is
@@ -17,10 +17,10 @@ namespace raya {
 /// this computer. If a build or launch failed, crashed or did not end, the case is that build or launch.
 ///
 /// Returns the lines that describe the case. Throws UserError if `folder` is not empty or no case could be made.
-std::string reproduce(const std::string& selector, std::size_t index, const DeviceChecks& device,
-                      const VerifySettings& settings, const Check& check, const std::filesystem::path& folder);
+std::string reproduce(const std::string& selector, const DeviceChecks& device, const VerifySettings& settings,
+                      const Check& check, const std::filesystem::path& folder);
 
-/// Throws UserError if `folder` exists and is not an empty folder.
+/// Throws UserError if `folder` exists and is not an empty folder, or cannot be made. Makes its parent folders.
 void check_case_folder(const std::filesystem::path& folder);
 
 }  // namespace raya

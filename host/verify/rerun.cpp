@@ -58,7 +58,7 @@ Observation observe(const CheckRun& v, std::size_t step, const std::filesystem::
     std::list<EnvironmentVariable> environment;
     environment.emplace_back("RAYA_BINARIES", "off");
     for (const auto& [name, value] : v.environment) environment.emplace_back(name, value);
-    Json request = settings_json(v.settings, v.selector, v.index);
+    Json request = settings_json(v.settings, v.selector, 0);
     request["capture"] = {{"step", step}, {"folder", folder.string()}};
     ChildProcess process(kVerifyTask, request);
     Observation seen;
@@ -71,16 +71,6 @@ Observation observe(const CheckRun& v, std::size_t step, const std::filesystem::
         if (v.settings.timeout_s > 0 && seconds_since(start) > v.settings.timeout_s) break;
     }
     return seen;
-}
-
-CaseFolder::CaseFolder(std::filesystem::path path) : path_(std::move(path)) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-}
-
-CaseFolder::~CaseFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace raya

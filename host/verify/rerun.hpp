@@ -13,9 +13,8 @@ namespace raya {
 
 /// How to run a check.
 struct CheckRun {
-    std::string name;      // for people: "-cl-opt-disable"
-    std::string selector;  // of the device, with `index` as in supervise()
-    std::size_t index = 0;
+    std::string name;                                  // for people: "-cl-opt-disable"
+    std::string selector;                              // of the device, as in choose_device()
     VerifySettings settings;                           // select one check
     std::map<std::string, std::string> environment{};  // variables of the child process
 };
@@ -44,18 +43,5 @@ Observation observe(const CheckRun& run, std::size_t step = 0, const std::filesy
 
 /// Returns the value of RAYA_BUILD_OPTIONS with one more option.
 std::string with_build_option(const std::string& option);
-
-/// A new, empty folder, removed by the destructor.
-class CaseFolder {
-  public:
-    explicit CaseFolder(std::filesystem::path path);
-    ~CaseFolder();
-    CaseFolder(const CaseFolder&) = delete;
-    CaseFolder& operator=(const CaseFolder&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-
-  private:
-    std::filesystem::path path_;
-};
 
 }  // namespace raya

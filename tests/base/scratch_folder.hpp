@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <iterator>
 
-#include "tests/base/temporary_folder.hpp"
+#include "host/base/temporary_folder.hpp"
 
 namespace raya {
 

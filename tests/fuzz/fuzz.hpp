@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "tests/base/temporary_folder.hpp"
+#include "host/base/temporary_folder.hpp"
 
 namespace raya::fuzz {
 

@@ -36,9 +36,9 @@ struct RanksFault {
 
 /// Result of a run under mpirun.
 struct RanksOutcome : RunOutcome {
-    double seconds = 0;  // time from the signal (without a signal: from the start) to the end of the last process
-    std::size_t remaining = 0;  // number of processes that did not end by themselves
-    std::size_t messages = 0;   // number of lines on stderr that start with "raya:"
+    static constexpr int kKilled = 124;  // code of a run that did not end within 60 s
+    std::size_t remaining = 0;           // number of processes that did not end by themselves
+    std::size_t messages = 0;            // number of lines on stderr that start with "raya:"
 };
 
 namespace run_ranks_detail {
@@ -136,8 +136,8 @@ inline std::size_t count_raya_lines(const std::string& text) {
 }  // namespace run_ranks_detail
 
 /// Runs the launcher with `arguments`, which must include the path of the program. A run that does not end within 60 s
-/// is killed and has the exit code 124. `ranks`: number of ranks that must have started before the signal of `fault` is
-/// sent. Throws std::runtime_error if the signal cannot be sent.
+/// is killed and has the exit code kKilled. `ranks`: number of ranks that must have started before the signal of
+/// `fault` is sent. Throws std::runtime_error if the signal cannot be sent.
 inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& arguments, std::size_t ranks = 0,
                               const RanksFault& fault = {}, RunOptions run_options = {}) {
     namespace detail = run_ranks_detail;
@@ -163,7 +163,9 @@ inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& ar
     int status = 0;
     const auto timed_out = [&] { return Clock::now() - start > std::chrono::seconds(kLimit_s); };
     while (::waitpid(child, &status, WNOHANG) == 0 && !timed_out()) pause();
-    outcome.code = timed_out() ? 124 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    outcome.code = timed_out()         ? RanksOutcome::kKilled
+                   : WIFEXITED(status) ? WEXITSTATUS(status)
+                                       : 128 + WTERMSIG(status);
     const Clock::time_point deadline = Clock::now() + std::chrono::seconds(8);
     while (!detail::marked_processes(mark).empty() && Clock::now() < deadline && !timed_out()) pause();
     for (const auto& [process, environment] : detail::marked_processes(mark)) {
@@ -171,7 +173,6 @@ inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& ar
         ::kill(process, SIGKILL);
     }
     if (timed_out()) ::waitpid(child, &status, 0);
-    outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     outcome.out = run_program_detail::contents(out.get());
     outcome.err = run_program_detail::contents(err.get());
     outcome.messages = detail::count_raya_lines(outcome.err);

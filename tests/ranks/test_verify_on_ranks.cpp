@@ -156,7 +156,7 @@ TEST_CASE("mpirun verify: a killed rank ends all ranks and their child processes
             INFO(run.describe());
             CHECK(run.code != 0);
             CHECK(run.remaining == 0);
-            CHECK(run.seconds < 10);
+            CHECK(run.code != RanksOutcome::kKilled);
         }
 }
 

@@ -64,7 +64,8 @@ class LocalRun:
             failed = failed or code != 0
             self.steps.append((title, label, code, time.monotonic() - start))
         for path, saved in caches:
-            shutil.copytree(path, saved, dirs_exist_ok=True)
+            if Path(path).exists():
+                shutil.copytree(path, saved, dirs_exist_ok=True)
 
     @staticmethod
     def expanded(text, values):

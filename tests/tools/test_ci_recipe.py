@@ -124,7 +124,7 @@ def wrong_with(arguments, raya, scratch):
     if name.startswith("tools/"):
         return wrong_with_tool(arguments)
     if name == "ccache":
-        return "" if arguments[1:] == ("--show-stats",) else "unknown option"
+        return "" if arguments[1:] in (("--zero-stats",), ("--show-stats",)) else "unknown option"
     known = {"cmake": wrong_with_cmake, "ctest": wrong_with_ctest, "apt-get": wrong_with_packages}
     if name in known:
         return known[name](arguments)

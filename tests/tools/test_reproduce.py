@@ -110,11 +110,16 @@ class Test:
         self.expect(code == 2 and "is not an empty folder" in output, f"a folder that is not empty: exit code {code}", output)
         code, output = self.verify(check, "--only", check, "--reproduce", str(self.new_folder()))
         self.expect(code == 0 and not (self.folder / f"case{self.count}").exists(), f"a check that passes: exit code {code}", output)
+        for options in (["--soak", "1s"], ["--device", "all"]):
+            code, output = self.verify(check, "--reproduce", str(self.new_folder()), *options)
+            self.expect(code == 2 and "remedy: repeat the failed check" in output, f"--reproduce with {options}: exit code {code}", output)
+        code, output = self.verify(check, "--only", "machine bus: broadcast", "--reproduce", str(self.new_folder()), fault="clEnqueueReadBuffer 1 -5")
+        self.expect(code == 4 and "no case of" in output, f"a fault of transfers: exit code {code}", output)
 
     def bisect(self):
         check = "image glass fp32: cyclic:8 on 20"
         for fault, result in [("clBuildProgram 1 fabs(a)=(a)", f"{check}: passes with RAYA_BUILD_OPTIONS=-cl-opt-disable\n"),
-                              ("clBuildProgram 0 fabs(a)=(a)", f"{check}: fails also with all of: ")]:
+                              ("clBuildProgram 0 fabs(a)=(a)", f"{check}: fails also with all of these changes\n")]:
             code, output = self.verify(check, "--bisect", check, fault=fault)
             self.expect(code == 4 and result in output, f"--bisect with {fault}: exit code {code}", output)
 

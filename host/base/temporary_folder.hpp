@@ -1,4 +1,4 @@
-// A new folder in the system's folder for temporary files. The destructor removes the new folder and its contents.
+// A new folder for temporary files. The destructor removes the folder and its contents.
 #pragma once
 #include <cerrno>
 #include <cstdlib>
@@ -10,7 +10,8 @@ namespace raya {
 
 class TemporaryFolder {
   public:
-    /// Creates the folder. Its name starts with `name`. Throws std::system_error if the folder cannot be created.
+    /// Creates the folder. Its name starts with `name`. It is in the system's folder for temporary files, or, if `name`
+    /// is an absolute path, in the parent folder of this path. Throws std::system_error if it cannot be created.
     explicit TemporaryFolder(const std::string& name) {
         const std::string random_part(6, 'X');  // mkdtemp() replaces these letters
         std::string made = (std::filesystem::temp_directory_path() / (name + "-" + random_part)).string();
