@@ -156,23 +156,24 @@ TEST_CASE("verify --soak: finds a bit that flips once in many copies, with its r
     const ScratchFolder scratch;
     const auto soak = [&](const RunOptions& options) {
         const std::string report = scratch / "v.json";
-        const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine ring", "--lanes", "4", "--soak", "3s",
-                                         "--seed", "7", "--report", report},
+        const RunOutcome run = run_raya({"verify", "--brief", "--only", "machine ring: rotations", "--lanes", "4",
+                                         "--soak", "3s", "--seed", "7", "--report", report},
                                         options);
         INFO(run.describe());
         CHECK_THAT(run.out, Catch::Contains("random checks with --seed 7"));
         std::vector<std::string> names;
         const Document document = Document::parse(file_contents(report));
         for (const Document& check : document["devices"][0]["checks"]) names.push_back(check["name"]);
-        REQUIRE(names.size() >= 5);
-        names.resize(5);
+        REQUIRE(!names.empty());
         return std::pair(run, names);
     };
     const auto [right, names] = soak({});
     CHECK(right.code == 0);
-    const auto [wrong, same_names] = soak(device_with_fault("clEnqueueCopyBuffer 40 flip"));
+    const auto [wrong, names_when_wrong] = soak(device_with_fault("clEnqueueCopyBuffer 40 flip"));
     CHECK(wrong.code == 4);
-    CHECK(same_names == names);
+    // The numbers of checks differ, because both tests take 3 s.
+    const auto [name, other_name] = std::ranges::mismatch(names, names_when_wrong);
+    CHECK((name == names.end() || other_name == names_when_wrong.end()));
     CHECK(has_line(wrong.out, "after [0-9.]+ s: FAIL  machine .*"));
     // The fault hits the 8th rotation of each check, so all failures of a check have the same first wrong word.
     CHECK(has_line(
@@ -192,7 +193,7 @@ TEST_CASE("verify --soak --device all: checks all devices at once", "[cli][verif
     CHECK(run.code == 0);
     const Document devices = Document::parse(file_contents(report))["devices"];
     REQUIRE(devices.size() == 2);
-    for (const Document& device : devices) CHECK(device["passed"].get<int>() >= 5);
+    for (const Document& device : devices) CHECK(device["passed"].get<int>() >= 1);
     CHECK(devices[0]["checks"][0]["name"] == devices[1]["checks"][0]["name"]);  // the same seed
     // Both tests start before one of them ends.
     const auto start_of = [&](const char* device) { return run.out.find(std::string(device) + "-"); };
