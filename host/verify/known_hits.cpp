@@ -20,8 +20,8 @@ Sphere ball(double x, double z = 16, double radius = 5) { return {{x, 0, z}, rad
 KnownScene spheres() {
     Scene scene = empty_scene();
     scene.spheres = {ball(0), ball(32, 16, -5), ball(64), ball(64), ball(96), ball(96, 4, 2)};
-    for (int i = 0; i < 5; ++i) scene.spheres.push_back(ball(200 + 16 * i));
-    scene.spheres.push_back(ball(264, 12));  // in front of the previous sphere
+    for (int i = 0; i < 30; ++i) scene.spheres.push_back(ball(200 + 16 * i));  // kernels test spheres in batches of 32
+    scene.spheres.push_back(ball(664, 12));  // in front of the previous sphere
     return {"spheres",
             scene,
             {{"through the centre", {0, 0, 0}, kAhead, 0, 11},
@@ -41,7 +41,7 @@ KnownScene spheres() {
              {"the nearer sphere has the higher number", {96, 0, 0}, kAhead, 5, 2},
              {"tangent to the nearer sphere", {96, 2, 0}, kAhead, 5, 4},
              {"the nearer sphere is missed", {96, 3, 0}, kAhead, 4, 12},
-             {"the nearer sphere is the last in the scene", {264, 3, 0}, kAhead, 11, 8}}};
+             {"the nearer sphere is the last in the scene", {664, 3, 0}, kAhead, 36, 8}}};
 }
 
 // Two equal planes z = 16, the plane y = 64, a sphere that touches the planes z = 16, and a square in these planes.
@@ -65,7 +65,7 @@ KnownScene planes() {
 }
 
 // An L-shaped polygon (8 x 8 without the upper right quarter), a triangle with vertex normals, a square with vertex
-// normals (two triangles), and two equal walls perpendicular to x.
+// normals (two triangles), two equal walls perpendicular to x, and a square near a quadrilateral that is not planar.
 KnownScene polygons() {
     Scene scene = empty_scene();
     const Vec3 back = {0, 0, -1};
@@ -74,7 +74,9 @@ KnownScene polygons() {
                       {{{32, 0, 16}, {40, 0, 16}, {32, 8, 16}}, {back, back, back}, 0},
                       {{{64, 0, 16}, {72, 0, 16}, {72, 8, 16}, {64, 8, 16}}, {back, back, back, back}, 0},
                       {wall, {}, 0},
-                      {wall, {}, 0}};
+                      {wall, {}, 0},
+                      {{{200, 0, 12}, {200, 8, 20}, {192, 8, 12}, {192, 0, 20}}, {}, 0},
+                      {{{188, 0, 13}, {192, 0, 13}, {192, 8, 13}, {188, 8, 13}}, {}, 0}};
     return {"polygons",
             scene,
             {{"inside the L's corner", {2, 2, 0}, kAhead, 0, 16},
@@ -94,7 +96,9 @@ KnownScene polygons() {
              {"a wall, from the left; equal distances: the lower number", {120, 4, 4}, kRight, 4, 8},
              {"a wall, from the right", {136, 4, 4}, kLeft, 4, 8},
              {"parallel to the wall", {128, 4, -4}, kAhead, kNoObject, 0},
-             {"past the wall", {120, 9, 4}, kRight, kNoObject, 0}}};
+             {"past the wall", {120, 9, 4}, kRight, kNoObject, 0},
+             // The ray meets the plane z = 12 at t = 12, outside the quadrilateral's box, which it enters at 14.67.
+             {"t is clipped to the polygon's box", {181, 4, 0}, {0.75F, 0, 1}, 7, 13}}};
 }
 
 // Cylinders of radius 5 and height 16 along y from (x, 0, 16), and two cones of height 8 that narrow from radius 8 to

@@ -19,7 +19,9 @@
 #include "host/verify/transfers.hpp"
 #include "host/verify/verify.hpp"
 #include "kernels/shared/neighbours.h"
+#include "kernels/shared/node_counts.h"
 #include "kernels/shared/share_pixels.h"
+#include "kernels/shared/traffic.h"
 
 namespace raya {
 namespace {
@@ -111,8 +113,9 @@ Verdict compare_cases(const Words& expected, CheckRunner& runner, const Buffer<s
                    .got = fmt::format("{0} = 0x{0:08x}", got[first_wrong])});
 }
 
-// Appends the expected results of kernel find_owners (kernels/checks/machine.cl) for a pixel.
-void add_owner(Words& results, const raya_mapping& m, const raya_pixel& pixel) {
+// Appends the expected results of kernel find_owners (kernels/checks/machine.cl) for a pixel. `other_pe`: a PE, whose
+// share may be empty.
+void add_owner(Words& results, const raya_mapping& m, const raya_pixel& pixel, std::uint32_t other_pe) {
     const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
     const raya_share share = raya_share_of(m, owner);
     const std::uint32_t number = raya_index_of(m, share, pixel);
@@ -120,7 +123,8 @@ void add_owner(Words& results, const raya_mapping& m, const raya_pixel& pixel) {
     std::uint32_t sides = 0;
     for (std::uint32_t side = 0; side < RAYA_SIDES; ++side)
         sides |= std::uint32_t{raya_has_neighbour(m, pixel, side) != 0} << side;
-    results.insert(results.end(), {owner, raya_share_size(share), number, found_pixel.row, found_pixel.column, sides});
+    results.insert(results.end(), {owner, raya_share_size(share), number, found_pixel.row, found_pixel.column, sides,
+                                   raya_share_size(raya_share_of(m, other_pe))});
 }
 
 // `group_size`: work-group size of kernel reverse_words, 1..1024.
@@ -133,7 +137,7 @@ CheckRunner machine_runner(Session& session, const KernelSources& sources, std::
 Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases) {
     const auto [mappings, pixels] = mapping_cases(kind, cases);
     Words expected;
-    for (std::size_t i = 0; i < cases; ++i) add_owner(expected, mappings[i], pixels[i]);
+    for (std::uint32_t i = 0; i < cases; ++i) add_owner(expected, mappings[i], pixels[i], i % mappings[i].pes);
     const auto mapping_buffer = runner.filled("mappings", mappings);
     const auto pixel_buffer = runner.filled("pixels", pixels);
     auto owners = runner.poisoned("owners", expected.size());
@@ -144,8 +148,9 @@ Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases)
                            m[i].height, m[i].pes, mapping_text(m[i]));
     };
     return compare_cases(expected, runner, owners,
-                         {"owner", "size of the share", "number in the share", "row", "column", "neighbours"}, describe,
-                         fmt::format("{} pixels", cases));
+                         {"owner", "size of the share", "number in the share", "row", "column", "neighbours",
+                          "size of another PE's share"},
+                         describe, fmt::format("{} pixels", cases));
 }
 
 // Checks, for random nodes a and b, the first link on the route of a ray from a to b, the return link of a, and the
@@ -156,6 +161,8 @@ Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
     for (std::size_t i = 0; i < cases; ++i) {
         expected.push_back(raya_next_link(toruses[i], nodes[2 * i], nodes[2 * i + 1]));
         expected.push_back(raya_return_link(toruses[i], nodes[2 * i]));
+        expected.push_back(raya_nodes(toruses[i]));
+        expected.push_back(nodes[2 * i]);
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             expected.push_back(raya_link_end(toruses[i], nodes[2 * i], link));
     }
@@ -168,10 +175,42 @@ Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
         return fmt::format("node {} to {} on {}", n[2 * i], n[2 * i + 1],
                            sides_text({t[i].sides[0], t[i].sides[1], t[i].sides[2]}));
     };
-    return compare_cases(
-        expected, runner, routes,
-        {"next link", "return link", "end of +x", "end of -x", "end of +y", "end of -y", "end of +z", "end of -z"},
-        describe, fmt::format("{} pairs of nodes", cases));
+    return compare_cases(expected, runner, routes,
+                         {"next link", "return link", "number of nodes", "node at the place", "end of +x", "end of -x",
+                          "end of +y", "end of -y", "end of +z", "end of -z"},
+                         describe, fmt::format("{} pairs of nodes", cases));
+}
+
+// Checks functions of packets, and sizes of queues and local memory, for random places, states, lights and bounces.
+Verdict check_packet_words(CheckRunner& runner, std::size_t cases) {
+    constexpr std::uint64_t kSeed = 22;
+    SplitMix random(kSeed);
+    Words inputs, expected;
+    for (std::size_t i = 0; i < cases; ++i) {
+        const std::uint32_t x = random_below(random, 1024), y = random_below(random, 1024),
+                            z = random_below(random, 1024), lights = random_below(random, 1u << i % 17),
+                            level = random_below(random, 32), bounces = level + random_below(random, 32 - level),
+                            kind = RAYA_KIND_PRIMARY + random_below(random, RAYA_KINDS - RAYA_KIND_PRIMARY),
+                            state = raya_state(kind, level, lights), new_packets = raya_max_new_packets(lights);
+        inputs.insert(inputs.end(), {x, y, z, state, lights, bounces});
+        expected.insert(
+            expected.end(),
+            {raya_pack_place(x, y, z), level, lights, lights + 2, raya_slots_for_packet(new_packets, bounces, state),
+             RAYA_WORK_OF_PROCESSING(lights), RAYA_INJECT_WORDS(1 + x, 1 + y % 16), RAYA_ROUTE_WORDS(1 + x)});
+    }
+    const auto input_buffer = runner.filled("inputs", inputs);
+    auto words = runner.poisoned("words", expected.size());
+    runner.run<const Buffer<std::uint32_t>&, cl_uint, Buffer<std::uint32_t>&>(
+        "find_packet_words", cases, 1, input_buffer, static_cast<cl_uint>(cases), words);
+    const auto describe = [&](std::size_t i) {
+        return fmt::format("place ({}, {}, {}), state 0x{:08x}, {}, {} bounces", inputs[6 * i], inputs[6 * i + 1],
+                           inputs[6 * i + 2], inputs[6 * i + 3], counted(inputs[6 * i + 4], "light"),
+                           inputs[6 * i + 5]);
+    };
+    return compare_cases(expected, runner, words,
+                         {"packed place", "level", "light", "maximum number of new packets", "queue slots",
+                          "work of processing", "local memory of inject", "local memory of route"},
+                         describe, fmt::format("{} packets", cases));
 }
 
 // Checks barriers and atomics. Each work-group reverses the order of words in local memory kReversals times and adds 1
@@ -198,18 +237,6 @@ Verdict check_local_memory(CheckRunner& runner, std::uint32_t group_size) {
                          {"times that a number was taken from the counter"}, describe, pass_text);
 }
 
-std::vector<std::string> integer_remedies() {
-    return {
-        "the compiler makes errors with integers or barriers, not with fp32: look for an option of the driver that\n"
-        "disables its optimiser, and report the error to its vendor",
-        "a newer driver, or another OpenCL implementation for this device (raya devices)"};
-}
-
-std::vector<std::string> copy_remedies() {
-    return {"a newer driver: copies between buffers on the device are wrong, or do not run in order",
-            "another OpenCL implementation for this device (raya devices)"};
-}
-
 const char* kind_name(std::uint32_t kind) {
     constexpr std::array<const char*, RAYA_RANDOM + 1> kNames = {
         "cyclic, cyclic fold", "cyclic, block fold", "rows", "blocks", "grid", "tiles", "random"};
@@ -232,39 +259,10 @@ void verify_kernels(Verification& v) {
         check(fmt::format("mapping: {}", kind_name(kind)), 1,
               [&](CheckRunner& runner) { return check_owners(runner, kind, cases); });
     check("torus routes", 1, [&](CheckRunner& runner) { return check_torus_routes(runner, cases); });
+    check("torus packets", 1, [&](CheckRunner& runner) { return check_packet_words(runner, cases); });
     for (const std::uint32_t group : v.full() ? std::vector{1u, 2u, 8u, 32u, 64u} : std::vector{1u, 32u})
         check("local memory and barriers, " + counted(group, "work-item"), group,
               [&](CheckRunner& runner) { return check_local_memory(runner, group); });
-}
-
-void verify_transfers(Verification& v) {
-    const auto check = [&](const std::string& name, const std::function<Verdict(Session&)>& body) {
-        v.check("machine", name, [&](Session& session) { return with_remedies(body(session), "", copy_remedies()); });
-    };
-    const std::vector<BlockCopy> copies = {{{3, 17, 0}, {0, 5, 2}, 5, 40},
-                                           {{0, 8, 1}, {4, 31, 0}, 8, 33},
-                                           {{2, 9, 5}, {1, 7, 3}, 4, 300},
-                                           {{0, 64, 0}, {0, 64, 64}, 64, 63}};
-    check("copies of blocks", [&](Session& s) { return check_copies(s, copies); });
-    check("bus: broadcast and gather", [](Session& s) { return check_bus(s); });
-    check("bus: transfers between 31 PEs", [](Session& s) { return check_transfers(s, 31, 100); });
-    using Sizes = std::pair<std::size_t, std::size_t>;
-    for (const auto& [pes, words] : {Sizes{2, 1}, {7, 100}, {256, 768}})
-        check(fmt::format("ring: rotations of {} PEs", pes),
-              [p = pes, w = words](Session& s) { return check_rotations(s, p, w); });
-    for (const Links links : {Links::kTorus3d, Links::kTorus2d})
-        for (const std::uint32_t stride : {1u, 50u}) {
-            const std::string name =
-                fmt::format("{}: exchange of {}", links_name(links), stride == 1 ? "all mailboxes" : "few mailboxes");
-            const raya_torus torus = make_torus({3, 2, 4}, links);
-            check(name, [&](Session& s) { return check_links(s, torus, stride); });
-            v.check("machine", name + " by a kernel", [&](Session& s) {
-                // A mailbox takes 4 to 12 units of 8 words. So some of the 8 work-items copy two units, some one unit,
-                // and some none.
-                Kernels kernels(s, {.group_size = std::min(8u, max_group_size_of(v.device()))}, v.sources());
-                return with_remedies(check_links(s, torus, stride, &kernels), "", integer_remedies());
-            });
-        }
 }
 
 }  // namespace

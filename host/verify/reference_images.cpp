@@ -86,7 +86,10 @@ const std::vector<ReferenceImage>& reference_images() {
         {"cones e5m10", "cones", "e5m10"},
         {"spheres e8m12t", "spheres", "e8m12t"},
         {"glass e8m21", "glass", "e8m21"},
-        {"ties fp32", "ties", "fp32"}};
+        {"ties fp32", "ties", "fp32"},
+        {"leaves fp32", "leaves", "fp32"},
+        {"leaves spa22", "leaves", "spa22"},
+        {"far fp32", "far", "fp32", AntialiasMethod::kNone, RAYA_POINTS_AXES, Sampling::kCorners, {65, 6}}};
     return all;
 }
 
@@ -97,15 +100,15 @@ const ReferenceImage& reference_image_named(const std::string& name) {
 }
 
 Scene scene_of(const ReferenceImage& image) {
-    const char* folder = image.scene == "ties" ? "host/verify/" : "scenes/";
-    const std::string file = folder + image.scene + ".nff";
+    std::string file = "host/verify/" + image.scene + ".nff";
+    if (!embedded_files().contains(file)) file = "scenes/" + image.scene + ".nff";
     return parse_nff(embedded_files().at(file), file);
 }
 
 RingSettings reference_settings(const ReferenceImage& image) {
     RingSettings settings;
     settings.machine = machine_named("grande");
-    settings.mapping = make_mapping(column_mapping(), {kReferenceSide, kReferenceSide}, 1);
+    settings.mapping = make_mapping(column_mapping(), image.size, 1);
     settings.bounces = kReferenceBounces;
     settings.format = parse_format(image.format);
     settings.sampling = image.sampling;
@@ -138,14 +141,16 @@ std::vector<StoredImage> parse_reference_images(const std::string& text) {
 
 std::string reference_images_text(const std::vector<StoredImage>& all) {
     std::string text = kReferenceHeading;
-    std::vector<std::string> previous(kReferenceSide * kReferenceSide);
+    std::vector<std::string> previous;
     for (const StoredImage& stored : all) {
+        const auto width = static_cast<std::size_t>(stored.image.width);
+        previous.resize(stored.image.rgb.size() / 3);
         text += fmt::format("{}: {}\n", stored.name, stored.hash);
         for (const auto& [kind, counts] : stored.counts) text += fmt::format("counts {}: {}\n", kind, counts);
         std::string left;
         for (std::size_t i = 0; i < previous.size(); ++i) {
             const std::string pixel = colour_text(&stored.image.rgb.at(3 * i));
-            const bool first = i % kReferenceSide == 0, last = (i + 1) % kReferenceSide == 0;
+            const bool first = i % width == 0, last = (i + 1) % width == 0;
             text += (pixel == left && !first ? "." : pixel == previous[i] ? "=" : pixel) + (last ? "\n" : " ");
             left = previous[i] = pixel;
         }

@@ -18,18 +18,20 @@
 
 namespace raya {
 
+inline constexpr std::uint32_t kReferenceSide = 20;  // pixels
+
 /// Settings that determine the pixels of a reference image. Struct Rendering (images.cpp) has the settings that must
 /// not change the pixels, such as machine, mapping, lanes and group size.
 struct ReferenceImage {
     std::string name;   // "glass fp32 filter"
-    std::string scene;  // file name without extension: in scenes/, or "ties" for host/verify/ties.nff
+    std::string scene;  // file name without extension: in host/verify/ or in scenes/
     std::string format;
     AntialiasMethod antialias = AntialiasMethod::kNone;
     raya_u32 points = RAYA_POINTS_AXES;  // RAYA_POINTS_*: positions of the additional samples of supersampling
     Sampling sampling = Sampling::kCentres;
+    ImageSize size = {kReferenceSide, kReferenceSide};
 };
 
-inline constexpr std::uint32_t kReferenceSide = 20;  // pixels; the images are square
 inline constexpr std::uint32_t kReferenceBounces = 4;
 
 const std::vector<ReferenceImage>& reference_images();

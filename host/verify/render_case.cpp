@@ -85,7 +85,7 @@ RingSettings simplest_settings(const Settings& settings, const ImageSize& size) 
 // Returns the render's settings for a reference image; empty if the render's options do not allow it.
 std::optional<Settings> reference_case(const RenderCase& render, const ReferenceImage& image, std::string& reason) {
     try {
-        Settings settings = render.settings(scene_of(image), {kReferenceSide, kReferenceSide});
+        Settings settings = render.settings(scene_of(image), image.size);
         std::visit(
             [&](auto& s) {
                 s.bounces = kReferenceBounces;

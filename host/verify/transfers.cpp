@@ -11,6 +11,7 @@
 #include "host/torus/link_exchange.hpp"
 #include "host/torus/topology.hpp"
 #include "host/verify/verdict.hpp"
+#include "host/verify/verify.hpp"
 
 namespace raya {
 namespace {
@@ -80,6 +81,11 @@ struct LinkTraffic {
         packets_sent += packets;
     }
 };
+
+std::vector<std::string> copy_remedies() {
+    return {"a newer driver: copies between buffers on the device are wrong, or do not run in order",
+            "another OpenCL implementation for this device (raya devices)"};
+}
 
 }  // namespace
 
@@ -219,6 +225,43 @@ Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies) {
         if (auto verdict = difference(expected, got, transfer, kCopiedWords, "buffer")) return *verdict;
     }
     return passed(fmt::format("{} words in {} layouts", copied, copies.size()));
+}
+
+std::vector<std::string> integer_remedies() {
+    return {
+        "the compiler makes errors with integers or barriers, not with fp32: look for an option of the driver that\n"
+        "disables its optimiser, and report the error to its vendor",
+        "a newer driver, or another OpenCL implementation for this device (raya devices)"};
+}
+
+void verify_transfers(Verification& v) {
+    const auto check = [&](const std::string& name, const std::function<Verdict(Session&)>& body) {
+        v.check("machine", name, [&](Session& session) { return with_remedies(body(session), "", copy_remedies()); });
+    };
+    const std::vector<BlockCopy> copies = {{{3, 17, 0}, {0, 5, 2}, 5, 40},
+                                           {{0, 8, 1}, {4, 31, 0}, 8, 33},
+                                           {{2, 9, 5}, {1, 7, 3}, 4, 300},
+                                           {{0, 64, 0}, {0, 64, 64}, 64, 63}};
+    check("copies of blocks", [&](Session& s) { return check_copies(s, copies); });
+    check("bus: broadcast and gather", [](Session& s) { return check_bus(s); });
+    check("bus: transfers between 31 PEs", [](Session& s) { return check_transfers(s, 31, 100); });
+    using Sizes = std::pair<std::size_t, std::size_t>;
+    for (const auto& [pes, words] : {Sizes{2, 1}, {7, 100}, {256, 768}})
+        check(fmt::format("ring: rotations of {} PEs", pes),
+              [p = pes, w = words](Session& s) { return check_rotations(s, p, w); });
+    for (const Links links : {Links::kTorus3d, Links::kTorus2d})
+        for (const std::uint32_t stride : {1u, 50u}) {
+            const std::string name =
+                fmt::format("{}: exchange of {}", links_name(links), stride == 1 ? "all mailboxes" : "few mailboxes");
+            const raya_torus torus = make_torus({3, 2, 4}, links);
+            check(name, [&](Session& s) { return check_links(s, torus, stride); });
+            v.check("machine", name + " by a kernel", [&](Session& s) {
+                // A mailbox takes 4 to 12 units of 8 words. So some of the 8 work-items copy two units, some one unit,
+                // and some none.
+                Kernels kernels(s, {.group_size = std::min(8u, max_group_size_of(v.device()))}, v.sources());
+                return with_remedies(check_links(s, torus, stride, &kernels), "", integer_remedies());
+            });
+        }
 }
 
 }  // namespace raya

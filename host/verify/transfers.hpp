@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "host/cl/commands.hpp"
@@ -11,6 +12,8 @@
 #include "kernels/shared/torus.h"
 
 namespace raya {
+
+class Verification;
 
 /// Checks one broadcast and one gather over the bus.
 Verdict check_bus(Session& session);
@@ -38,5 +41,11 @@ inline constexpr std::size_t kCopiedWords = 4096;
 
 /// Checks that each copy is correct and does not change the other words of the destination.
 Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies);
+
+/// Runs all checks of this file.
+void verify_transfers(Verification& verification);
+
+/// Returns remedies for a failed check of integers, local memory or barriers.
+std::vector<std::string> integer_remedies();
 
 }  // namespace raya
