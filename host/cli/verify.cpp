@@ -183,7 +183,7 @@ void run_verify(VerifyCommand command, Ranks& ranks) {
 
 std::vector<ShortHelp> verify_short_help() {
     const char *const options = "Options", *const failures = "Failures", *const more = "More options";
-    return {{"--quick", options, "Default lanes, common formats, 21 images (default)"},
+    return {{"--quick", options, "Default lanes, common formats, 22 images (default)"},
             {"--brief", options, "Few kernels with few rays, for slow devices"},
             {"--full", options, "All formats, lanes and group sizes: minutes"},
             {"--lanes", options, "Check only this number of lanes: 1, 4, 8 or 16"},
@@ -219,7 +219,7 @@ void add_verify_command(CLI::App& program, Ranks& ranks) {
     const auto options = std::make_shared<VerifyCommand>();
     OptionGroup group(*command, "Checks");
     command->add_flag("--quick", options->quick,
-                      "Check with the device's default lanes, common formats and 21 images (the default depth)");
+                      "Check with the device's default lanes, common formats and 22 images (the default depth)");
     command->add_flag("--brief", options->brief,
                       "Few kernels with few rays: for simulators, and for compilers that take a minute for a kernel");
     command->add_flag(

@@ -18,7 +18,8 @@ std::string mapping_name(const MappingRule& mapping) {
 
 std::string Rendering::check_kind() const {
     if (torus)
-        return fmt::format("{} {}{}", links_name(links), sides_text(nodes), inject == Injection::kRoot ? " root" : "");
+        return fmt::format("{} {}{}{}", links_name(links), sides_text(nodes), inject == Injection::kRoot ? " root" : "",
+                           queue ? fmt::format(", queue {}", queue) : "");
     return accel == AccelKind::kNone ? "ring" : accel_text({.kind = accel});
 }
 
@@ -96,6 +97,15 @@ std::vector<Rendering> standard_renderings() {
          .voxels = {4, 2, 2},
          .history = true,
          .fallback_code = true},
+        {.image = "far fp32",
+         .min_depth = Depth::kQuick,
+         .group_size = 64,
+         .torus = true,
+         .nodes = {3, 2, 2},
+         .voxels = {4, 2, 2},
+         .queue = 40,
+         .history = true,
+         .fallback_code = true},
         {.image = "polygons fp32", .torus = true, .global_words = true},
         {.image = "polygons fp32",
          .min_depth = Depth::kBrief,
@@ -121,7 +131,8 @@ std::vector<Rendering> standard_renderings() {
         {.image = "polygons spa22", .min_depth = Depth::kQuick, .accel = AccelKind::kBvh},
         {.image = "spheres e8m12t", .accel = AccelKind::kBvh},
         {.image = "polygons spa22", .torus = true, .nodes = {1, 3, 2}, .inject = kRoot},
-        {.image = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d}};
+        {.image = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d},
+        {.image = "glass fp32", .lanes = 1, .group_size = 1, .torus = true, .queue = 21}};
 }
 
 std::vector<Rendering> renderings_of_all_builds() {

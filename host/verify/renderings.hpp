@@ -29,6 +29,7 @@ struct Rendering {
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     LinkMove link_move = LinkMove::kCopies;
+    std::uint32_t queue = 0;     // capacity of the queues of the torus, packets; 0: default
     std::uint32_t pe_bytes = 0;  // memory of a PE of the ring; 0: no limit
     bool history = false;        // record the cycles of each packet and check their sum in each node
     bool global_words = false;   // job words are in global memory, as if local memory were too small
