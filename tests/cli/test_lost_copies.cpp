@@ -51,8 +51,9 @@ TEST_CASE("verify: the checks of copies detect lost copies", "[cli][verify]") {
 
 TEST_CASE("verify: the image checks of both machines detect lost copies", "[cli][verify]") {
     using Run = std::pair<const char*, const char*>;
-    for (const auto& [check_name, fault] : {Run{"glass fp32 filter: cyclic:5", "clEnqueueCopyBuffer 20 lost"},
-                                            Run{"far fp32: torus3d", "clEnqueueCopyBufferRect 20 lost"}}) {
+    for (const auto& [check_name, fault] :
+         {Run{"glass fp32 filter: cyclic:5", "clEnqueueCopyBuffer 20 lost"},
+          Run{"far fp32: torus3d 3x2x2, history", "clEnqueueCopyBufferRect 20 lost"}}) {
         const RunOutcome run = verify_with_fault(fault, check_name);
         INFO(run.describe());
         CHECK(run.code == 4);
