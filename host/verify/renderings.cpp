@@ -57,7 +57,7 @@ std::vector<Rendering> standard_renderings() {
          .mapping = cyclic_mapping(8, Fold::kBlock),
          .pes = 7,
          .work_per_launch = 1,
-         .pe_bytes = 8000},
+         .pe_bytes = 3300},
         {.image = "glass fp32", .min_depth = Depth::kQuick, .mapping = tiles_mapping(5, 4), .pes = 7},
         {.image = "glass fp32", .global_words = true},
         {.image = "glass fp32", .fallback_code = true},

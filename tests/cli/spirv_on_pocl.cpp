@@ -9,12 +9,13 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "host/base/temporary_folder.hpp"
 
 namespace {
 
@@ -34,16 +35,14 @@ void inject_fault(std::vector<std::uint32_t>& module) {
 
 /// Returns the LLVM bitcode of a SPIR-V module; empty on failure.
 std::string bitcode_of(const std::vector<std::uint32_t>& module) {
-    std::string folder = std::filesystem::temp_directory_path() / "raya-spirv-XXXXXX";
-    if (::mkdtemp(folder.data()) == nullptr) return {};
-    const std::string spirv = folder + "/module.spv", bitcode = folder + "/module.bc";
+    const raya::TemporaryFolder folder("raya-spirv");
+    const std::string spirv = folder / "module.spv", bitcode = folder / "module.bc";
     std::ofstream(spirv).write(reinterpret_cast<const char*>(module.data()), std::streamsize(module.size() * 4));
     std::string bytes;
     if (std::system(("llvm-spirv-15 -r " + spirv + " -o " + bitcode).c_str()) == 0) {
         std::ifstream file(bitcode);
         bytes.assign(std::istreambuf_iterator<char>(file), {});
     }
-    std::filesystem::remove_all(folder);
     return bytes;
 }
 

@@ -1,4 +1,4 @@
-// Checks that a render on several ranks gives the results of a single rank, bit for bit.
+// Checks that two renders, for example on one and on several ranks, give the same results bit for bit.
 #pragma once
 #include <algorithm>
 #include <catch2/catch.hpp>

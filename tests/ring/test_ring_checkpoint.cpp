@@ -6,32 +6,12 @@
 #include "host/error.hpp"
 #include "host/ring/ring_state.hpp"
 #include "tests/base/test_checkpointing.hpp"
+#include "tests/ranks/same_results.hpp"
 #include "tests/ring/render_scene.hpp"
 #include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
-
-void check_same(const RingResult& a, const RingResult& b) {
-    CHECK(pixel_hash(a.image) == pixel_hash(b.image));
-    CHECK((a.mask.rgb == b.mask.rgb));
-    CHECK(a.recomputed == b.recomputed);
-    CHECK(a.all.events == b.all.events);
-    CHECK(a.all.load.per_pe == b.all.load.per_pe);
-    CHECK((a.cost().cycles == b.cost().cycles));
-    REQUIRE(a.phases.size() == b.phases.size());
-    for (std::size_t i = 0; i < a.phases.size(); ++i) {
-        CHECK(a.phases[i].events == b.phases[i].events);
-        CHECK((a.phases[i].cost().cycles == b.phases[i].cost().cycles));
-    }
-    const Communication &x = a.communication, &y = b.communication;
-    CHECK(x.broadcasts == y.broadcasts);
-    CHECK(x.rotations == y.rotations);
-    CHECK(x.rotation_words == y.rotation_words);
-    CHECK(x.gathers == y.gathers);
-    CHECK(x.gather_words == y.gather_words);
-    CHECK(x.transfers == y.transfers);
-}
 
 RingSettings settings_for(AntialiasMethod method, std::uint64_t device_pixels) {
     RingSettings settings =

@@ -149,7 +149,7 @@ TEST_CASE("border fault: only images with the filter fail, and the check names t
     const auto checks = run({kBorderFault}, "image glass");
     CHECK(failures(checks) ==
           Names{"glass fp32 filter: cyclic:5 on 10",
-                "glass fp32 filter: cyclic:8 on 7, block fold, launches of 1 test, PEs of 8000 bytes, groups of 8"});
+                "glass fp32 filter: cyclic:8 on 7, block fold, launches of 1 test, PEs of 3300 bytes, groups of 8"});
     CHECK(checks.size() > 4);
     CHECK_THAT(first_fault(checks).where, Catch::StartsWith("row 0, column 19"));
 }
