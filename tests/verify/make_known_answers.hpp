@@ -211,6 +211,7 @@ std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t 
         if (operation == kRound && (std::fpclassify(a) == FP_SUBNORMAL || std::isinf(a))) continue;
         if (operands < 2) b = 1;
         if (operands < 3) c = 1;
+        if (operation == kExp2) a = b = 1;
         bool wanted = operation == kPower || operation == kLog2 || operation == kExp2;  // all candidates are kept
         const std::set<std::string> features = maker.features(operation, a, b, c);
         for (const std::string& feature : features) wanted = wanted || seen[feature] < wanted_rows(feature);
