@@ -73,7 +73,7 @@ constexpr const char* kHeading =
     "# fp32 numbers in hexadecimal without trailing zeros.\n";
 
 std::size_t operation_number(const std::string& name) {
-    for (std::size_t k = 0; k < kAnsweredOperations; ++k)
+    for (std::size_t k = 0; k < kNumberOperations.size(); ++k)
         if (name == kNumberOperations[k].name) return k;
     throw std::logic_error("known answers: no operation " + name);
 }
@@ -108,32 +108,23 @@ NumberRunner::NumberRunner(Session& session, const NumberBuild& build)
       has_denormals_(session.device().denormals),
       runner_(session, build_number_program(session, build), build.lanes) {}
 
-NumberResults NumberRunner::run(const NumberRows& rows, bool with_functions) {
-    NumberResults results;
-    append(results, rows, "operations", kAnsweredOperations);
-    if (with_functions) append(results, rows, "functions", kNumberOperations.size() - kAnsweredOperations);
-    return results;
-}
-
-void NumberRunner::append(NumberResults& results, const NumberRows& rows, const std::string& kernel,
-                          std::size_t operations) {
+NumberResults NumberRunner::run(const NumberRows& rows) {
     std::vector<float> operands = rows.a;
     operands.insert(operands.end(), rows.b.begin(), rows.b.end());
     operands.insert(operands.end(), rows.c.begin(), rows.c.end());
     const auto operand_buffer = runner_.filled("operands", operands);
-    auto result_buffer = runner_.poisoned("results", operations * rows.count());
+    auto result_buffer = runner_.poisoned("results", kNumberOperations.size() * rows.count());
     runner_.run_rows<const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&>(
-        kernel, rows.count(), operand_buffer, static_cast<cl_uint>(rows.count()), result_buffer);
+        "operations", rows.count(), operand_buffer, static_cast<cl_uint>(rows.count()), result_buffer);
     const std::vector<std::uint32_t> columns = runner_.read(result_buffer);
+    NumberResults results;
     for (auto column = columns.begin(); column != columns.end(); column += std::ptrdiff_t(rows.count()))
         results.emplace_back(column, column + std::ptrdiff_t(rows.count()));
+    return results;
 }
 
 Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNumbers>& expected) {
-    const bool with_functions = std::any_of(expected.begin(), expected.end(), [](const ExpectedNumbers& answers) {
-        return answers.operation >= kAnsweredOperations;
-    });
-    const NumberResults results = run(rows, with_functions);
+    const NumberResults results = run(rows);
     KnownWords known(results.size() * rows.count());
     std::size_t wrong = 0, compared = 0, skipped = 0;
     std::string operations;
@@ -262,7 +253,7 @@ std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
 std::string known_answers_text(const std::vector<FormatAnswers>& all) {
     std::string text = kHeading;
     for (const FormatAnswers& answers : all)
-        for (std::size_t k = 0; k < kAnsweredOperations; ++k) {
+        for (std::size_t k = 0; k < kNumberOperations.size(); ++k) {
             text += fmt::format("{} {}\n", format_name(answers.format), kNumberOperations[k].name);
             for (const KnownAnswer& answer : answers.operations[k]) {
                 for (std::size_t i = 0; i < kNumberOperations[k].operands; ++i)

@@ -56,9 +56,6 @@ enum NumberOperationNumber : std::size_t {
     kLog2,
     kExp2
 };
-/// Number of operations with known answers; they are the first operations in kNumberOperations. Kernel `operations`
-/// computes them, kernel `functions` the remaining operations.
-inline constexpr std::size_t kAnsweredOperations = kPower + 1;
 
 /// Operands a, b and c of each row. An operation ignores the operands that it does not need. For from_index, `a`
 /// contains the bits of an integer.
@@ -101,9 +98,8 @@ class NumberRunner {
 
     const std::string& options() const { return runner_.options(); }
 
-    /// Returns the results of the first kAnsweredOperations operations, and of the remaining operations if
-    /// `with_functions` is true. The number of rows must be a multiple of kMaxLanes.
-    NumberResults run(const NumberRows& rows, bool with_functions);
+    /// Returns the results of all operations. The number of rows must be a multiple of kMaxLanes.
+    NumberResults run(const NumberRows& rows);
 
     /// Computes the operations and compares the results with `expected`. The verdict of a pass has a text such as "357
     /// answers"; that of a failure states the number of wrong results of each operation and the first wrong result. Any
@@ -111,8 +107,6 @@ class NumberRunner {
     Verdict check(const NumberRows& rows, const std::vector<ExpectedNumbers>& expected);
 
   private:
-    void append(NumberResults& results, const NumberRows& rows, const std::string& kernel, std::size_t operations);
-
     NumberFormat format_;
     bool has_denormals_;
     CheckRunner runner_;
@@ -129,7 +123,7 @@ struct KnownAnswer {
 /// Known answers in one format.
 struct FormatAnswers {
     NumberFormat format;
-    std::array<std::vector<KnownAnswer>, kAnsweredOperations> operations;  // in the order of kNumberOperations
+    std::array<std::vector<KnownAnswer>, kNumberOperations.size()> operations;  // in the order of kNumberOperations
 };
 
 /// Parses known_answers.csv. A line "FORMAT OPERATION" starts a section. Each further line has the bits of the operands

@@ -20,31 +20,19 @@ RAYA_KERNEL_BODY void store_operations(real a, real b, real c, __global uint* to
     store_bits(to + 9 * rows, 1, num_round(a));
     store_bits(to + 10 * rows, 1, num_from_index(as_lanes_uint(a)));
     store_bits(to + 11 * rows, 1, num_power(a, b));
+    store_bits(to + 12 * rows, 1, num_neg(a));
+    store_bits(to + 13 * rows, 1, num_abs(a));
+    store_bits(to + 14 * rows, 1, num_log2(a));
+    store_bits(to + 15 * rows, 1, num_exp2(c));
 }
 
-__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void operations(__global const float* restrict operands,  // [3][rows]: a, b, c; num_from_index() takes the bits of a
-                const uint rows,
-                __global uint* restrict results)          // [12][rows], in the order of store_operations()
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void operations(
+    __global const float* restrict operands,  // [3][rows]: a, b, c; num_from_index() takes the bits of a
+    const uint rows,
+    __global uint* restrict results)  // [16][rows], in the order of store_operations()
 {
     const uint first = get_group_id(0) * RAYA_LANES;
     const real a = load_lanes(operands + first, 1), b = load_lanes(operands + rows + first, 1);
     const real c = load_lanes(operands + 2 * rows + first, 1);
     store_operations(a, b, c, results + first, rows);
-}
-
-// Applies the remaining operations, for which the host has no known answers. These operations have a separate kernel,
-// because it takes long to compile.
-__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
-void functions(__global const float* restrict operands,  // as in operations
-               const uint rows,
-               __global uint* restrict results)          // [4][rows], in the order of the stores
-{
-    const uint first = get_group_id(0) * RAYA_LANES;
-    const real a = load_lanes(operands + first, 1), c = load_lanes(operands + 2 * rows + first, 1);
-    __global uint* to = results + first;
-    store_bits(to, 1, num_neg(a));
-    store_bits(to + rows, 1, num_abs(a));
-    store_bits(to + 2 * rows, 1, num_log2(a));
-    store_bits(to + 3 * rows, 1, num_exp2(c));
 }

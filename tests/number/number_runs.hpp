@@ -32,10 +32,10 @@ inline NumberBuild number_build(const NumberFormat& format, std::uint32_t lanes 
     return {.format = format, .lanes = lanes};
 }
 
-/// Returns the results of NumberRunner::run() on the default device. `with_functions`: also run log2, exp2 and power.
-inline NumberResults run_numbers(const NumberBuild& build, const NumberRows& rows, bool with_functions) {
+/// Returns the results of NumberRunner::run() on the default device.
+inline NumberResults run_numbers(const NumberBuild& build, const NumberRows& rows) {
     Session session(choose_device(""));
-    return NumberRunner(session, build).run(rows, with_functions);
+    return NumberRunner(session, build).run(rows);
 }
 
 /// Returns a description of the wrong results, with details of the first wrong result; an empty text if all results are

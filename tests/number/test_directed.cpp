@@ -166,7 +166,7 @@ void check_cases(const NumberFormat& format, const std::vector<Case>& cases) {
         rows.add(static_cast<float>(test_case.a), static_cast<float>(test_case.b), static_cast<float>(test_case.c));
     }
     rows.pad();
-    const NumberResults results = run_numbers(number_build(format), rows, false);
+    const NumberResults results = run_numbers(number_build(format), rows);
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const Case& test_case = cases[i];
         const auto expected = static_cast<float>(format.truncates ? test_case.truncated : test_case.nearest);

@@ -1,6 +1,7 @@
 // Makes the known answers of the number layer: rows with an operation, its operands, and the result that MPFR computes.
 // The operands are selected so that the rows of each operation cover every rounding feature.
 #pragma once
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -25,7 +26,16 @@ class AnswerMaker {
     AnswerMaker(Oracle& oracle, const NumberFormat& format) : oracle_(oracle), format_(format) {}
 
     float result(std::size_t operation, float a, float b, float c) {
-        return operation == kPower ? power(a, b) : oracle_result(oracle_, operation, a, b, c);
+        switch (operation) {
+            case kPower:
+                return power(a, b);
+            case kLog2:
+                return log2(a);
+            case kExp2:
+                return exp2(c);
+            default:
+                return oracle_result(oracle_, operation, a, b, c);
+        }
     }
 
     /// Returns the features of the row with these operands. Rows with the same features are redundant.
@@ -157,18 +167,20 @@ inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const
         for (std::size_t i = 0; i < kRandomRows; ++i) add(static_cast<std::uint32_t>(random.next() >> 40));
         return all;
     }
-    if (operation == kPower) {
+    // Rows x, n, y of x^n, log2(x) and 2^y.
+    if (operation == kPower || operation == kLog2 || operation == kExp2) {
+        const auto add = [&](float x, float n) { all.push_back({x, n, std::max(-n, -29.0F)}); };
         for (const float x : {1.0F, 0.75F, 0.0078125F, 2.0F})
-            for (const float n : {0.0F, 1.0F, 50.0F}) all.push_back({x, n, 1});
+            for (const float n : {0.0F, 1.0F, 50.0F}) add(x, n);
         // Near 0.71 the series of log2() is longest, and these two results depend on the last bits of its constants.
         if (format.is_fp32())
             for (const auto& [x, n] : {std::pair{0x1.6c4bbep-1F, 0x1.5468e6p+2F}, {0x1.777a48p-1F, 0x1.546ce2p+3F}})
-                all.push_back({x, n, 1});
+                add(x, n);
         const auto rounded = [&](double value) {
             return format.is_fp32() ? static_cast<float>(value) : round_to_format(value, format);
         };
         for (int i = 0; i < 8; ++i)
-            all.push_back({rounded(1 - std::ldexp(random.uniform(0, 1), -i)), rounded(random.uniform(1, 30)), 1});
+            add(rounded(1 - std::ldexp(random.uniform(0, 1), -i)), rounded(random.uniform(1, 30)));
         return all;
     }
     // Random operands come first, because their rows have more features. Special numbers add the missing features.
@@ -199,7 +211,8 @@ std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t 
         if (operation == kRound && (std::fpclassify(a) == FP_SUBNORMAL || std::isinf(a))) continue;
         if (operands < 2) b = 1;
         if (operands < 3) c = 1;
-        bool wanted = operation == kPower;  // all candidates of num_power are kept
+        if (operation == kExp2) a = b = 1;
+        bool wanted = operation == kPower || operation == kLog2 || operation == kExp2;  // all candidates are kept
         const std::set<std::string> features = maker.features(operation, a, b, c);
         for (const std::string& feature : features) wanted = wanted || seen[feature] < wanted_rows(feature);
         const std::array<std::uint32_t, 3> bits = {std::bit_cast<std::uint32_t>(a), std::bit_cast<std::uint32_t>(b),
@@ -217,7 +230,7 @@ template <class Oracle>
 FormatAnswers oracle_answers(Oracle& oracle, const NumberFormat& format) {
     AnswerMaker<Oracle> maker(oracle, format);
     FormatAnswers all{format, {}};
-    for (std::size_t k = 0; k < kAnsweredOperations; ++k) all.operations[k] = choose_answers(maker, k, format);
+    for (std::size_t k = 0; k < kNumberOperations.size(); ++k) all.operations[k] = choose_answers(maker, k, format);
     return all;
 }
 
