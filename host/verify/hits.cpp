@@ -34,27 +34,125 @@ PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
     return job;
 }
 
-// Returns `count` rays from random points in and around the scene to random points near its centre. `extent`: maximum
-// absolute coordinate in the scene. Directions have length 1. All numbers are rounded to the format.
-Rays random_rays(const NumberFormat& format, double extent, std::size_t count) {
+// Returns a point on the outline of a random sphere or polygon of the scene, as it is seen from `eye`.
+Vec3 random_outline_point(SplitMix& random, const Scene& scene, const Vec3& eye) {
+    const auto below = [&](std::size_t end) { return static_cast<std::size_t>(random.uniform(0, double(end))); };
+    const std::size_t i = below(scene.spheres.size() + scene.polygons.size());
+    if (i < scene.spheres.size()) {
+        const Sphere& s = scene.spheres[i];
+        const Vec3 to_eye = (eye - s.centre).normalized();
+        const Vec3 aside = to_eye.cross({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        return s.centre + std::abs(s.radius) * aside.normalized();
+    }
+    const std::vector<Vec3>& corners = scene.polygons[i - scene.spheres.size()].vertices;
+    const std::size_t k = below(corners.size());
+    return corners[k] + random.uniform(0, 1) * (corners[(k + 1) % corners.size()] - corners[k]);
+}
+
+// Returns `count` rays from random points in and around the scene, to outlines of objects or to random points near the
+// centre of the scene. Directions have length 1. All numbers are rounded to the format.
+Rays random_rays(const NumberFormat& format, const Scene& scene, std::size_t count, bool to_outlines) {
     constexpr std::uint64_t kSeed = 1986;
     SplitMix random(kSeed);
-    const auto rounded = [&](double x) {
-        return format.is_fp32() ? static_cast<float>(x) : round_to_format(x, format);
+    const double extent = scene_extent(scene);
+    const auto random_point = [&](double range) {
+        return Vec3(random.uniform(-range, range), random.uniform(-range, range), random.uniform(-range, range));
+    };
+    const auto rounded = [&](const Vec3& v) {
+        std::array<float, 3> all{};
+        for (int axis = 0; axis < 3; ++axis)
+            all[std::size_t(axis)] = format.is_fp32() ? static_cast<float>(v[axis]) : round_to_format(v[axis], format);
+        return all;
     };
     Rays rays;
     for (std::size_t i = 0; i < count; ++i) {
-        std::array<float, 3> origin{}, direction{};
-        Vec3 to_target{};
-        for (int axis = 0; axis < 3; ++axis) {
-            origin[std::size_t(axis)] = rounded(random.uniform(-extent, extent) * (i % 3 == 0 ? 0.3 : 1));
-            to_target[axis] = random.uniform(-0.3, 0.3) * extent - origin[std::size_t(axis)];
-        }
-        to_target.normalize();
-        for (int axis = 0; axis < 3; ++axis) direction[std::size_t(axis)] = rounded(to_target[axis]);
-        rays.add(origin, direction, kDefaultRayLimit);
+        const std::array<float, 3> origin = rounded(random_point(i % 3 == 0 ? 0.3 * extent : extent));
+        const Vec3 start(origin[0], origin[1], origin[2]);
+        const Vec3 target = to_outlines ? random_outline_point(random, scene, start) : random_point(0.3 * extent);
+        rays.add(origin, rounded((target - start).normalized()), kDefaultRayLimit);
     }
     return rays;
+}
+
+// Compares the hits of the first `count` rays. `describe(ray)` returns the description of a ray. If all hits are equal,
+// the verdict is a pass with the text `pass_text`; else it states the number of rays with a wrong hit, and the details
+// of the first such ray.
+Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
+                     const std::function<std::string(std::size_t)>& describe, const std::string& pass_text) {
+    std::size_t wrong_rays = 0, first_wrong = 0;
+    for (std::size_t i = count; i-- > 0;) {
+        if (got.objects[i] == expected.objects[i] && got.distances[i] == expected.distances[i]) continue;
+        ++wrong_rays;
+        first_wrong = i;
+    }
+    if (wrong_rays == 0) return passed(pass_text);
+    KnownWords objects(expected.objects.size()), distances(expected.distances.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        objects.set(i, expected.objects[i]);
+        distances.set(i, expected.distances[i]);
+    }
+    report_expected("objects", objects);
+    report_expected("distances", distances);
+    return failed(fmt::format("{} of {} rays wrong", wrong_rays, count),
+                  {.where = fmt::format("{}\n{}", describe(first_wrong), rays.text(first_wrong)),
+                   .expected = expected.text(first_wrong),
+                   .got = got.text(first_wrong)});
+}
+
+// Checks that each kernel in the build finds the known hits.
+Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {
+    const PackedJob job = job_with_grid(known.scene, runner.format());
+    Rays rays;
+    Hits expected;
+    for (const KnownHit& hit : known.hits) {
+        rays.add(hit.origin, hit.direction, hit.limit);
+        expected.objects.push_back(hit.object);
+        expected.distances.push_back(std::bit_cast<std::uint32_t>(hit.object == kNoObject ? hit.limit : hit.t));
+    }
+    rays.pad();
+    Verdict verdict;
+    std::vector<const char*> kernels = {"hits_without_accel"};
+    if (runner.grid()) kernels.push_back("hits_with_accel");
+    for (const char* kernel : kernels) {
+        const Hits got = find_hits(runner, kernel, job.words(), rays);
+        const auto describe = [&](std::size_t i) {
+            return fmt::format("{}: {} ({})", known.name, known.hits[i].description, kernel);
+        };
+        verdict =
+            compare_hits(expected, got, rays, known.hits.size(), describe,
+                         fmt::format("{} rays, {}without grid", known.hits.size(), runner.grid() ? "with and " : ""));
+        if (verdict.outcome != Outcome::kPass) break;
+    }
+    return verdict;
+}
+
+// A kernel that finds hits.
+struct HitFinder {
+    HitRunner& runner;
+    std::string kernel;
+};
+
+// Checks that `tested` finds the same hits as `reference` for `rays_per_scene` random rays in each scene.
+Verdict compare_finders(const HitFinder& reference, const HitFinder& tested, const std::string& difference,
+                        const std::vector<std::string>& scenes, std::size_t rays_per_scene, bool to_outlines) {
+    std::size_t hits = 0;
+    for (const std::string& name : scenes) {
+        const std::string file = fmt::format("scenes/{}.nff", name);
+        const Scene scene = parse_nff(embedded_files().at(file), file);
+        const PackedJob job = job_with_grid(scene, tested.runner.format());
+        const Rays rays = random_rays(tested.runner.format(), scene, rays_per_scene, to_outlines);
+        const Hits expected = find_hits(reference.runner, reference.kernel, job.words(), rays);
+        const Hits got = find_hits(tested.runner, tested.kernel, job.words(), rays);
+        const auto describe = [&](std::size_t i) {
+            return fmt::format("ray {} through {}, with {}", i, file, difference);
+        };
+        const Verdict verdict = compare_hits(expected, got, rays, rays_per_scene, describe, "");
+        if (verdict.outcome != Outcome::kPass) return verdict;
+        for (const std::uint32_t object : expected.objects) hits += object != kNoObject;
+    }
+    const std::size_t rays = scenes.size() * rays_per_scene;
+    if (hits < rays_per_scene) return failed(fmt::format("only {} of {} rays hit an object", hits, rays), {});
+    return passed(fmt::format("{} rays, {} hits, with and without {}", rays, hits, difference));
 }
 
 std::vector<std::string> hit_remedies(const std::vector<std::string>& lanes_remedies) {
@@ -105,73 +203,6 @@ std::string HitBuild::name() const {
 HitRunner::HitRunner(Session& session, const HitBuild& build)
     : CheckRunner(session, build_hit_program(session, build), build.lanes), format_(build.format), grid_(build.grid) {}
 
-Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
-                     const std::function<std::string(std::size_t)>& describe, const std::string& pass_text) {
-    std::size_t wrong_rays = 0, first_wrong = 0;
-    for (std::size_t i = count; i-- > 0;) {
-        if (got.objects[i] == expected.objects[i] && got.distances[i] == expected.distances[i]) continue;
-        ++wrong_rays;
-        first_wrong = i;
-    }
-    if (wrong_rays == 0) return passed(pass_text);
-    KnownWords objects(expected.objects.size()), distances(expected.distances.size());
-    for (std::size_t i = 0; i < count; ++i) {
-        objects.set(i, expected.objects[i]);
-        distances.set(i, expected.distances[i]);
-    }
-    report_expected("objects", objects);
-    report_expected("distances", distances);
-    return failed(fmt::format("{} of {} rays wrong", wrong_rays, count),
-                  {.where = fmt::format("{}\n{}", describe(first_wrong), rays.text(first_wrong)),
-                   .expected = expected.text(first_wrong),
-                   .got = got.text(first_wrong)});
-}
-
-Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {
-    const PackedJob job = job_with_grid(known.scene, runner.format());
-    Rays rays;
-    Hits expected;
-    for (const KnownHit& hit : known.hits) {
-        rays.add(hit.origin, hit.direction, hit.limit);
-        expected.objects.push_back(hit.object);
-        expected.distances.push_back(std::bit_cast<std::uint32_t>(hit.object == kNoObject ? hit.limit : hit.t));
-    }
-    rays.pad();
-    Verdict verdict;
-    std::vector<const char*> kernels = {"hits_without_accel"};
-    if (runner.grid()) kernels.push_back("hits_with_accel");
-    for (const char* kernel : kernels) {
-        const Hits got = find_hits(runner, kernel, job.words(), rays);
-        const auto describe = [&](std::size_t i) {
-            return fmt::format("{}: {} ({})", known.name, known.hits[i].description, kernel);
-        };
-        verdict =
-            compare_hits(expected, got, rays, known.hits.size(), describe,
-                         fmt::format("{} rays, {}without grid", known.hits.size(), runner.grid() ? "with and " : ""));
-        if (verdict.outcome != Outcome::kPass) break;
-    }
-    return verdict;
-}
-
-Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_per_scene) {
-    std::size_t hits = 0;
-    for (const std::string& name : scenes) {
-        const std::string file = fmt::format("scenes/{}.nff", name);
-        const Scene scene = parse_nff(embedded_files().at(file), file);
-        const PackedJob job = job_with_grid(scene, runner.format());
-        const Rays rays = random_rays(runner.format(), scene_extent(scene), rays_per_scene);
-        const Hits expected = find_hits(runner, "hits_without_accel", job.words(), rays);
-        const Hits got = find_hits(runner, "hits_with_accel", job.words(), rays);
-        const auto describe = [&](std::size_t i) { return fmt::format("ray {} through {}, with grid", i, file); };
-        const Verdict verdict = compare_hits(expected, got, rays, rays_per_scene, describe, "");
-        if (verdict.outcome != Outcome::kPass) return verdict;
-        for (const std::uint32_t object : expected.objects) hits += object != kNoObject;
-    }
-    const std::size_t rays = scenes.size() * rays_per_scene;
-    if (hits < rays_per_scene) return failed(fmt::format("only {} of {} rays hit an object", hits, rays), {});
-    return passed(fmt::format("{} rays, {} hits, with and without grid", rays, hits));
-}
-
 void verify_hits(Verification& v, const HitBuild& build) {
     const auto check = [&](const std::string& subject, const std::function<Verdict(HitRunner&)>& body) {
         v.check("geometry", fmt::format("{}, {}", subject, build.name()), [&](Session& session) {
@@ -184,7 +215,17 @@ void verify_hits(Verification& v, const HitBuild& build) {
     const std::size_t rays_per_scene = v.depth() == Depth::kBrief ? 128 : 4096;
     if (build.grid)
         check("grid", [&](HitRunner& runner) {
-            return check_grid_traversal(runner, {"polygons", "cones", "spheres"}, rays_per_scene);
+            return compare_finders({runner, "hits_without_accel"}, {runner, "hits_with_accel"}, "grid",
+                                   {"polygons", "cones", "spheres"}, rays_per_scene, false);
+        });
+    if (build.filter)
+        v.check("geometry", "filters, " + build.name(), [&](Session& session) {
+            HitBuild without = build;
+            without.filter = without.grid = false;
+            HitRunner reference(session, without), filtered(session, build);
+            const Verdict verdict = compare_finders({reference, "hits_without_accel"}, {filtered, "hits_without_accel"},
+                                                    "filters", {"polygons", "spheres"}, rays_per_scene, true);
+            return with_remedies(verdict, filtered.options(), hit_remedies(v.lanes_remedies(build.lanes)));
         });
 }
 
@@ -200,6 +241,12 @@ void verify_geometry(Verification& v) {
             filtered.filter = true;
             verify_hits(v, filtered);
         }
+    if (v.full())  // the filters' error bounds in a format that truncates
+        verify_hits(v, {.format = parse_format("e8m12t"),
+                        .lanes = v.lanes_or_default(),
+                        .filter = true,
+                        .grid = false,
+                        .sources = v.sources()});
 }
 
 }  // namespace raya

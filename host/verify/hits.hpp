@@ -1,5 +1,5 @@
 // Checks of ray-object intersections with kernels/checks/hits.cl. Known hits are calculated by hand. Hits that the grid
-// traversal finds are compared with the hits found by testing all objects.
+// traversal or the filters find are compared with the hits found by testing all objects.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -88,23 +88,10 @@ class HitRunner : public CheckRunner {
     bool grid_;
 };
 
-/// Compares the hits of the first `count` rays. `describe(ray)` returns the description of a ray. If all hits are
-/// equal, the verdict is a pass with the text `pass_text`; else the verdict states the number of rays with a wrong hit,
-/// and the details of the first such ray.
-Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
-                     const std::function<std::string(std::size_t)>& describe, const std::string& pass_text);
-
-/// Checks that each kernel in the build finds the known hits.
-Verdict check_known_hits(HitRunner& runner, const KnownScene& known);
-
-/// Checks, for `rays_per_scene` random rays in each scene, that the kernel with grid traversal finds the same hits as
-/// the kernel that tests all objects. `scenes`: names of files in scenes/, without extension. `rays_per_scene` must be
-/// a multiple of kMaxLanes. The build must include the grid traversal.
-Verdict check_grid_traversal(HitRunner& runner, const std::vector<std::string>& scenes, std::size_t rays_per_scene);
-
 class Verification;
 
-/// Adds the checks of one build to layer "geometry": known hits, and the grid traversal if the build has it.
+/// Adds the checks of one build to layer "geometry": known hits; the hits of random rays with and without grid, and
+/// with and without filters, if the build has them.
 void verify_hits(Verification& verification, const HitBuild& build);
 
 }  // namespace raya

@@ -21,7 +21,7 @@ KnownScene spheres() {
     Scene scene = empty_scene();
     scene.spheres = {ball(0), ball(32, 16, -5), ball(64), ball(64), ball(96), ball(96, 4, 2)};
     for (int i = 0; i < 30; ++i) scene.spheres.push_back(ball(200 + 16 * i));  // kernels test spheres in batches of 32
-    scene.spheres.push_back(ball(664, 12));  // in front of the previous sphere
+    scene.spheres.push_back(ball(664, 12));                                    // in front of the previous sphere
     return {"spheres",
             scene,
             {{"through the centre", {0, 0, 0}, kAhead, 0, 11},

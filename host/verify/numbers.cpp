@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 
 #include "host/cl/kernels.hpp"
-#include "host/embedded.hpp"
+#include "host/cl/measure.hpp"
 #include "host/model/unit_text.hpp"
-#include "host/verify/verdict.hpp"
 #include "host/verify/verify.hpp"
+#include "kernels/shared/chains.h"
 
 namespace raya {
 namespace {
@@ -61,29 +59,8 @@ Program build_number_program(Session& session, const NumberBuild& build) {
     KernelSources sources = build.sources;
     if (!build.optimised) sources.more_options.emplace_back("-cl-opt-disable");
     if (!build.trusted) sources.more_options.emplace_back(kNoBuiltins);
+    if (build.imprecise) sources.more_options.emplace_back("-DRAYA_IMPRECISE=1");
     return Kernels(session, options, sources).program("checks/numbers.cl");
-}
-
-constexpr std::uint32_t kOne = 0x3f800000;  // 1.0f
-
-constexpr const char* kHeading =
-    "# Known answers of the number layer, made by tests/verify/make_known_answers.cpp with MPFR: do not edit.\n"
-    "# A line \"FORMAT OPERATION\" starts a section. Each further line has the bits of the operands and of the "
-    "result:\n"
-    "# fp32 numbers in hexadecimal without trailing zeros.\n";
-
-std::size_t operation_number(const std::string& name) {
-    for (std::size_t k = 0; k < kNumberOperations.size(); ++k)
-        if (name == kNumberOperations[k].name) return k;
-    throw std::logic_error("known answers: no operation " + name);
-}
-
-KnownAnswer answer_of(const std::vector<std::string>& fields, const NumberOperation& operation) {
-    if (fields.size() != operation.operands + 1)
-        throw std::logic_error(fmt::format("known answers: {} fields for {}", fields.size(), operation.name));
-    KnownAnswer answer{{kOne, kOne, kOne}, word_of(fields.back())};
-    for (std::size_t k = 0; k < operation.operands; ++k) answer.operands[k] = word_of(fields[k]);
-    return answer;
 }
 
 }  // namespace
@@ -194,10 +171,50 @@ Verdict check_answers(Session& session, const NumberBuild& build, const FormatAn
 }
 
 void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t lanes, bool trusted) {
-    const NumberBuild build{.format = answers.format, .lanes = lanes, .trusted = trusted, .sources = v.sources()};
+    const NumberBuild build{.format = answers.format,
+                            .lanes = lanes,
+                            .trusted = trusted,
+                            .imprecise = !trusted && v.device().correctly_rounded_divide_sqrt,
+                            .sources = v.sources()};
     v.check("number", build.name(), [&](Session& session) {
         return check_answers(session, build, answers, number_remedies(build, v.device(), v.lanes_remedies(lanes)));
     });
+}
+
+// Returns the result of one work-item and lane of kernels/number/operations.cl in fp32.
+float result_of_chains(std::size_t kind, std::uint32_t rounds, float x) {
+    float sum = 0;
+    for (int k = 0; k < RAYA_CHAINS; ++k) {
+        float a = x + static_cast<float>(k);
+        for (std::uint32_t i = 0; i < rounds; ++i) {
+            const std::array<float, kOperations.size()> next = {x - a, a * x, std::fma(a, x * 0.5F, x), x / a,
+                                                                std::sqrt(a)};
+            a = next[kind];
+        }
+        sum += a;
+    }
+    return sum;
+}
+
+// Checks the results of the kernel that measures rates of operations.
+Verdict check_chains(Session& session, const KernelOptions& options, const KernelSources& sources) {
+    constexpr std::uint32_t kGroups = 3, kRounds = 5;
+    constexpr float kStart = 1.25F;
+    CheckRunner runner(session, Kernels(session, options, sources).program("number/operations.cl"));
+    for (std::size_t kind = 0; kind < kOperations.size(); ++kind) {
+        auto results = runner.constant("results", kGroups * options.lanes, -1.0F);
+        runner.run<cl_uint, cl_uint, float, Buffer<float>&>("operations", kGroups, 1, static_cast<cl_uint>(kind),
+                                                            kRounds, kStart, results);
+        const float expected = result_of_chains(kind, kRounds, kStart);
+        for (const float got : runner.read(results))
+            if (got != expected)
+                return failed(fmt::format("a chain of {} is wrong", kOperations[kind]),
+                              {.where = fmt::format("{} from {}, {} times", kOperations[kind], kStart, kRounds),
+                               .expected = fmt::format("{:.9g}", expected),
+                               .got = fmt::format("{:.9g}", got),
+                               .options = runner.options()});
+    }
+    return passed(fmt::format("{} operations", kOperations.size()));
 }
 
 // Returns true for a few formats that together cover every code path of the number layer: fp32, reduced formats with
@@ -217,6 +234,10 @@ void verify_numbers(Verification& v) {
         const bool promises_rounding = v.device().correctly_rounded_divide_sqrt || v.device().fused_multiply_add;
         if (v.full() && promises_rounding) verify_format(v, answers, v.lanes_or_default(), false);
     }
+    const KernelOptions options{.lanes = v.lanes_or_default()};
+    if (v.full())
+        v.check("number", "chains of bench, fp32, " + counted(options.lanes, "lane"),
+                [&](Session& session) { return check_chains(session, options, v.sources()); });
 }
 
 void verify_number_format(Verification& v, const NumberFormat& format, std::uint32_t lanes) {
@@ -226,48 +247,6 @@ void verify_number_format(Verification& v, const NumberFormat& format, std::uint
     const NumberBuild build{.format = format, .lanes = lanes};
     v.check("number", build.name(),
             [&](Session&) { return skipped(fmt::format("there are no stored results in {}", format_name(format))); });
-}
-
-std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
-    std::vector<FormatAnswers> all;
-    std::size_t operation = 0;
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
-        if (line.empty() || line[0] == '#') continue;
-        std::vector<std::string> fields;
-        std::istringstream in(line);
-        for (std::string field; in >> field;) fields.push_back(field);
-        // The name of a format contains a letter that is not a hexadecimal digit: the p of "fp32" or the m of "eXmY".
-        if (fields[0].find_first_of("mp") != std::string::npos && fields.size() == 2) {
-            const NumberFormat format = parse_format(fields[0]);
-            if (all.empty() || all.back().format != format) all.push_back({format, {}});
-            operation = operation_number(fields[1]);
-            continue;
-        }
-        if (all.empty()) throw std::logic_error("known answers: a line before the first section");
-        all.back().operations[operation].push_back(answer_of(fields, kNumberOperations[operation]));
-    }
-    return all;
-}
-
-std::string known_answers_text(const std::vector<FormatAnswers>& all) {
-    std::string text = kHeading;
-    for (const FormatAnswers& answers : all)
-        for (std::size_t k = 0; k < kNumberOperations.size(); ++k) {
-            text += fmt::format("{} {}\n", format_name(answers.format), kNumberOperations[k].name);
-            for (const KnownAnswer& answer : answers.operations[k]) {
-                for (std::size_t i = 0; i < kNumberOperations[k].operands; ++i)
-                    text += digits_of(answer.operands[i]) + ' ';
-                text += digits_of(answer.result) + '\n';
-            }
-        }
-    return text;
-}
-
-const std::vector<FormatAnswers>& known_answers() {
-    static const std::vector<FormatAnswers> all =
-        parse_known_answers(embedded_files().at("host/verify/known_answers.csv"));
-    return all;
 }
 
 }  // namespace raya

@@ -77,7 +77,8 @@ struct NumberBuild {
     std::uint32_t lanes = 1;
     bool trusted = true;    // use the device's division, square root and fma if the device promises correct rounding;
                             // false: refine their results
-    bool optimised = true;  // false: -cl-opt-disable
+    bool imprecise = false;  // simulate a device whose divisions and square roots have errors; needs `trusted` = false
+    bool optimised = true;   // false: -cl-opt-disable
     KernelSources sources{};
 
     /// Returns text such as "e6m15, 16 lanes, fallback code".

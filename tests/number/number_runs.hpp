@@ -32,6 +32,11 @@ inline NumberBuild number_build(const NumberFormat& format, std::uint32_t lanes 
     return {.format = format, .lanes = lanes};
 }
 
+/// Returns a build that refines divisions and square roots whose bits have errors of up to 3.
+inline NumberBuild refined_build(const NumberFormat& format, std::uint32_t lanes = widest_lanes()) {
+    return {.format = format, .lanes = lanes, .trusted = false, .imprecise = true};
+}
+
 /// Returns the results of NumberRunner::run() on the default device.
 inline NumberResults run_numbers(const NumberBuild& build, const NumberRows& rows) {
     Session session(choose_device(""));

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "tests/number/erring_device.hpp"
 #include "tests/number/oracle_results.hpp"
 #include "tests/number/random_operands.hpp"
 
