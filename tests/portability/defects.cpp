@@ -68,10 +68,10 @@ const std::vector<Defect> kDefects = {
      {{"rusticl", "llvmpipe", 0, true,
        "Mesa's llvmpipe crashes on an array inside a structure that is a kernel's argument"}}},
     {"struct_after_barrier",
-     64,
+     32,
      1,
-     64,
-     64,
+     32,
+     32,
      {{"Portable Computing Language", "driver 3.0", 5, false,
        "PoCL 3.0 takes a private structure of another work-item after a barrier"}}},
 };

@@ -8,9 +8,9 @@ typedef struct {
 
 __kernel void defect(
     __global uint *out,  // one per work-item
-    uint n               // number of work-items of the group, at most 64
+    uint n               // number of work-items of the group, at most 32
 ) {
-    __local packet packets[64];
+    __local packet packets[32];
     const uint item = get_local_id(0);
     for (uint i = 0; i < 16; ++i) packets[item].words[i] = 16 * item + i;
     barrier(CLK_LOCAL_MEM_FENCE);
