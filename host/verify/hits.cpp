@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <bit>
+#include <functional>
 
 #include "host/accel/partition.hpp"
 #include "host/cl/kernels.hpp"
@@ -56,7 +57,7 @@ Rays random_rays(const NumberFormat& format, const Scene& scene, std::size_t cou
     SplitMix random(kSeed);
     const double extent = scene_extent(scene);
     const auto random_point = [&](double range) {
-        return Vec3(random.uniform(-range, range), random.uniform(-range, range), random.uniform(-range, range));
+        return Vec3{random.uniform(-range, range), random.uniform(-range, range), random.uniform(-range, range)};
     };
     const auto rounded = [&](const Vec3& v) {
         std::array<float, 3> all{};
@@ -221,7 +222,7 @@ void verify_hits(Verification& v, const HitBuild& build) {
     if (build.filter)
         v.check("geometry", "filters, " + build.name(), [&](Session& session) {
             HitBuild without = build;
-            without.filter = without.grid = false;
+            without.filter = false;
             HitRunner reference(session, without), filtered(session, build);
             const Verdict verdict = compare_finders({reference, "hits_without_accel"}, {filtered, "hits_without_accel"},
                                                     "filters", {"polygons", "spheres"}, rays_per_scene, true);

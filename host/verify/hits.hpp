@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,7 +12,6 @@
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
 #include "host/verify/check_runner.hpp"
-#include "host/verify/verdict.hpp"
 
 namespace raya {
 

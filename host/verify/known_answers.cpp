@@ -1,7 +1,6 @@
 // The known answers of the number layer as text.
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
