@@ -16,6 +16,16 @@ void hits_without_accel(__global const uint* restrict job,
     store_bits(distances + first, 1, h.distance);
 }
 
+#if RAYA_FILTER
+// Stores the bits of the error bounds of the filters (geometry/filter_bounds.clh).
+__kernel __attribute__((reqd_work_group_size(1, 1, 1)))
+void filter_bounds(__global uint* restrict bounds) {
+    bounds[0] = as_uint(RAYA_ERROR);
+    bounds[1] = as_uint(RAYA_FLUSH);
+    bounds[2] = as_uint(RAYA_ROOM);
+}
+#endif
+
 #if RAYA_ACCEL != RAYA_ACCEL_NONE
 // Returns the nearest hits that the search finds; if `shadow` is 1, any hits.
 RAYA_KERNEL_BODY hit searched_hit(words job, const ray* r, int shadow) {
