@@ -245,8 +245,8 @@ void verify_hits(Verification& v, const HitBuild& build) {
             HitRunner reference(session, without), filtered(session, build);
             Verdict verdict = check_filter_bounds(filtered);
             if (verdict.outcome == Outcome::kPass)
-                verdict = compare_finders({reference, "hits_without_accel"}, {filtered, "hits_without_accel"}, "filters",
-                                          {"polygons", "spheres"}, rays_per_scene, true);
+                verdict = compare_finders({reference, "hits_without_accel"}, {filtered, "hits_without_accel"},
+                                          "filters", {"polygons", "spheres"}, rays_per_scene, true);
             return with_remedies(verdict, filtered.options(), hit_remedies(v.lanes_remedies(build.lanes)));
         });
 }

@@ -100,7 +100,7 @@ for options in "${exchanges[@]}"; do
 done
 [[ -z $thorough ]] || check_fault torus/inject.cl $'*next = end;\n        node_barrier();' "*next = end;" "data race" --machine torus --nodes 2x1x1
 [[ -z $thorough ]] || check_fault torus/route.cl $'goal = RAYA_STAYS;\n        node_barrier();' "goal = RAYA_STAYS;" "data race" --machine torus --nodes 2x1x1
-[[ -z $thorough ]] || check_fault torus/node.clh "starts[slot + 1] - first" "starts[slot + 1] + first" "Invalid write" --machine torus --nodes 2x1x1
+check_fault torus/node.clh "starts[slot + 1] - first" "starts[slot + 1] + first" "Invalid write" --machine torus --nodes 2x1x1
 check_fault torus/accept.cl $'vote(votes, goal);\n        node_barrier();' "vote(votes, goal);" "data race" --machine torus --nodes 2x1x1
 # Tests nodes with several work-items, rays that wait for free queue entries, and both values of --inject.
 size=6
