@@ -16,8 +16,8 @@ namespace {
 constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // values of the parameter `parts` of rounded()
 
 void check_count(const char* kind, int count) {
-    if (count < 1 || count > kMaxSpheres)
-        throw UserError(fmt::format("{}: {} spheres: must be 1..{}", kind, count, kMaxSpheres));
+    if (count < 1 || count > kMaxObjects)
+        throw UserError(fmt::format("{}: {} spheres: must be 1..{}", kind, count, kMaxObjects));
 }
 
 /// Returns a view of the cube [-1, 1]^3 from outside one of its corners. The cube fills most of the image.
