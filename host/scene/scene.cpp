@@ -1,5 +1,7 @@
 #include "host/scene/scene.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,6 +48,16 @@ void merge_equal_surfaces(Scene& scene) {
     renumber(scene.planes);
     renumber(scene.polygons);
     renumber(scene.cones);
+}
+
+void drop_objects(Scene& scene) {
+    scene.spheres = {};
+    scene.planes = {};
+    scene.polygons = {};
+    scene.cones = {};
+#ifdef __GLIBC__
+    malloc_trim(0);  // glibc keeps freed blocks of small size, which the vertices of polygons are
+#endif
 }
 
 Colour light_colour(const Scene& scene, const Light& light) {
