@@ -2,6 +2,7 @@
 // on the text before it, or has an error, is read again by the reader of the whole text, which therefore finds every
 // error where a reader without pieces finds it.
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "host/error.hpp"
@@ -38,6 +39,19 @@ std::vector<Piece> next_pieces(std::string_view text, std::size_t from, std::siz
     return pieces;
 }
 
+/// Moves the objects of a piece to the end of `objects`. `surface_of(i)`: new number of the piece's surface i.
+/// `pieces`: expected size of the whole text, in sizes of the text read so far.
+template <class Object, class SurfaceOf>
+void append_objects(std::vector<Object>& objects, std::vector<Object>& added, const SurfaceOf& surface_of,
+                    double pieces) {
+    for (Object& object : added) object.surface = surface_of(object.surface);
+    const std::size_t size = objects.size() + added.size();
+    // Doubling the capacity at the end of a large scene would take much more memory than it needs.
+    if (size > objects.capacity())
+        objects.reserve(static_cast<std::size_t>(static_cast<double>(size) * std::max(pieces, 1.125)));
+    std::move(added.begin(), added.end(), std::back_inserter(objects));
+}
+
 void read_piece(Piece& piece, std::string_view text, const std::string& name, bool lenient) {
     try {
         piece.reader.emplace(text, name, 1, lenient ? &piece.remarks : nullptr);
@@ -49,6 +63,35 @@ void read_piece(Piece& piece, std::string_view text, const std::string& name, bo
 }
 
 }  // namespace
+
+bool NffReader::adopt(NffReader& piece, const std::vector<NffRemark>& piece_remarks) {
+    if (checker_ || piece.has_copied_first_surface_ || (has_view_ && piece.has_view_) ||
+        (has_background_ && piece.has_background_))
+        return false;
+    for (const NffRemark& remark : piece_remarks)
+        add_remark(*remarks_, remark.what, remark.line + tokens_.peek().line - 1, remark.count);
+    if (piece.checker_) {
+        checker_ = piece.checker_;
+        checker_line_ = piece.checker_line_ + tokens_.peek().line - 1;
+    }
+    if (piece.has_view_) scene_.view = piece.scene_.view;
+    if (piece.has_background_) scene_.background = piece.scene_.background;
+    has_view_ |= piece.has_view_;
+    has_background_ |= piece.has_background_;
+    Scene& added = piece.scene_;
+    const int old_surface = current_surface_, first_new = static_cast<int>(scene_.surfaces.size()) - 1;
+    const auto surface_of = [&](int surface) { return surface == 0 ? old_surface : first_new + surface; };
+    current_surface_ = surface_of(piece.current_surface_);
+    tokens_.continue_after(piece.tokens_);
+    scene_.lights.insert(scene_.lights.end(), added.lights.begin(), added.lights.end());
+    scene_.surfaces.insert(scene_.surfaces.end(), added.surfaces.begin() + 1, added.surfaces.end());
+    const double pieces = static_cast<double>(tokens_.text().size()) / static_cast<double>(tokens_.next_at());
+    append_objects(scene_.spheres, added.spheres, surface_of, pieces);
+    append_objects(scene_.planes, added.planes, surface_of, pieces);
+    append_objects(scene_.polygons, added.polygons, surface_of, pieces);
+    append_objects(scene_.cones, added.cones, surface_of, pieces);
+    return true;
+}
 
 Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks,
                 const NffPieces& division) {
