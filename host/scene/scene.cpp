@@ -51,10 +51,11 @@ void merge_equal_surfaces(Scene& scene) {
 }
 
 void drop_objects(Scene& scene) {
-    scene.spheres = {};
-    scene.planes = {};
-    scene.polygons = {};
-    scene.cones = {};
+    // `= {}` would keep the vectors' memory.
+    scene.spheres = std::vector<Sphere>();
+    scene.planes = std::vector<Plane>();
+    scene.polygons = std::vector<Polygon>();
+    scene.cones = std::vector<Cone>();
 #ifdef __GLIBC__
     malloc_trim(0);  // glibc keeps freed blocks of small size, which the vertices of polygons are
 #endif
