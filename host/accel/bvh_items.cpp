@@ -74,10 +74,13 @@ void separate_large_items(BvhItems& objects) {
     Bounds whole = kEmptyBounds;
     for (const BvhItem& item : objects.items) extend(whole, item.box);
     const auto is_large = [&](const BvhItem& item) { return half_area(item.box) > kLargeArea * half_area(whole); };
-    const auto large = static_cast<std::size_t>(std::count_if(objects.items.begin(), objects.items.end(), is_large));
-    if (large > kMaxSeparate) return;
-    for (const BvhItem& item : objects.items)
-        if (is_large(item)) objects.separate.push_back(item.number);
+    std::vector<std::uint32_t> large;
+    for (const BvhItem& item : objects.items) {
+        if (is_large(item)) large.push_back(item.number);
+        if (large.size() > kMaxSeparate) return;
+    }
+    if (large.empty()) return;
+    objects.separate = std::move(large);
     std::erase_if(objects.items, is_large);
 }
 

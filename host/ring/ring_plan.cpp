@@ -132,7 +132,11 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
 }
 
 PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
-    PackedJob job = pack_job(scene, job_settings(settings, scale));
+    // More than most BVHs need. Without it, append_accel() would copy the job to other memory.
+    constexpr std::size_t kBvhWordsPerObject = 20;
+    JobSettings for_job = job_settings(settings, scale);
+    if (settings.accel.kind == AccelKind::kBvh) for_job.spare_words = kBvhWordsPerObject * scene.object_count();
+    PackedJob job = pack_job(scene, for_job);
     raya_job header = job.header();
     header.mapping = settings.mapping;
     job.set_header(header);

@@ -79,12 +79,12 @@ bool NffReader::adopt(NffReader& piece, const std::vector<NffRemark>& piece_rema
     has_view_ |= piece.has_view_;
     has_background_ |= piece.has_background_;
     Scene& added = piece.scene_;
-    const int old_surface = current_surface_, first_new = static_cast<int>(scene_.surfaces.size()) - 1;
-    const auto surface_of = [&](int surface) { return surface == 0 ? old_surface : first_new + surface; };
+    std::vector<int> numbers = {current_surface_};  // of the piece's surfaces; its first stands for the current one
+    for (std::size_t i = 1; i < added.surfaces.size(); ++i) numbers.push_back(number_of(added.surfaces[i]));
+    const auto surface_of = [&](int surface) { return numbers[static_cast<std::size_t>(surface)]; };
     current_surface_ = surface_of(piece.current_surface_);
     tokens_.continue_after(piece.tokens_);
     scene_.lights.insert(scene_.lights.end(), added.lights.begin(), added.lights.end());
-    scene_.surfaces.insert(scene_.surfaces.end(), added.surfaces.begin() + 1, added.surfaces.end());
     const double pieces = static_cast<double>(tokens_.text().size()) / static_cast<double>(tokens_.next_at());
     append_objects(scene_.spheres, added.spheres, surface_of, pieces);
     append_objects(scene_.planes, added.planes, surface_of, pieces);

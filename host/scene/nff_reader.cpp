@@ -148,8 +148,17 @@ void NffReader::read_surface() {
     if (surface.shine < 0) refuse(fmt::format("Shine is {}: must not be negative", surface.shine));
     if (surface.transmittance > 0 && surface.refraction_index <= 0)
         refuse(fmt::format("the index of refraction is {}: must be positive where T > 0", surface.refraction_index));
-    current_surface_ = static_cast<int>(scene_.surfaces.size());
-    scene_.surfaces.push_back(surface);
+    current_surface_ = number_of(surface);
+}
+
+int NffReader::number_of(const Surface& surface) {
+    constexpr std::ptrdiff_t kCompared = 64;
+    // The first surface is not compared: in a piece it stands for an unknown one.
+    const auto first = scene_.surfaces.begin() + 1, end = scene_.surfaces.end();
+    const auto equal = std::find(end - std::min(kCompared, end - first), end, surface);
+    const auto number = static_cast<int>(equal - scene_.surfaces.begin());
+    if (equal == end) scene_.surfaces.push_back(surface);
+    return number;
 }
 
 /// Returns the surface of a plane or polygon: the current surface, with the pending checker if there is one.
@@ -158,8 +167,7 @@ int NffReader::take_flat_surface() {
     has_copied_first_surface_ |= current_surface_ == 0;
     Surface surface = scene_.surfaces[static_cast<std::size_t>(current_surface_)];
     surface.checker = std::exchange(checker_, std::nullopt);
-    scene_.surfaces.push_back(surface);
-    return static_cast<int>(scene_.surfaces.size()) - 1;
+    return number_of(surface);
 }
 
 void NffReader::read_sphere() {

@@ -50,6 +50,9 @@ class NffReader {
     void read_background();
     void read_light();
     void read_surface();
+    /// Returns the number of the surface in the scene, to which it is added unless it is equal to one of the last
+    /// surfaces. Many files repeat a few surfaces millions of times.
+    int number_of(const Surface& surface);
     int take_flat_surface();
     void read_sphere();
     void read_flat_polygon() { read_polygon(false); }
