@@ -90,7 +90,9 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     settings.record_costs = command.record_costs || !command.cost.empty();
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     Session& session = run.session();
-    RingRenderer renderer(session, scene, settings, ranks);
+    RingRenderer renderer(session, scene, settings, ranks, [&] {
+        if (!command.frames.given()) drop_objects(input.scene);  // frames need them again
+    });
     if (ranks.is_first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     run.progress.stage("rendering");
     const CheckpointFile checkpoint(command.checkpoint);

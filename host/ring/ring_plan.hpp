@@ -1,6 +1,7 @@
 // Preparation of a render on a ring machine: the user's settings, the settings that raya chooses, and the packed scene.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "host/cl/commands.hpp"
@@ -73,7 +74,9 @@ PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const 
 /// Builds the accelerator of settings.accel, which must not be kNone, and appends it to the job.
 AccelSummary append_accel(PackedJob& job, const RingSettings& settings);
 
-/// Collective: rank 0 packs the scene and sends the job to all ranks. Other ranks do not use `scene`.
-RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks);
+/// Collective: rank 0 packs the scene, calls `packed` if it is not empty, and sends the job to all ranks. After the
+/// call of `packed` the scene's objects are not used. Other ranks do not use `scene`.
+RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks,
+                      const std::function<void()>& packed = {});
 
 }  // namespace raya

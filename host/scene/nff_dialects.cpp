@@ -92,13 +92,13 @@ MailHeader mail_header(std::string_view text) {
     return {at, static_cast<int>(std::max(count_of('\n'), count_of('\r')))};
 }
 
-void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line) {
+void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line, std::uint64_t count) {
     const auto equal_remark =
         std::find_if(remarks.begin(), remarks.end(), [&](const NffRemark& known) { return known.what == what; });
     if (equal_remark == remarks.end())
-        remarks.push_back({what, 1, line});
+        remarks.push_back({what, count, line});
     else
-        ++equal_remark->count;
+        equal_remark->count += count;
 }
 
 std::string remark_text(const std::string& file, const NffRemark& remark) {

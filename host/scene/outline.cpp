@@ -17,6 +17,10 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 void drop_repeats(Polygon& polygon) {
+    const auto& vertices = polygon.vertices;
+    if (!vertices.empty() && vertices.front() != vertices.back() &&
+        std::adjacent_find(vertices.begin(), vertices.end()) == vertices.end())
+        return;
     const Polygon original = std::exchange(polygon, {{}, {}, polygon.surface});
     const std::size_t count = original.vertices.size();
     for (std::size_t i = 0; i < count; ++i) {
