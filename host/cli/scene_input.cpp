@@ -33,7 +33,7 @@ void add_strict_option(CLI::App& command, bool& strict) {
 SceneInput read_scene(const std::string& file, bool strict) {
     SceneInput input;
     const auto warn_of_remarks = [&] {
-        for (const NffRemark& remark : input.remarks) input.warnings.add(remark_text(input_name(file), remark));
+        for (const SceneRemark& remark : input.remarks) input.warnings.add(remark_text(input_name(file), remark));
     };
     try {
         input.scene = read_nff(file, strict ? nullptr : &input.remarks);

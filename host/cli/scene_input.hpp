@@ -30,7 +30,7 @@ void add_strict_option(CLI::App& command, bool& strict);
 
 struct SceneInput {
     Scene scene;
-    std::vector<NffRemark> remarks;  // contents of the file that were skipped or changed
+    std::vector<SceneRemark> remarks;  // contents of the file that were skipped or changed
     Warnings warnings;
 };
 

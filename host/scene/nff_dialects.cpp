@@ -1,11 +1,8 @@
 #include "host/scene/nff_dialects.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 
-#include "host/scene/nff.hpp"
 #include "host/scene/nff_tokens.hpp"
 
 namespace raya {
@@ -90,20 +87,6 @@ MailHeader mail_header(std::string_view text) {
     const std::string_view header = text.substr(0, at);
     const auto count_of = [&](char c) { return std::count(header.begin(), header.end(), c); };
     return {at, static_cast<int>(std::max(count_of('\n'), count_of('\r')))};
-}
-
-void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line) {
-    const auto equal_remark =
-        std::find_if(remarks.begin(), remarks.end(), [&](const NffRemark& known) { return known.what == what; });
-    if (equal_remark == remarks.end())
-        remarks.push_back({what, 1, line});
-    else
-        ++equal_remark->count;
-}
-
-std::string remark_text(const std::string& file, const NffRemark& remark) {
-    const std::string total = remark.count > 1 ? fmt::format(" ({} in all)", remark.count) : "";
-    return fmt::format("{}:{}: {}{}", file, remark.line, remark.what, total);
 }
 
 }  // namespace raya

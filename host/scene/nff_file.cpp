@@ -85,7 +85,7 @@ class NffWriter {
 
 }  // namespace
 
-Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remarks) {
+Scene read_nff(const std::filesystem::path& path, std::vector<SceneRemark>* remarks) {
     std::string text;
     try {
         text = read_file(path, Pipes::kRead);

@@ -13,7 +13,6 @@
 #include "host/scene/nff_dialects.hpp"
 #include "host/scene/nff_tokens.hpp"
 #include "host/scene/outline.hpp"
-#include "host/scene/polygon.hpp"
 
 namespace raya {
 namespace {
@@ -25,7 +24,7 @@ constexpr int kMaxVertices = 1'000'000'000;
 
 class NffReader {
   public:
-    NffReader(std::string_view text, const std::string& name, int first_line, std::vector<NffRemark>* remarks)
+    NffReader(std::string_view text, const std::string& name, int first_line, std::vector<SceneRemark>* remarks)
         : tokens_(text, name, first_line), remarks_(remarks) {
         scene_.name = std::filesystem::path(name).filename().string();
         scene_.surfaces.emplace_back();  // for objects before the first `f`
@@ -203,32 +202,8 @@ class NffReader {
             remark_or_refuse("a normal of the patch is zero", "patch with a normal of 0, taken as a flat polygon");
             polygon.normals.clear();
         }
-        add_polygon(std::move(polygon));
-    }
-
-    void add_polygon(Polygon polygon) {
-        const OutlineCheck check = clean_outline(polygon);
-        // A triangle is flat by definition. If the check says otherwise, it is a sliver with almost no area, and it
-        // cannot be cut into triangles.
-        const bool is_sliver = check.fault == OutlineFault::kNotFlat && polygon.vertices.size() == 3;
-        if (check.fault == OutlineFault::kNoArea || check.fault == OutlineFault::kCrosses || (remarks_ && is_sliver))
-            return remark_or_refuse("the polygon " + check.reason, check.fault == OutlineFault::kCrosses
-                                                                       ? "polygon that " + check.reason + ", left out"
-                                                                       : "polygon without area, left out");
-        if (check.fault == OutlineFault::kNone) {
-            scene_.polygons.push_back(std::move(polygon));
-            return;
-        }
-        remark_or_refuse("the polygon " + check.reason, "polygon that is not flat, cut into triangles");
-        for (const std::array<int, 3>& corners : triangulate(polygon.vertices, newell_normal(polygon.vertices))) {
-            Polygon triangle{{}, {}, polygon.surface};
-            for (const int corner : corners) {
-                triangle.vertices.push_back(polygon.vertices[static_cast<std::size_t>(corner)]);
-                if (!polygon.normals.empty())
-                    triangle.normals.push_back(polygon.normals[static_cast<std::size_t>(corner)]);
-            }
-            add_polygon(std::move(triangle));
-        }
+        add_polygon(scene_, std::move(polygon),
+                    [&](const std::string& reason, const std::string& what) { remark_or_refuse(reason, what); });
     }
 
     void read_cone() {
@@ -275,7 +250,7 @@ class NffReader {
     }
 
     NffTokens tokens_;
-    std::vector<NffRemark>* remarks_;  // null: strict mode, in which every deviation is an error
+    std::vector<SceneRemark>* remarks_;  // null: strict mode, in which every deviation is an error
     Scene scene_;
     bool has_view_ = false, has_background_ = false;
     int current_surface_ = 0;
@@ -285,7 +260,7 @@ class NffReader {
 
 }  // namespace
 
-Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks) {
+Scene parse_nff(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks) {
     const MailHeader header = remarks ? mail_header(text) : MailHeader{};
     if (header.bytes > 0) add_remark(*remarks, "mail header before the scene, skipped", 1);
     return NffReader(text.substr(header.bytes), name, 1 + header.lines, remarks).read();

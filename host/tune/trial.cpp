@@ -51,7 +51,7 @@ struct TrialInput {
 Scene scene_of(const TrialSetup& render, const Variant& variant) {
     constexpr const char* kSpheres = "scenes/spheres.nff";
     constexpr int kLevel = 4;
-    std::vector<NffRemark> remarks;  // not printed: the parent process prints them
+    std::vector<SceneRemark> remarks;  // not printed: the parent process prints them
     if (!render.scene.empty()) return read_nff(render.scene, render.strict ? nullptr : &remarks);
     if (variant.accel != AccelKind::kNone) return generate_balls(kLevel);
     return parse_nff(embedded_files().at(kSpheres), kSpheres);
