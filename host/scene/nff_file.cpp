@@ -96,7 +96,10 @@ Scene read_nff(const std::filesystem::path& path, std::vector<SceneRemark>* rema
         const std::string_view format = foreign_format(text);
         if (format.empty()) throw;
         if (remarks) remarks->clear();
-        throw UserError(fmt::format("{}:1: this looks like {} file; raya reads NFF", input_name(path), format));
+        throw UserError(
+            fmt::format("{}:1: this looks like {} file; raya reads NFF, and meshes whose "
+                        "names end in .obj, .ply, .gltf, .glb or .stl",
+                        input_name(path), format));
     }
 }
 

@@ -76,7 +76,9 @@ TEST_CASE("the error for a file of another format names the format", "[dialects]
                           {"camera{location 0}", "a POV-Ray"}}) {
         CAPTURE(text);
         write_whole_file(file, text);
-        const std::string message = file + ":1: this looks like " + format + " file; raya reads NFF";
+        const std::string message =
+            file + ":1: this looks like " + format +
+            " file; raya reads NFF, and meshes whose names end in .obj, .ply, .gltf, .glb or .stl";
         CHECK_THROWS_WITH(read_nff(file), message);
         std::vector<SceneRemark> remarks;
         CHECK_THROWS_WITH(read_nff(file, &remarks), message);
