@@ -287,13 +287,12 @@ AccelSummary append_bvh(PackedJob& job, const NumberFormat& format) {
     std::vector<std::uint32_t> words(rows_at - bvh_at);
     put_record(words, 0, header);
     std::copy(objects.separate.begin(), objects.separate.end(), words.begin() + kWordsOf<raya_bvh>);
-    words.insert(words.end(), writer.words().begin(), writer.words().end());
-    job.append(words);
+    job.append(words, writer.words());
     raya_job new_header = job.header();
     new_header.accel_at = static_cast<std::uint32_t>(bvh_at);
     job.set_header(new_header);
     return {.kind = AccelKind::kBvh,
-            .words = words.size(),
+            .words = words.size() + writer.words().size(),
             .separate = header.separate,
             .nodes = tree.nodes.size(),
             .leaves = writer.leaves(),

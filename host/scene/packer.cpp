@@ -71,25 +71,36 @@ void pack_surface(JobWords& words, const Surface& s) {
     put_length(words, checker.size);
 }
 
-// A flat polygon of the packed scene: a whole polygon, or one triangle of a patch.
+// A flat polygon of the packed scene: a whole polygon, or one triangle of a patch. Small, because there are millions.
 struct Face {
     const Polygon* polygon;
-    std::vector<int> corners;  // indices of vertices
+    std::array<int, 3> triangle{0, 1, 2};  // indices of vertices
+    bool is_triangle = true;
+
+    std::size_t size() const { return is_triangle ? 3 : polygon->vertices.size(); }
+    std::size_t corner(std::size_t i) const { return is_triangle ? static_cast<std::size_t>(triangle[i]) : i; }
 };
 
 std::vector<Face> faces_of(const Scene& scene) {
     std::vector<Face> faces;
+    faces.reserve(scene.polygons.size());
     for (const Polygon& p : scene.polygons) {
         if (p.normals.empty() || p.vertices.size() == 3) {
-            Face whole{&p, {}};
-            for (int i = 0; i < static_cast<int>(p.vertices.size()); ++i) whole.corners.push_back(i);
-            faces.push_back(std::move(whole));
+            faces.push_back({.polygon = &p, .is_triangle = p.vertices.size() == 3});
         } else {
-            for (const auto& t : triangulate(p.vertices, newell_normal(p.vertices)))
-                faces.push_back({&p, {t[0], t[1], t[2]}});
+            for (const auto& triangle : triangulate(p.vertices, newell_normal(p.vertices)))
+                faces.push_back({.polygon = &p, .triangle = triangle});
         }
     }
     return faces;
+}
+
+// Number of words of pack_faces().
+std::size_t words_of(const std::vector<Face>& faces) {
+    std::size_t words = 0;
+    for (const Face& face : faces)
+        words += RAYA_POLYGON_WORDS + 4 * face.size() + (face.polygon->normals.empty() ? 0 : RAYA_PATCH_WORDS);
+    return words;
 }
 
 struct Point2 {
@@ -99,16 +110,16 @@ struct Point2 {
 Point2 outline_point(const Vec3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
 void pack_corners(JobWords& words, const Face& face) {
-    for (const int corner : face.corners) {
-        put_length(words, face.polygon->vertices[static_cast<std::size_t>(corner)]);
+    for (std::size_t i = 0; i < face.size(); ++i) {
+        put_length(words, face.polygon->vertices[face.corner(i)]);
         put(words, 0);
     }
 }
 
 // Appends the shading normal as a linear function of the outline's coordinates.
 void pack_patch(JobWords& words, const Face& face, int axis) {
-    const auto corner = [&](int i) { return outline_point(face.polygon->vertices[face.corners[i]], axis); };
-    const auto normal = [&](int i) { return face.polygon->normals[face.corners[i]]; };
+    const auto corner = [&](int i) { return outline_point(face.polygon->vertices[face.corner(i)], axis); };
+    const auto normal = [&](int i) { return face.polygon->normals[face.corner(i)]; };
     const Point2 a = corner(0);
     const Point2 b{corner(1).u - a.u, corner(1).v - a.v}, c{corner(2).u - a.u, corner(2).v - a.v};
     const Vec3 nb = normal(1) - normal(0), nc = normal(2) - normal(0);
@@ -122,17 +133,19 @@ void pack_patch(JobWords& words, const Face& face, int axis) {
 
 void pack_faces(JobWords& words, const std::vector<Face>& faces, const std::vector<std::uint32_t>& surface_at) {
     const std::size_t polygons_at = words.size();
+    words.reserve(polygons_at + words_of(faces));
+    JobWords record(words.format, words.unit);
     words.resize(polygons_at + faces.size() * RAYA_POLYGON_WORDS);
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const Polygon& polygon = *faces[i].polygon;
         const Vec3 normal = newell_normal(polygon.vertices).normalized();
         const int axis = dropped_axis(normal);
-        JobWords record(words.format, words.unit);
+        record.clear();
         put(record, normal);
         put_length(record, normal.dot(polygon.vertices[0]));
         record.push_back(surface_at[polygon.surface]);
         put_index(record, axis);
-        put_index(record, faces[i].corners.size());
+        put_index(record, faces[i].size());
         put_index(record, words.size());
         pack_corners(words, faces[i]);
         put_index(record, polygon.normals.empty() ? 0 : words.size());
@@ -210,8 +223,10 @@ void PackedJob::set_header(const raya_job& header) {
     put_record(words_, 0, header);
 }
 
-void PackedJob::append(const std::vector<std::uint32_t>& words) {
+void PackedJob::append(std::span<const std::uint32_t> words, std::span<const std::uint32_t> more) {
+    words_.reserve(words_.size() + words.size() + more.size());  // a growing vector would need more memory
     words_.insert(words_.end(), words.begin(), words.end());
+    words_.insert(words_.end(), more.begin(), more.end());
 }
 
 PackedJob pack_job(const Scene& scene, const JobSettings& settings) {

@@ -70,7 +70,8 @@ class PackedJob {
     bool has_cones() const { return header_.objects.cones > 0; }
 
     void set_header(const raya_job& header);
-    void append(const std::vector<std::uint32_t>& words);
+    /// Appends `words`, then `more`.
+    void append(std::span<const std::uint32_t> words, std::span<const std::uint32_t> more = {});
 
   private:
     raya_job header_;
