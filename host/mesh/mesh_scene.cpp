@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -26,6 +27,11 @@ bool is_point(const Vec3& v) {
 bool is_direction(const Vec3& v) { return is_point(v) && v != Vec3(0); }
 
 bool is_weight(double x) { return x >= 0 && x <= kMaxWeight; }
+
+/// Returns "mesh NAME, face NUMBER". Called only for messages, because a mesh has millions of faces.
+std::string place_of(const Mesh& mesh, std::uint64_t face) {
+    return (mesh.name.empty() ? "" : "mesh " + in_quotes(mesh.name) + ", ") + fmt::format("face {}", face);
+}
 
 bool all_equal(const std::vector<Vec3>& vectors) {
     return std::ranges::all_of(vectors, [&](const Vec3& v) { return v == vectors.front(); });
@@ -63,24 +69,25 @@ int MeshScene::add_surface(const std::string& name, const Surface& s) {
     return static_cast<int>(scene_.surfaces.size()) - 1;
 }
 
-Polygon MeshScene::polygon_of(const Mesh& mesh, std::size_t first_corner, std::size_t size, const std::string& place) {
+Polygon MeshScene::polygon_of(const Mesh& mesh, std::uint64_t face, std::size_t first_corner, std::size_t size) {
     Polygon polygon{{}, {}, mesh.surface};
     polygon.vertices.reserve(size);
     for (std::size_t i = first_corner; i < first_corner + size; ++i) {
         const std::uint32_t corner = mesh.corners[i];
         if (corner >= mesh.vertices.size())
-            refuse(fmt::format("{}: there is no vertex {}; the mesh has {}, numbered from 0", place, corner,
-                               mesh.vertices.size()));
+            refuse(fmt::format("{}: there is no vertex {}; the mesh has {}, numbered from 0", place_of(mesh, face),
+                               corner, mesh.vertices.size()));
         polygon.vertices.emplace_back(mesh.vertices[corner]);
         if (!mesh.normals.empty()) polygon.normals.emplace_back(mesh.normals[corner]);
     }
     if (!std::ranges::all_of(polygon.vertices, is_point)) {
-        remark_or_refuse(place, "a coordinate is not finite or above 1e30 in magnitude",
+        remark_or_refuse(place_of(mesh, face), "a coordinate is not finite or above 1e30 in magnitude",
                          "face with a coordinate that is not finite or above 1e30, left out");
         return {};
     }
     if (!std::ranges::all_of(polygon.normals, is_direction)) {
-        remark_or_refuse(place, "a normal is zero or not finite", "face with a normal of 0, taken as flat");
+        remark_or_refuse(place_of(mesh, face), "a normal is zero or not finite",
+                         "face with a normal of 0, taken as flat");
         polygon.normals.clear();
     }
     // Equal normals are those of flat shading. A flat polygon needs fewer words in a PE than a patch.
@@ -90,21 +97,17 @@ Polygon MeshScene::polygon_of(const Mesh& mesh, std::size_t first_corner, std::s
 }
 
 void MeshScene::add_face(const Mesh& mesh, std::uint64_t face, std::size_t first_corner, std::size_t size) {
-    const auto place = [&] {
-        return (mesh.name.empty() ? "" : "mesh " + in_quotes(mesh.name) + ", ") + fmt::format("face {}", face);
+    const auto report = [&](const std::string& reason, const std::string& what) {
+        remark_or_refuse(place_of(mesh, face), reason, what);
     };
-    if (size < 3) return remark_or_refuse(place(), "it is a point or a line", "point or line, left out");
-    Polygon polygon = polygon_of(mesh, first_corner, size, place());
+    if (size < 3) return report("it is a point or a line", "point or line, left out");
+    Polygon polygon = polygon_of(mesh, face, first_corner, size);
     if (polygon.vertices.empty()) return;
-    add_polygon(scene_, std::move(polygon),
-                [&](const std::string& reason, const std::string& what) { remark_or_refuse(place(), reason, what); });
+    add_polygon(scene_, std::move(polygon), std::cref(report));  // a copy would need memory for each face
     if (scene_.polygons.empty() || scene_.polygons.back().vertices.size() == 3) return;
     const Polygon whole = std::move(scene_.polygons.back());
     scene_.polygons.pop_back();
-    for (Polygon& triangle : triangles_of(whole))
-        add_polygon(scene_, std::move(triangle), [&](const std::string& reason, const std::string& what) {
-            remark_or_refuse(place(), reason, what);
-        });
+    for (Polygon& triangle : triangles_of(whole)) add_polygon(scene_, std::move(triangle), std::cref(report));
 }
 
 void MeshScene::add(const Mesh& mesh) {

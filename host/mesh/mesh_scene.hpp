@@ -51,7 +51,7 @@ class MeshScene {
   private:
     void remark_or_refuse(const std::string& place, const std::string& reason, const std::string& what);
     /// Returns the face's polygon, or one with fewer than three vertices if the face has been left out with a remark.
-    Polygon polygon_of(const Mesh& mesh, std::size_t first_corner, std::size_t size, const std::string& place);
+    Polygon polygon_of(const Mesh& mesh, std::uint64_t face, std::size_t first_corner, std::size_t size);
     void add_face(const Mesh& mesh, std::uint64_t face, std::size_t first_corner, std::size_t size);
 
     std::string file_;
