@@ -207,8 +207,8 @@ void add_bench_command(CLI::App& program) {
     const auto options = std::make_shared<BenchCommand>();
     add_short_help(*command, bench_short_help());
     OptionGroup group(*command, "Workload");
-    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
-             "Scene in NFF; -: stdin; default: 30 spheres and a plane, 512 x 512");
+    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE",
+             std::string(kSceneHelp) + "; default: 30 spheres and a plane, 512 x 512");
     add_render_options(*command, options->render, false);
     add_value(
         *command, "--variants", options->variants,

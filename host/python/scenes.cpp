@@ -151,9 +151,10 @@ void add_scenes(py::module_& module) {
                         [](const py::tuple& state) {
                             return parse_nff(state[1].cast<std::string>(), state[0].cast<std::string>());
                         }));
-    module.def("load", loaded, py::arg("path"), py::arg("strict") = false,
-               "Reads an NFF file. Skips unknown content with a warning unless strict. Raises ValueError with file, "
-               "line and reason.");
+    module.def(
+        "load", loaded, py::arg("path"), py::arg("strict") = false,
+        "Reads an NFF file or a mesh. Skips unknown content with a warning unless strict. Raises ValueError with file, "
+        "place and reason.");
     module.def(
         "example", example, py::arg("name"),
         "Returns one of the embedded scenes. name: 'centre', 'spheres', 'mirrors', 'glass', 'polygons', 'cones' or "

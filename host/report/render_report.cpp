@@ -4,16 +4,10 @@
 #include "host/base/json.hpp"
 #include "host/model/budget.hpp"
 #include "host/report/profile_table.hpp"
+#include "host/report/scene_report.hpp"
 
 namespace raya {
 namespace {
-
-Json skipped_json(const std::vector<NffRemark>& skipped) {
-    Json json = Json::array();
-    for (const NffRemark& remark : skipped)
-        json.push_back({{"what", remark.what}, {"count", remark.count}, {"line", remark.line}});
-    return json;
-}
 
 Json codes_json(const std::optional<CodeConversion>& codes) {
     if (!codes) return {};

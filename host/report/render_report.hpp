@@ -45,7 +45,7 @@ struct RenderReport {
     std::string raya;  // version of raya
     std::string scene;
     std::vector<std::string> warnings;  // the warnings on stderr
-    std::vector<NffRemark> skipped;     // entities of the scene file that were skipped
+    std::vector<SceneRemark> skipped;   // entities of the scene file that were skipped
 
     Json view;  // camera and lights after applying command-line options (view_json() in scene_report.hpp)
 

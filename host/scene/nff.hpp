@@ -17,7 +17,6 @@
 // required, in any order. `hither` does not change the image.
 #pragma once
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -25,22 +24,10 @@
 #include <vector>
 
 #include "host/base/parallel.hpp"
+#include "host/scene/remark.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {
-
-/// A remark on a part of a file that the reader has left out or changed. Equal remarks are stored once and counted.
-struct NffRemark {
-    std::string what;         // description: "polygon without area, left out"
-    std::uint64_t count = 0;  // number of equal remarks
-    int line = 0;             // line of the first occurrence
-};
-
-/// Adds a remark, or increments the count of the equal remark if there is one.
-void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line, std::uint64_t count = 1);
-
-/// Returns the remark as text: "FILE:LINE: polygon without area, left out (3 in all)".
-std::string remark_text(const std::string& file, const NffRemark& remark);
 
 /// How parse_nff() divides a long text. The result, errors and remarks do not depend on it.
 struct NffPieces {
@@ -56,12 +43,12 @@ struct NffPieces {
 /// objects without size and polygons without area, cuts polygons that are not flat into triangles, converts patches
 /// with a normal of 0 into polygons, and skips entities of other NFF dialects (la, lf, tt, ...) and a mail header.
 /// Prose, a missing view and a file without objects remain errors.
-Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks = nullptr,
+Scene parse_nff(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks = nullptr,
                 const NffPieces& pieces = {});
 
 /// Reads and parses a file; "-" reads from stdin, which is named "stdin" in messages. Throws UserError as parse_nff()
 /// does, and UserError "NAME: reason" if the file cannot be read.
-Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remarks = nullptr);
+Scene read_nff(const std::filesystem::path& path, std::vector<SceneRemark>* remarks = nullptr);
 
 /// Returns a scene as NFF text. Numbers have the minimum number of digits that round-trip, so parse_nff() of the text
 /// returns an equal scene if equal surfaces of `scene` are merged (merge_equal_surfaces()). Throws UserError for a

@@ -106,7 +106,7 @@ class NffWriter {
 
 }  // namespace
 
-Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remarks) {
+Scene read_nff(const std::filesystem::path& path, std::vector<SceneRemark>* remarks) {
     std::string text;
     try {
         text = read_file(path, Pipes::kRead);
@@ -117,7 +117,10 @@ Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remark
         const std::string_view format = foreign_format(text);
         if (format.empty()) throw;
         if (remarks) remarks->clear();
-        throw UserError(fmt::format("{}:1: this looks like {} file; raya reads NFF", input_name(path), format));
+        throw UserError(
+            fmt::format("{}:1: this looks like {} file; raya reads NFF, and meshes whose "
+                        "names end in .obj, .ply, .gltf, .glb or .stl",
+                        input_name(path), format));
     }
 }
 

@@ -16,7 +16,7 @@ namespace {
 struct Piece {
     std::size_t begin, end;            // its entities start at begin .. end - 1
     std::optional<NffReader> reader;   // after the piece; empty if the piece has an error
-    std::vector<NffRemark> remarks{};  // of the reader; their lines count from the start of the piece
+    std::vector<SceneRemark> remarks{};  // of the reader; their lines count from the start of the piece
 };
 
 /// Returns the index of the first line at or after `from` that may start with an entity of an object, or the length of
@@ -64,12 +64,12 @@ void read_piece(Piece& piece, std::string_view text, const std::string& name, bo
 
 }  // namespace
 
-bool NffReader::adopt(NffReader& piece, const std::vector<NffRemark>& piece_remarks) {
+bool NffReader::adopt(NffReader& piece, const std::vector<SceneRemark>& piece_remarks) {
     if (checker_ || piece.has_copied_first_surface_ || (has_view_ && piece.has_view_) ||
         (has_background_ && piece.has_background_))
         return false;
-    for (const NffRemark& remark : piece_remarks)
-        add_remark(*remarks_, remark.what, remark.line + tokens_.peek().line - 1, remark.count);
+    for (const SceneRemark& remark : piece_remarks)
+        add_remark(*remarks_, {remark.what, remark.count, remark.line + tokens_.peek().line - 1});
     if (piece.checker_) {
         checker_ = piece.checker_;
         checker_line_ = piece.checker_line_ + tokens_.peek().line - 1;
@@ -93,10 +93,10 @@ bool NffReader::adopt(NffReader& piece, const std::vector<NffRemark>& piece_rema
     return true;
 }
 
-Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks,
+Scene parse_nff(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks,
                 const NffPieces& division) {
     const MailHeader header = remarks ? mail_header(text) : MailHeader{};
-    if (header.bytes > 0) add_remark(*remarks, "mail header before the scene, skipped", 1);
+    if (header.bytes > 0) add_remark(*remarks, {.what = "mail header before the scene, skipped", .line = 1});
     NffReader reader(text.substr(header.bytes), name, 1 + header.lines, remarks);
     const NffTokens& tokens = reader.tokens();
     if (is_sense8_keyword(tokens.peek().text))

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "host/scene/outline.hpp"
-#include "host/scene/polygon.hpp"
 
 namespace raya {
 namespace {
@@ -20,7 +19,7 @@ constexpr int kMaxVertices = 1'000'000'000;
 
 }  // namespace
 
-NffReader::NffReader(std::string_view text, const std::string& name, int first_line, std::vector<NffRemark>* remarks)
+NffReader::NffReader(std::string_view text, const std::string& name, int first_line, std::vector<SceneRemark>* remarks)
     : tokens_(text, name, first_line), remarks_(remarks) {
     scene_.name = std::filesystem::path(name).filename().string();
     scene_.surfaces.emplace_back();  // for objects before the first `f`
@@ -43,7 +42,7 @@ Scene NffReader::finish() {
 /// the remark `what`; the caller then leaves the object out or repairs it.
 void NffReader::remark_or_refuse(std::string_view reason, const std::string& what) {
     if (!remarks_) refuse(reason);
-    add_remark(*remarks_, what, tokens_.entity_line());
+    add_remark(*remarks_, {.what = what, .line = tokens_.entity_line()});
 }
 
 Vec3 NffReader::read_vector(std::string_view what, double max) {
@@ -84,8 +83,8 @@ void NffReader::read_entity() {
         if (entity.keyword == keyword) return (this->*entity.read)();
     if (is_number) refuse(in_quotes(keyword) + " instead of an entity: does the previous one have too many numbers?");
     if (remarks_ && tokens_.skip_unknown())
-        return add_remark(*remarks_, "entity " + in_quotes(keyword) + " of another dialect, skipped",
-                          tokens_.entity_line());
+        return add_remark(*remarks_, {.what = "entity " + in_quotes(keyword) + " of another dialect, skipped",
+                                      .line = tokens_.entity_line()});
     refuse("unknown entity " + in_quotes(keyword) + "; NFF has v b l f s p pp c");
 }
 
@@ -198,31 +197,8 @@ void NffReader::read_polygon(bool patch) {
         remark_or_refuse("a normal of the patch is zero", "patch with a normal of 0, taken as a flat polygon");
         polygon.normals.clear();
     }
-    add_polygon(std::move(polygon));
-}
-
-void NffReader::add_polygon(Polygon polygon) {
-    const OutlineCheck check = clean_outline(polygon);
-    // A triangle is flat by definition. If the check says otherwise, it is a sliver with almost no area, and it
-    // cannot be cut into triangles.
-    const bool is_sliver = check.fault == OutlineFault::kNotFlat && polygon.vertices.size() == 3;
-    if (check.fault == OutlineFault::kNoArea || check.fault == OutlineFault::kCrosses || (remarks_ && is_sliver))
-        return remark_or_refuse("the polygon " + check.reason, check.fault == OutlineFault::kCrosses
-                                                                   ? "polygon that " + check.reason + ", left out"
-                                                                   : "polygon without area, left out");
-    if (check.fault == OutlineFault::kNone) {
-        scene_.polygons.push_back(std::move(polygon));
-        return;
-    }
-    remark_or_refuse("the polygon " + check.reason, "polygon that is not flat, cut into triangles");
-    for (const std::array<int, 3>& corners : triangulate(polygon.vertices, newell_normal(polygon.vertices))) {
-        Polygon triangle{{}, {}, polygon.surface};
-        for (const int corner : corners) {
-            triangle.vertices.push_back(polygon.vertices[static_cast<std::size_t>(corner)]);
-            if (!polygon.normals.empty()) triangle.normals.push_back(polygon.normals[static_cast<std::size_t>(corner)]);
-        }
-        add_polygon(std::move(triangle));
-    }
+    add_polygon(scene_, std::move(polygon),
+                [&](const std::string& reason, const std::string& what) { remark_or_refuse(reason, what); });
 }
 
 void NffReader::read_cone() {

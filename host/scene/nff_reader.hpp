@@ -18,7 +18,7 @@ class NffReader {
   public:
     /// Starts before the first token of `text`, which must outlive this object. `remarks`: null in strict mode, in
     /// which every deviation is an error.
-    NffReader(std::string_view text, const std::string& name, int first_line, std::vector<NffRemark>* remarks);
+    NffReader(std::string_view text, const std::string& name, int first_line, std::vector<SceneRemark>* remarks);
 
     /// Skips to the first token at or after `position`, and takes its line as line 1.
     void start_at(std::size_t position) { tokens_.start_at(position); }
@@ -29,7 +29,7 @@ class NffReader {
     /// Adds what `piece` has read, and continues where it ended. `piece` must have started where this reader is, at an
     /// entity, and `piece_remarks` are its remarks. Changes nothing and returns false if reading the piece's entities
     /// with this reader could give another scene or an error.
-    bool adopt(NffReader& piece, const std::vector<NffRemark>& piece_remarks);
+    bool adopt(NffReader& piece, const std::vector<SceneRemark>& piece_remarks);
 
     /// Returns the scene, after the last entity. Throws UserError if it is incomplete.
     Scene finish();
@@ -58,14 +58,13 @@ class NffReader {
     void read_flat_polygon() { read_polygon(false); }
     void read_patch() { read_polygon(true); }
     void read_polygon(bool patch);
-    void add_polygon(Polygon polygon);
     void read_cone();
     void read_directive();
     void read_plane();
     void read_checker();
 
     NffTokens tokens_;
-    std::vector<NffRemark>* remarks_;
+    std::vector<SceneRemark>* remarks_;
     Scene scene_;
     bool has_view_ = false, has_background_ = false;
     int current_surface_ = 0;

@@ -75,6 +75,22 @@ OutlineCheck clean_outline(Polygon& polygon) {
     return {};
 }
 
+void add_polygon(Scene& scene, Polygon polygon, const RemarkOrRefuse& report) {
+    const OutlineCheck check = clean_outline(polygon);
+    if (check.fault == OutlineFault::kNone) {
+        scene.polygons.push_back(std::move(polygon));
+        return;
+    }
+    if (check.fault == OutlineFault::kCrosses)
+        return report("the polygon " + check.reason, "polygon that " + check.reason + ", left out");
+    // A triangle is flat by definition. If the check says otherwise, it is a sliver with almost no area, and it cannot
+    // be cut into triangles.
+    if (check.fault == OutlineFault::kNoArea || polygon.vertices.size() == 3)
+        return report("the polygon " + check.reason, "polygon without area, left out");
+    report("the polygon " + check.reason, "polygon that is not flat, cut into triangles");
+    for (const Polygon& triangle : triangles_of(polygon)) add_polygon(scene, triangle, report);
+}
+
 std::string view_error(const View& view) {
     constexpr double kMinUpSine = 1e-6;  // minimum sine of the angle between viewing direction and up
     const Vec3 gaze = view.at - view.from;

@@ -27,13 +27,13 @@ struct Reading {
 
 Reading reading_of(const std::string& text, bool lenient, const NffPieces& pieces) {
     Reading reading;
-    std::vector<NffRemark> remarks;
+    std::vector<SceneRemark> remarks;
     try {
         reading.scene = parse_nff(text, "m.nff", lenient ? &remarks : nullptr, pieces);
     } catch (const UserError& error) {
         reading.error = error.what();
     }
-    for (const NffRemark& remark : remarks) reading.remarks.push_back(remark_text("m.nff", remark));
+    for (const SceneRemark& remark : remarks) reading.remarks.push_back(remark_text("m.nff", remark));
     return reading;
 }
 
