@@ -96,8 +96,8 @@ __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1))) void reverse_wo
     __global const uint* restrict input,  // [group][words]
     const uint words,                     // number of words of a work-group
     const uint repeats,
-    __local uint* restrict buffers,  // [2][words]
-    __local uint* restrict counter,  // [1]
+    __local uint* buffers,           // [2][words]
+    __local uint* counter,           // [1]
     __global uint* restrict output,  // [group][words]
     __global uint* restrict draws)   // [group][words]: the kernel adds 1 to a number's element each
                                      // time that the number is drawn

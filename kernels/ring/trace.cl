@@ -112,7 +112,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
            __global float* restrict pixels,          // [PE][3][capacity]: linear rgb; also read in supersampling
            __global ulong* restrict cycles,          // [PE][capacity]: modelled cycles of the pixels of this pass
            __global ulong* restrict events,          // [PE][work-item][RAYA_EVENTS]: number of events so far
-           __global raya_trace_progress* restrict progress,  // [PE]: on entry the progress before this launch, on
+           __global raya_trace_progress* progress,           // [PE]: on entry the progress before this launch, on
                                                              // return that after it
            __global uint* restrict saved)            // state of unfinished trees (kernels/ring/saved_trees.clh)
 {

@@ -30,18 +30,18 @@ static inline uint accept_rays(__global uint* inbox, ray_queue* queue, vote_word
     uint taken = 0, left = 0;
     for (uint first = 0; first < waiting; first += RAYA_GROUP) {
         const uint slot = first + item;
-        raya_packet packet = rays[min(slot, waiting - 1)];
+        ray_words packet = load_ray(rays + min(slot, waiting - 1));
         const uint free_slots =
-            queue->tight ? 0 : raya_slots_for_packet(queue->new_packets, RAYA_BOUNCES, packet.head.state);
+            queue->tight ? 0 : raya_slots_for_packet(queue->new_packets, RAYA_BOUNCES, state_of(packet.lo));
         const int fits = queue->used + taken + item + 1 + free_slots <= queue->capacity;
         const uint goal = slot >= waiting ? RAYA_NOTHING : fits ? RAYA_TAKEN : RAYA_LEFT_THERE;
         vote(votes, goal);
         node_barrier();
         const uint position = votes_before(votes, goal);
         // The packet may overwrite its new slot, because this or an earlier iteration has read that slot.
-        if (goal == RAYA_LEFT_THERE) rays[left + position] = packet;
-        packet.head.state &= ~RAYA_STATE_FRESH;
-        if (goal == RAYA_TAKEN) queue->packets[queue->used + taken + position] = packet;
+        if (goal == RAYA_LEFT_THERE) store_ray(rays + left + position, packet);
+        packet.lo = without_flag(packet.lo, RAYA_STATE_FRESH);
+        if (goal == RAYA_TAKEN) store_ray(queue->packets + queue->used + taken + position, packet);
         taken += votes_for(votes, RAYA_TAKEN, goal);
         left += votes_for(votes, RAYA_LEFT_THERE, goal);
         node_barrier();
@@ -62,16 +62,15 @@ static inline uint forward_returns(__global uint* inbox, __global raya_head* to,
     const uint item = get_local_id(0), waiting = inbox[0], moves = min(waiting, capacity - used);
     *left = waiting - moves;
     for (uint i = item; i < moves; i += RAYA_GROUP) {
-        raya_head packet = returns[i];
-        packet.state &= ~RAYA_STATE_FRESH;
-        to[used + i] = packet;
-        if (packet.state & RAYA_STATE_CHARGED) shared_add(charged, 1);
+        const head_words packet = load_head(returns + i);
+        store_head(to + used + i, without_flag(packet, RAYA_STATE_FRESH));
+        if (state_of(packet) & RAYA_STATE_CHARGED) shared_add(charged, 1);
     }
     for (uint first = 0; moves > 0 && first < *left; first += RAYA_GROUP) {
         const uint i = first + item;
-        const raya_head packet = returns[moves + min(i, *left - 1)];
+        const head_words packet = load_head(returns + moves + min(i, *left - 1));
         node_barrier();
-        if (i < *left) returns[i] = packet;
+        if (i < *left) store_head(returns + i, packet);
         node_barrier();
     }
     return moves;
@@ -90,13 +89,13 @@ void accept(__global const uint* restrict memories,     // the words of all node
             const uint work,                            // maximum work of a node in a launch, batches of L packets, > 0
             const uint resume,                          // 1: continues where the last launch ended
             __local uint* local_words,                  // RAYA_ACCEPT_WORDS
-            __global raya_packet* restrict queues,      // [node][queue]
-            __global uint* restrict inboxes,            // of rays (kernels/shared/traffic.h)
-            __global uint* restrict return_inboxes,
-            __global uint* restrict return_outboxes,
-            __global raya_head* restrict returns,       // [run->host]: returns that have reached the root
-            __global uint* restrict status,             // [node][RAYA_STATUS_WORDS]
-            __global ulong* restrict ended)             // [node][RAYA_KINDS]: number of packets ended so far
+            __global raya_packet* queues,               // [node][queue]
+            __global uint* inboxes,                     // of rays (kernels/shared/traffic.h)
+            __global uint* return_inboxes,
+            __global uint* return_outboxes,
+            __global raya_head* returns,                // [run->host]: returns that have reached the root
+            __global uint* status,                      // [node][RAYA_STATUS_WORDS]
+            __global ulong* ended)                      // [node][RAYA_KINDS]: number of packets ended so far
 {
     const uint slot = node_slot(first_node), item = get_local_id(0), nodes = run->nodes, box = run->box;
     __global const raya_node* const header = (__global const raya_node*)(memories + starts[slot]);

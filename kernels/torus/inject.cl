@@ -120,11 +120,11 @@ void inject(__global const uint* restrict memories,  // for parameters without a
             const uint resume,
             __local uint* local_words,               // RAYA_INJECT_WORDS words, followed by the words of a node
                                                      // if RAYA_WORDS_LOCAL is 1
-            __global raya_packet* restrict queues,
-            __global uint* restrict status,
-            __global ulong* restrict events,
-            __global ulong* restrict made,
-            __global ulong* restrict ended)
+            __global raya_packet* queues,
+            __global uint* status,
+            __global ulong* events,
+            __global ulong* made,
+            __global ulong* ended)
 {
     const uint slot = node_slot(first_node), item = get_local_id(0), capacity = run->queue;
     injection to;

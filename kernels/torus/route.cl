@@ -14,12 +14,12 @@
 #include "kernels/torus/moves.clh"
 
 // Returns the goal of a packet in this node's queue (kernels/shared/node_counts.h).
-static inline uint goal_of(const node* n, const raya_head* packet) {
-    const uint kind = raya_state_kind(packet->state);
+static inline uint goal_of(const node* n, head_words packet) {
+    const uint kind = raya_state_kind(state_of(packet));
     if (kind == RAYA_KIND_NONE) return RAYA_GONE;
     if (kind == RAYA_KIND_RETURN) return RAYA_TO_ROOT;
-    if (packet->voxel == RAYA_NO_VOXEL) return RAYA_STAYS;
-    const raya_place voxel = raya_unpack_place(packet->voxel);
+    if (voxel_of(packet) == RAYA_NO_VOXEL) return RAYA_STAYS;
+    const raya_place voxel = raya_unpack_place(voxel_of(packet));
     if (holds_voxel(n, voxel)) return RAYA_STAYS;
     const raya_place to = holder_of(n, voxel);
     return raya_next_link(n->torus, n->number, raya_node_of(n->torus, to.at[0], to.at[1], to.at[2]));
@@ -44,12 +44,12 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
            const uint resume,                        // 1: continues where the last launch ended
            __local uint* local_words,                // RAYA_ROUTE_WORDS words, followed by the words of a node
                                                      // if RAYA_WORDS_LOCAL is 1
-           __global raya_packet* restrict queues,    // [node][queue]
-           __global uint* restrict outboxes,         // of rays (kernels/shared/traffic.h)
-           __global uint* restrict return_outboxes,
-           __global raya_head* restrict returns,     // [run->host]: returns that have reached the root
-           __global uint* restrict status,           // [node][RAYA_STATUS_WORDS]
-           __global ulong* restrict ended)           // [node][RAYA_KINDS]: number of packets ended so far
+           __global raya_packet* queues,             // [node][queue]
+           __global uint* outboxes,                  // of rays (kernels/shared/traffic.h)
+           __global uint* return_outboxes,
+           __global raya_head* returns,              // [run->host]: returns that have reached the root
+           __global uint* status,                    // [node][RAYA_STATUS_WORDS]
+           __global ulong* ended)                    // [node][RAYA_KINDS]: number of packets ended so far
 {
     const uint slot = node_slot(first_node), item = get_local_id(0), nodes = run->nodes, box = run->box;
     volatile __local uint *const used = local_words, *const charged = used + RAYA_GOALS;
@@ -77,8 +77,8 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
     node_barrier();
     for (uint first = start; first < end; first += RAYA_GROUP) {
         const uint at = first + item;
-        const raya_packet packet = queue[min(at, end - 1)];
-        uint goal = at < end ? goal_of(&n, &packet.head) : RAYA_GONE;
+        const ray_words packet = load_ray(queue + min(at, end - 1));
+        uint goal = at < end ? goal_of(&n, packet.lo) : RAYA_GONE;
         vote(votes, goal);
         node_barrier();
         const uint limit = goal < RAYA_TO_ROOT ? box : goal == RAYA_TO_ROOT ? returns_limit : UINT_MAX;
@@ -88,11 +88,11 @@ void route(__global const uint* restrict memories,   // as in trace_voxel
         node_barrier();
         const uint to = used[goal] + votes_before(votes, goal);
         // The packet may overwrite slot `to` of the queue, because this or an earlier iteration has read that slot.
-        if (goal == RAYA_STAYS) queue[to] = packet;
-        if (goal == RAYA_TO_ROOT) return_target[to] = packet.head;
-        if (goal == RAYA_TO_ROOT && packet.head.state & RAYA_STATE_CHARGED) shared_add(charged, 1);
+        if (goal == RAYA_STAYS) store_ray(queue + to, packet);
+        if (goal == RAYA_TO_ROOT) store_head(return_target + to, packet.lo);
+        if (goal == RAYA_TO_ROOT && state_of(packet.lo) & RAYA_STATE_CHARGED) shared_add(charged, 1);
         if (goal < RAYA_LINKS)
-            rays_in(outboxes + raya_box_at(goal, nodes, slot, box, RAYA_PACKET_WORDS))[to] = packet;
+            store_ray(rays_in(outboxes + raya_box_at(goal, nodes, slot, box, RAYA_PACKET_WORDS)) + to, packet);
         node_barrier();
         count_votes(used, votes, goal);
         node_barrier();

@@ -151,12 +151,12 @@ void trace_voxel(__global const uint* restrict memories,  // the words of all no
                  const uint resume,                       // 1: continues where the last launch ended
                  __local uint* local_words,               // RAYA_COUNT_WORDS words, followed by the words of a
                                                           // node if RAYA_WORDS_LOCAL is 1
-                 __global raya_packet* restrict queues,   // [node][queue]
-                 __global uint* restrict status,          // [node][RAYA_STATUS_WORDS]
-                 __global ulong* restrict events,         // [node][RAYA_EVENTS]: number of events so far
-                 __global ulong* restrict made,           // [node][RAYA_KINDS]: number of packets made so far
-                 __global ulong* restrict ended,          // [node][RAYA_KINDS]: number of packets ended so far
-                 __global raya_processed* restrict processed) // [node][queue]; unused if RAYA_COSTS is 0
+                 __global raya_packet* queues,            // [node][queue]
+                 __global uint* status,                   // [node][RAYA_STATUS_WORDS]
+                 __global ulong* events,                  // [node][RAYA_EVENTS]: number of events so far
+                 __global ulong* made,                    // [node][RAYA_KINDS]: number of packets made so far
+                 __global ulong* ended,                   // [node][RAYA_KINDS]: number of packets ended so far
+                 __global raya_processed* processed)      // [node][queue]; unused if RAYA_COSTS is 0
 {
     const uint slot = node_slot(first_node), item = get_local_id(0);
     status += (size_t)slot * RAYA_STATUS_WORDS;

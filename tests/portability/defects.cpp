@@ -25,7 +25,7 @@ namespace {
 using namespace raya;
 
 struct KnownFailure {
-    std::string platform, device;  // substrings of the names of platform and device; empty: any
+    std::string platform, device;  // substrings of the names of platform and of "DEVICE, driver VERSION"; empty: any
     cl_uint wrong = 0;             // the wrong result of each work-item
     bool crashes = false;          // true: a signal ends the process, without a result
     std::string reason;
@@ -67,6 +67,13 @@ const std::vector<Defect> kDefects = {
      20,
      {{"rusticl", "llvmpipe", 0, true,
        "Mesa's llvmpipe crashes on an array inside a structure that is a kernel's argument"}}},
+    {"struct_after_barrier",
+     64,
+     1,
+     64,
+     64,
+     {{"Portable Computing Language", "driver 3.0", 5, false,
+       "PoCL 3.0 takes a private structure of another work-item after a barrier"}}},
 };
 
 // Runs the kernel. Returns the first wrong result, or the correct one.
@@ -97,7 +104,7 @@ std::string text_of(const Defect& defect) {
 // Returns true if the failure is known for this device.
 bool occurs_on(const KnownFailure& known, const DeviceInfo& device) {
     return device.platform.find(known.platform) != std::string::npos &&
-           device.name.find(known.device) != std::string::npos;
+           (device.name + ", driver " + device.driver).find(known.device) != std::string::npos;
 }
 
 /// Prints the output line for a defect of `device`, the device of `session`; returns true if the result is right or an
