@@ -57,6 +57,7 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
         report.machine.fold = settings.mapping.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic";
         report.machine.offset = settings.mapping.parameter;
     }
+    report.counted = settings.counts;
     report.events = result.all.events;
     report.load = result.all.load;
     report.requests = result.requests;
@@ -88,6 +89,7 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     const Scene& scene = input.scene;
     RingSettings settings = ring_settings(run.options, scene);
     settings.record_costs = command.record_costs || !command.cost.empty();
+    settings.counts = command.needs_counts() || settings.dynamic.has_value();
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     Session& session = run.session();
     RingRenderer renderer(session, scene, settings, ranks, [&] {

@@ -78,6 +78,7 @@ struct RenderReport {
         std::string tuned;  // source of lanes, group and related options: "defaults", "options", "FILE, DATE"
     } device;
 
+    bool counted = true;  // false: only rays and their hits were counted, so loads and modelled times are missing
     EventCounts events{};
     std::optional<std::uint64_t> requests;            // number of pixel requests; empty: scheduling was static
     Load load;                                        // loads summed over all phases

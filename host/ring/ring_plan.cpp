@@ -128,6 +128,7 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
             .cones = job.has_cones(),
+            .counts = settings.counts,
             .tuning = settings.kernels.tuning};
 }
 

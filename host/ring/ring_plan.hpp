@@ -28,6 +28,9 @@ struct RingSettings {
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     Antialias antialias;
+    // Count all events, from which loads and modelled times follow. If false, kernels count only rays and their hits,
+    // and are faster: with a BVH, rays may be tested together.
+    bool counts = true;
     bool record_costs = false;  // record each pixel's cost, which takes 8 bytes of host memory; implied by `dynamic`
     Accel accel;
     KernelChoice kernels;

@@ -148,7 +148,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     const save_cursor last_state = open_save_cursor(saved, 1), new_state = open_save_cursor(saved, 0);
     if (trace_share(scene, &store, &mine->next, work, last_state, new_state, resumes)) atomic_inc(&mine->left);
     __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
-    for (uint e = 0; e < RAYA_EVENTS; ++e) counted[e] += sum_of(store.totals[e]);
+    for (uint e = 0; e < RAYA_COUNTED; ++e) counted[e] += sum_of(store.totals[e]);
     if (loops_were_cut(min(word_count, 2u))) atomic_inc(&mine->cut);
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);  // after this all work-items have read progress[group]
     if (item) return;
