@@ -65,7 +65,10 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
     for (;;) {
         int active = 0;
         for (uint i = 0; i < RAYA_TREES; ++i) {
-            if (mask_any(mask_not(trees[i].active))) next_points(scene, &trees[i], store, &pixels[i], next);
+#ifndef RAYA_REFILL
+#define RAYA_REFILL (RAYA_COUNTS ? 1 : RAYA_LANES)
+#endif
+            if (popcount(mask_bits(mask_not(trees[i].active))) >= RAYA_REFILL) next_points(scene, &trees[i], store, &pixels[i], next);
             active |= mask_any(trees[i].active);
         }
         if (!active) return !store->drained;
