@@ -37,7 +37,7 @@ struct KernelOptions {
     // Each is true if the scene has such objects; patches are polygons with vertex normals.
     bool polygons = true, patches = true, cones = true;
     bool costs = false;   // torus nodes record the cost of each packet
-    bool counts = true;   // ring: count all events; false: only rays and their hits
+    bool packets = false;  // ring: RingSettings::packets
     KernelTuning tuning{};
 };
 

@@ -57,7 +57,7 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
         report.machine.fold = settings.mapping.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic";
         report.machine.offset = settings.mapping.parameter;
     }
-    report.counted = settings.counts;
+    report.counted = !settings.packets;
     report.events = result.all.events;
     report.load = result.all.load;
     report.requests = result.requests;
@@ -82,6 +82,18 @@ void write_images(const RenderCommand& command, const RingResult& result, const 
 
 }  // namespace
 
+// Lets neighbouring rays descend through the BVH together, if that is possible. If the user has not chosen a mapping,
+// chooses the smallest tiles that hold the pixels of 16 lanes and divide the image; no result shows the mapping.
+void use_packets(RingSettings& settings, const RenderOptions& options) {
+    const raya_mapping& m = settings.mapping;
+    const bool chosen = !options.mapping.empty() || options.offset || !options.fold.empty();
+    if (!chosen && settings.antialias.method == AntialiasMethod::kNone)
+        for (const auto& [width, height] : {std::pair{4u, 4u}, {8u, 2u}, {2u, 8u}, {16u, 1u}})
+            if (m.kind != RAYA_TILES && m.width % width == 0 && m.height % height == 0)
+                settings.mapping = make_mapping(tiles_mapping(width, height), {m.width, m.height}, m.pes);
+    settings.packets = packets_are_possible(settings);
+}
+
 std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& run) {
     Ranks& ranks = run.ranks;
     RenderRecorder& recorder = run.recorder;
@@ -89,7 +101,7 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     const Scene& scene = input.scene;
     RingSettings settings = ring_settings(run.options, scene);
     settings.record_costs = command.record_costs || !command.cost.empty();
-    settings.counts = command.needs_counts() || settings.dynamic.has_value();
+    if (!command.needs_counts()) use_packets(settings, run.options);
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     Session& session = run.session();
     RingRenderer renderer(session, scene, settings, ranks, [&] {

@@ -70,6 +70,11 @@ struct RingFigures {
 
 }  // namespace
 
+bool packets_are_possible(const RingSettings& settings) {
+    return settings.accel.kind == AccelKind::kBvh && settings.format.is_fp32() && !settings.dynamic &&
+           settings.mapping.kind == RAYA_TILES;
+}
+
 JobSettings job_settings(const RingSettings& settings, const LengthScale& scale) {
     return {{settings.mapping.width, settings.mapping.height},
             settings.sampling,
@@ -128,7 +133,7 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
             .cones = job.has_cones(),
-            .counts = settings.counts,
+            .packets = settings.packets,
             .tuning = settings.kernels.tuning};
 }
 

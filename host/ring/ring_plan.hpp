@@ -28,9 +28,9 @@ struct RingSettings {
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     Antialias antialias;
-    // Count all events, from which loads and modelled times follow. If false, kernels count only rays and their hits,
-    // and are faster: with a BVH, rays may be tested together.
-    bool counts = true;
+    // Rays of neighbouring pixels descend through the BVH together, which takes less time. Only rays and their hits are
+    // counted then, because the numbers of steps and tests would depend on the neighbours. Needs packets_are_possible().
+    bool packets = false;
     bool record_costs = false;  // record each pixel's cost, which takes 8 bytes of host memory; implied by `dynamic`
     Accel accel;
     KernelChoice kernels;
@@ -41,6 +41,9 @@ struct RingSettings {
     // about one second.
     std::uint32_t work_per_launch = 0;
 };
+
+/// Returns true for renders in fp32 with a BVH whose mapping is tiles, so that the lanes hold neighbouring pixels.
+bool packets_are_possible(const RingSettings& settings);
 
 JobSettings job_settings(const RingSettings& settings, const LengthScale& scale);
 

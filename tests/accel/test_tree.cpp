@@ -1,10 +1,12 @@
 // Invariants of BVHs, checked on BVHs built from random items.
 #include <algorithm>
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
 #include "host/accel/bvh.hpp"
+#include "host/accel/hit_regions.hpp"
 #include "host/scene/generate.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/split_mix.hpp"
@@ -139,6 +141,42 @@ TEST_CASE("BVH: the same words for any number of threads", "[tree]") {
                 PackedJob got = job;
                 CHECK(append_bvh(got, format, threads).leaves == summary.leaves);
                 CHECK(got.words() == expected.words());
+            }
+        }
+}
+
+/// Returns the bounding box of a sphere or polygon.
+Box exact_box(const PackedJob& job, std::uint32_t number) {
+    const auto& objects = job.header().objects;
+    const auto real = [&](std::size_t at) { return double{std::bit_cast<float>(job.words()[at])}; };
+    const auto vector = [&](std::size_t at) { return Vec3(real(at), real(at + 1), real(at + 2)); };
+    if (number < objects.spheres) {
+        const std::size_t at = objects.spheres_at + std::size_t{number} * RAYA_SPHERE_WORDS;
+        const Vec3 radii(std::sqrt(std::abs(real(at + RAYA_SPHERE_SQUARE))));
+        return {vector(at + RAYA_SPHERE_CENTRE) - radii, vector(at + RAYA_SPHERE_CENTRE) + radii};
+    }
+    const std::size_t polygon = number - objects.spheres - objects.planes;
+    const std::size_t at = objects.polygons_at + polygon * RAYA_POLYGON_WORDS;
+    Box box;
+    for (std::uint32_t i = 0; i < job.words()[at + RAYA_POLYGON_CORNERS]; ++i)
+        box.extendBy(vector(job.words()[at + RAYA_POLYGON_CORNERS_AT] + i * RAYA_CORNER_WORDS));
+    return box;
+}
+
+TEST_CASE("BVH: hits in fp32 lie within RAYA_BVH_HIT_MARGIN of their objects' boxes", "[tree]") {
+    for (const Scene& scene : {generate_random(500, 3), generate_gears(2), generate_terrain(500, 2)})
+        for (const double reach : {2.0, 8.0, 64.0}) {
+            CAPTURE(scene.name, reach);
+            const PackedJob job = pack_job(scene, {.image = {1, 1}});
+            const HitRegions regions(job, {}, reach);
+            REQUIRE(regions.all_bounded());
+            const double margin = RAYA_BVH_HIT_MARGIN * regions.reach();
+            for (std::size_t i = 0; i < regions.size(); ++i) {
+                const Box exact = exact_box(job, regions.number(i)), hits = regions.region(i).box;
+                for (int axis = 0; axis < 3; ++axis) {
+                    REQUIRE(hits.min[axis] >= exact.min[axis] - margin);
+                    REQUIRE(hits.max[axis] <= exact.max[axis] + margin);
+                }
             }
         }
 }
