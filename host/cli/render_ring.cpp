@@ -82,18 +82,6 @@ void write_images(const RenderCommand& command, const RingResult& result, const 
 
 }  // namespace
 
-// Lets neighbouring rays descend through the BVH together, if that is possible. If the user has not chosen a mapping,
-// chooses the smallest tiles that hold the pixels of 16 lanes and divide the image; no result shows the mapping.
-void use_packets(RingSettings& settings, const RenderOptions& options) {
-    const raya_mapping& m = settings.mapping;
-    const bool chosen = !options.mapping.empty() || options.offset || !options.fold.empty();
-    if (!chosen && settings.antialias.method == AntialiasMethod::kNone)
-        for (const auto& [width, height] : {std::pair{4u, 4u}, {8u, 2u}, {2u, 8u}, {16u, 1u}})
-            if (m.kind != RAYA_TILES && m.width % width == 0 && m.height % height == 0)
-                settings.mapping = make_mapping(tiles_mapping(width, height), {m.width, m.height}, m.pes);
-    settings.packets = packets_are_possible(settings);
-}
-
 std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& run) {
     Ranks& ranks = run.ranks;
     RenderRecorder& recorder = run.recorder;
@@ -101,7 +89,8 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     const Scene& scene = input.scene;
     RingSettings settings = ring_settings(run.options, scene);
     settings.record_costs = command.record_costs || !command.cost.empty();
-    if (!command.needs_counts()) use_packets(settings, run.options);
+    if (!command.needs_counts())
+        use_packets(settings, run.options.mapping.empty() && !run.options.offset && run.options.fold.empty());
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     Session& session = run.session();
     RingRenderer renderer(session, scene, settings, ranks, [&] {

@@ -70,9 +70,14 @@ struct RingFigures {
 
 }  // namespace
 
-bool packets_are_possible(const RingSettings& settings) {
-    return settings.accel.kind == AccelKind::kBvh && settings.format.is_fp32() && !settings.dynamic &&
-           settings.mapping.kind == RAYA_TILES;
+void use_packets(RingSettings& settings, bool may_change_mapping) {
+    if (settings.accel.kind != AccelKind::kBvh || !settings.format.is_fp32() || settings.dynamic) return;
+    const raya_mapping& m = settings.mapping;
+    if (may_change_mapping && settings.antialias.method == AntialiasMethod::kNone)
+        for (const auto& [width, height] : {std::pair{4u, 4u}, {8u, 2u}, {2u, 8u}, {16u, 1u}})
+            if (m.kind != RAYA_TILES && m.width % width == 0 && m.height % height == 0)
+                settings.mapping = make_mapping(tiles_mapping(width, height), {m.width, m.height}, m.pes);
+    settings.packets = m.kind == RAYA_TILES;
 }
 
 JobSettings job_settings(const RingSettings& settings, const LengthScale& scale) {

@@ -29,7 +29,7 @@ struct RingSettings {
     Sampling sampling = Sampling::kCentres;
     Antialias antialias;
     // Rays of neighbouring pixels descend through the BVH together, which takes less time. Only rays and their hits are
-    // counted then, because the numbers of steps and tests would depend on the neighbours. Needs packets_are_possible().
+    // counted then, because the numbers of steps and tests would depend on the neighbours. See use_packets().
     bool packets = false;
     bool record_costs = false;  // record each pixel's cost, which takes 8 bytes of host memory; implied by `dynamic`
     Accel accel;
@@ -42,8 +42,9 @@ struct RingSettings {
     std::uint32_t work_per_launch = 0;
 };
 
-/// Returns true for renders in fp32 with a BVH whose mapping is tiles, so that the lanes hold neighbouring pixels.
-bool packets_are_possible(const RingSettings& settings);
+/// Sets settings.packets if that is possible: in fp32 with a BVH, if the mapping is tiles, so that the lanes hold
+/// neighbouring pixels. If `may_change_mapping`, first chooses small tiles that divide the image, if there are any.
+void use_packets(RingSettings& settings, bool may_change_mapping);
 
 JobSettings job_settings(const RingSettings& settings, const LengthScale& scale);
 
