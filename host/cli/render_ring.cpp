@@ -57,6 +57,7 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
         report.machine.fold = settings.mapping.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic";
         report.machine.offset = settings.mapping.parameter;
     }
+    report.accel_s = result.accel_s;
     report.counted = !settings.packets;
     report.events = result.all.events;
     report.load = result.all.load;

@@ -106,6 +106,7 @@ Json modelled_json(const ModelledTime& time) {
 Json measured_json(const RenderReport& report) {
     const auto& m = report.measured;
     Json json = {{"build_s", m.build_s}, {"render_s", m.render_s}};
+    if (report.accel_s > 0) json["accel_s"] = report.accel_s;
     if (m.earlier_s > 0) json["earlier_s"] = m.earlier_s;
     json["commands"] = commands_json(m.commands, m.roofline.has_value());
     if (!report.ranks.empty()) json["ranks"] = report.ranks;

@@ -92,6 +92,7 @@ struct RenderReport {
     std::vector<Json> ranks;  // device, times, messages and roofline of each MPI rank; empty for one rank
     std::vector<std::string> rank_rooflines;  // with --profile or --page: roofline of each rank, as text
 
+    double accel_s = 0;  // measured time to build the grid or BVH; 0: none
     struct {
         double build_s = 0, render_s = 0;
         std::vector<LabelSummary> commands;
