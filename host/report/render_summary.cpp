@@ -63,8 +63,8 @@ std::string accel_line(const RenderReport& r) {
     if (a.kind == AccelKind::kBvh)
         return fmt::format("bvh     {}, {}, depth {}{}{}\n", counted(a.nodes, "node"),
                            counted(a.leaves, "leaf", "leaves"), a.depth, separate, tests);
-    return fmt::format("grid    {}x{}x{} voxels, {} of objects{}{}\n", a.divisions[0], a.divisions[1],
-                       a.divisions[2], counted(a.copies, "copy", "copies"), separate, tests);
+    return fmt::format("grid    {}x{}x{} voxels, {} of objects{}{}\n", a.divisions[0], a.divisions[1], a.divisions[2],
+                       counted(a.copies, "copy", "copies"), separate, tests);
 }
 
 std::string scale_line(const RenderReport& r) {

@@ -14,8 +14,8 @@ namespace raya {
 namespace {
 
 struct Piece {
-    std::size_t begin, end;            // its entities start at begin .. end - 1
-    std::optional<NffReader> reader;   // after the piece; empty if the piece has an error
+    std::size_t begin, end;              // its entities start at begin .. end - 1
+    std::optional<NffReader> reader;     // after the piece; empty if the piece has an error
     std::vector<SceneRemark> remarks{};  // of the reader; their lines count from the start of the piece
 };
 

@@ -129,7 +129,8 @@ struct FaceWords {
 FaceWords face_words(std::span<const Polygon> polygons) {
     FaceWords words;
     for (const Polygon& p : polygons) {
-        const std::size_t corners = p.vertices.size(), faces = is_one_face(p) ? 1 : std::max<std::size_t>(corners, 2) - 2;
+        const std::size_t corners = p.vertices.size(),
+                          faces = is_one_face(p) ? 1 : std::max<std::size_t>(corners, 2) - 2;
         words.records += faces * RAYA_POLYGON_WORDS;
         words.details += (is_one_face(p) ? corners : 3 * faces) * RAYA_CORNER_WORDS;
         if (!p.normals.empty()) words.details += faces * RAYA_PATCH_WORDS;

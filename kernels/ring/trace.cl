@@ -63,11 +63,12 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
     ray_pool pool;
     open_pool(&pool);
     // The minimum number of idle lanes that take new points. If all start together, their rays remain similar.
-    const int refill = RAYA_RAY_PACKETS ? RAYA_LANES : 1;
+    const uint refill = RAYA_RAY_PACKETS ? RAYA_LANES : 1;
     for (;;) {
         int active = 0;
         for (uint i = 0; i < RAYA_TREES; ++i) {
-            if (popcount(mask_bits(mask_not(trees[i].active))) >= refill) next_points(scene, &trees[i], store, &pixels[i], next);
+            const uint idle = popcount(mask_bits(mask_not(trees[i].active)));
+            if (idle >= refill) next_points(scene, &trees[i], store, &pixels[i], next);
             active |= mask_any(trees[i].active);
         }
         if (!active) return !store->drained;

@@ -1,5 +1,6 @@
-// The functions of Embree that trace rays, of Embree 3 or, with RAYA_EMBREE4, of Embree 4. The other functions, structures
-// and constants that embree_peer uses are equal in both versions, so their declarations are always those of Embree 3.
+// The functions of Embree that trace rays, of Embree 3 or, with RAYA_EMBREE4, of Embree 4. The other functions,
+// structures and constants that embree_peer uses are equal in both versions, so their declarations are always those of
+// Embree 3.
 #pragma once
 #include <embree3/rtcore.h>
 

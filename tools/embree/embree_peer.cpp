@@ -5,8 +5,8 @@
 //
 // Prints for each of three methods "METHOD RAYS SECONDS...", with the seconds of each render, and "mean METHOD R G B",
 // the image's mean colour; then "build SECONDS". `single` traces single rays; `sixteen` traces the ray trees of 4 x 4
-// pixels in lockstep, in packets of 16 rays; `coherent` does the same, and tells Embree that the rays are coherent. Only the
-// loop over the pixels is timed. Exit codes: 0 done; 2 an error.
+// pixels in lockstep, in packets of 16 rays; `coherent` does the same, and tells Embree that the rays are coherent.
+// Only the loop over the pixels is timed. Exit codes: 0 done; 2 an error.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
