@@ -102,7 +102,7 @@ void RingRenderer::place_gathered_and_allocate(RingResult& result) {
     const SpanLog::Span span = session_.span("prepare memory");
     if (result.image.rgb.empty() && ranks_.is_first()) result.image = black_image(settings_.mapping);
     place_gathered_pixels(result);
-    if (gathered_.empty()) resize_in_huge_pages(gathered_, pixels_.size());
+    resize_in_huge_pages(gathered_, pixels_.size());
 }
 
 void RingRenderer::gather(PixelRange range, RingResult& result) {
