@@ -60,10 +60,11 @@ file(WRITE ${doc}/changelog
 ")
 run(gzip -9n ${doc}/changelog)
 
-# The package depends on the program's libraries. raya loads the libraries for images and MPI when it needs them, and reports missing ones.
+# The package depends on the program's libraries. raya needs the libraries for images, meshes and MPI only for these, and
+# reports missing ones.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy, python3-scipy, python3-pandas, python3-matplotlib, python3-jinja2, python3-tqdm, openmpi-bin")
-set(modules -dRecommends -e${staged}/usr/lib/raya/raya_pictures.so)
+set(modules -dRecommends -e${staged}/usr/lib/raya/raya_pictures.so -e${staged}/usr/lib/raya/raya_import)
 if(EXISTS ${staged}/usr/lib/raya/raya_mpi.so)
     list(APPEND modules -dSuggests -e${staged}/usr/lib/raya/raya_mpi.so)
 endif()

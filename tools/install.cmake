@@ -4,8 +4,9 @@ include(GNUInstallDirs)
 set(doc ${CMAKE_INSTALL_DATADIR}/doc/raya)
 
 install(TARGETS raya RUNTIME)
-# lib/raya, without a multiarch folder: the folder in which host/base/module.cpp searches for modules.
+# lib/raya, without a multiarch folder: the folder in which host/base/module.cpp searches for modules and raya_import.
 install(TARGETS raya_pictures LIBRARY DESTINATION lib/raya)
+install(TARGETS raya_import RUNTIME DESTINATION lib/raya)
 if(TARGET raya_mpi)
     install(TARGETS raya_mpi LIBRARY DESTINATION lib/raya)
 endif()
@@ -19,6 +20,7 @@ if(TARGET raya_python)
     endif()
     install(TARGETS raya_python LIBRARY DESTINATION ${package} COMPONENT wheel)
     install(TARGETS raya_pictures LIBRARY DESTINATION ${package} COMPONENT wheel)
+    install(TARGETS raya_import RUNTIME DESTINATION ${package} COMPONENT wheel)
     if(TARGET raya_mpi)
         install(TARGETS raya_mpi LIBRARY DESTINATION ${package} COMPONENT wheel)
     endif()

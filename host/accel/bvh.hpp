@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "host/base/parallel.hpp"
 #include "host/model/machine.hpp"
 #include "host/model/number_format.hpp"
 #include "host/scene/packer.hpp"
@@ -57,14 +58,16 @@ struct Bvh {
 /// Maximum number of items in a leaf of this kind (RAYA_LINK_*): 16 or 1.
 std::uint32_t max_leaf_items(std::uint32_t kind);
 
-/// Builds a BVH. The result depends only on the items, not on the machine.
-Bvh build_bvh(std::vector<BvhItem> items);
+/// Builds a BVH on up to `threads` threads. The result depends only on the items, neither on their order nor on the
+/// machine or the number of threads.
+Bvh build_bvh(std::vector<BvhItem> items, unsigned threads = core_count());
 
 /// Builds a BVH over the finite objects of a packed scene (job), appends it to the job's words in the layout of
 /// kernels/shared/bvh.h, and sets accel_at in the job's header. The box of an object contains every point at which a
 /// kernel can compute a hit of the object (hit_regions.hpp), with a margin for rounding errors of the traversal. Throws
-/// UserError if the BVH has more 64-byte rows than a link can address.
-AccelSummary append_bvh(PackedJob& job, const NumberFormat& format);
+/// UserError if the BVH has more 64-byte rows than a link can address. The words do not depend on the number of
+/// threads.
+AccelSummary append_bvh(PackedJob& job, const NumberFormat& format, unsigned threads = core_count());
 
 /// Returns true if rendering this scene with a BVH is expected to be faster than testing every ray against all objects.
 /// The threshold was measured on a CPU with sixteen lanes.

@@ -88,6 +88,7 @@ HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double 
                        const std::vector<std::uint32_t>& separate)
     : words_(&job.words()), objects_(job.header().objects) {
     const std::uint32_t first_polygon = objects_.spheres + objects_.planes;
+    numbers_.reserve(std::size_t{objects_.spheres} + objects_.polygons + objects_.cones);
     for (std::uint32_t number = 0; number < first_polygon + objects_.polygons + objects_.cones; ++number)
         if ((number < objects_.spheres || number >= first_polygon) &&
             !std::binary_search(separate.begin(), separate.end(), number))

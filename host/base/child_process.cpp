@@ -27,15 +27,15 @@ std::runtime_error system_error(const char* what) {
     return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
-// Runs raya's executable in the forked child. This code runs between fork and exec, so it calls only functions that
-// take no locks.
-[[noreturn]] void exec_worker(char* const* arguments, int pipe, pid_t parent) {
+// Runs the program in the forked child. This code runs between fork and exec, so it calls only functions that take no
+// locks.
+[[noreturn]] void exec_program(const char* program, char* const* arguments, int kept, pid_t parent) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);  // inherited through exec
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() == parent) {
         ::close_range(STDERR_FILENO + 1, ~0u, CLOSE_RANGE_CLOEXEC);  // MPI's sockets belong to the parent
-        ::fcntl(pipe, F_SETFD, 0);                                   // stays open through exec
-        ::execv(kOwnProgram, arguments);
+        ::fcntl(kept, F_SETFD, 0);                                   // stays open through exec
+        ::execv(program, arguments);
     }
     ::_exit(kNotStarted);
 }
@@ -48,21 +48,30 @@ std::string ending_text(int status) {
     return fmt::format("signal {}{}", WTERMSIG(status), name != nullptr ? fmt::format(" (SIG{})", name) : "");
 }
 
+pid_t start_child(const std::string& program, std::vector<std::string> arguments, int kept) {
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    const pid_t parent = ::getpid();
+    const pid_t child = ::fork();
+    if (child == 0) exec_program(program.c_str(), argv.data(), kept, parent);
+    if (child < 0) throw system_error("cannot start a child process");
+    return child;
+}
+
 ChildProcess::ChildProcess(const char* task, const Json& settings) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw system_error("cannot create a pipe to a child process");
     const Json request = {
         {"task", task}, {"lines", ends[1]}, {"verbosity", verbosity() - kErrorsOnly}, {"settings", settings}};
-    std::array<std::string, 3> arguments = {"raya", kWorker, request.dump()};
-    const std::array<char*, 4> argv = {arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
-    const pid_t parent = ::getpid();
-    child_ = ::fork();
-    if (child_ == 0) exec_worker(argv.data(), ends[1], parent);
-    ::close(ends[1]);
     pipe_ = ends[0];
-    if (child_ > 0) return;
-    ::close(pipe_);
-    throw system_error("cannot start a child process");
+    try {
+        child_ = start_child(kOwnProgram, {"raya", kWorker, request.dump()}, ends[1]);
+    } catch (...) {
+        for (const int end : ends) ::close(end);
+        throw;
+    }
+    ::close(ends[1]);
 }
 
 ChildProcess::~ChildProcess() {

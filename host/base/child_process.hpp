@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/base/json.hpp"
 
@@ -13,9 +14,14 @@ namespace raya {
 /// Exit code of a child process in which exec failed.
 inline constexpr int kNotStarted = 127;
 
+/// Runs `program` in a child process, without a search in PATH; arguments[0] is its name. The child inherits the
+/// standard streams and the descriptor `kept`, and no other. If the parent ends for any reason, the system kills the
+/// child. The child ignores SIGINT, SIGTERM, SIGHUP and SIGQUIT, which the parent handles. If exec fails, the child
+/// ends with kNotStarted. Throws std::runtime_error if there can be no new process.
+pid_t start_child(const std::string& program, std::vector<std::string> arguments, int kept);
+
 /// A child process that runs raya's executable for one task and writes JSON objects, one per line, into a pipe to its
-/// parent. The destructor kills the child. If the parent ends for any reason, the system kills the child. The child
-/// ignores SIGINT, SIGTERM, SIGHUP and SIGQUIT, which the parent handles. Command line of the child:
+/// parent. The destructor kills the child. See also start_child(). Command line of the child:
 ///
 ///     raya --worker '{"task": TASK, "lines": descriptor of the pipe, "verbosity": level - kErrorsOnly,
 ///                     "settings": {...}}'

@@ -75,19 +75,6 @@ ProgramFile program_file() {
     return {folder, status.st_uid};
 }
 
-/// Returns the path of the module file `name`. Throws ModuleError if there is no such file, and UserError if another
-/// user may change the file, because loading it would then not be safe.
-fs::path checked_module(const std::string& name) {
-    const fs::path file = module_folder() / name;
-    std::error_code failure;
-    if (!fs::is_regular_file(fs::symlink_status(file, failure)))
-        throw ModuleError(fmt::format("there is no file '{}'", file.string()));
-    const std::string reason = unsafe_code_file_reason(file);
-    if (reason.empty()) return file;
-    throw UserError(
-        fmt::format("refused to load '{}': {}; remedy: chmod go-w, or install raya as root", file.string(), reason));
-}
-
 std::string loader_error() {
     const char* text = ::dlerror();
     return text != nullptr ? text : "dlerror() gives no reason";
@@ -129,8 +116,19 @@ std::string unsafe_code_file_reason(const fs::path& file) {
     return reason;
 }
 
+fs::path module_file(const std::string& name) {
+    const fs::path file = module_folder() / name;
+    std::error_code failure;
+    if (!fs::is_regular_file(fs::symlink_status(file, failure)))
+        throw ModuleError(fmt::format("there is no file '{}'", file.string()));
+    const std::string reason = unsafe_code_file_reason(file);
+    if (reason.empty()) return file;
+    throw UserError(
+        fmt::format("refused to load '{}': {}; remedy: chmod go-w, or install raya as root", file.string(), reason));
+}
+
 void* module_function(const std::string& name, const char* symbol) {
-    const fs::path file = checked_module(name + ".so");
+    const fs::path file = module_file(name + ".so");
     // RTLD_LAZY, because most functions of a module's libraries are never called.
     void* const module = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
     if (module == nullptr) refuse_to_load(name);

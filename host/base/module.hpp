@@ -29,6 +29,11 @@ std::string memory_limit();
 /// this user and the program's owner may change the file or its folder, or if a memory limit prevents loading.
 void* module_function(const std::string& name, const char* symbol);
 
+/// Returns the path of the file `name` in module_folder(): a module, or a program that raya runs. Throws ModuleError if
+/// there is no such file. Throws UserError if users other than root, this user and the program's owner may change the
+/// file or its folder.
+std::filesystem::path module_file(const std::string& name);
+
 /// Returns the folder of the modules and of the other files installed with the program: ../lib/raya if the program's
 /// folder is named `bin`, else the program's folder. Throws ModuleError if the program's path cannot be read.
 std::filesystem::path module_folder();

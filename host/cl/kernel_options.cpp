@@ -101,6 +101,7 @@ std::vector<std::string> build_options(const KernelOptions& options, const Devic
     if (options.accel == RAYA_ACCEL_BVH) define("BVH_STACK", options.stack);
     if (options.filter) define("FILTER", 1);
     if (options.costs) define("COSTS", 1);
+    if (options.packets) define("RAY_PACKETS", 1);
     if (options.tuning.sphere_batch) define("SPHERE_BATCH", options.tuning.sphere_batch);
     if (options.tuning.trees && options.accel == RAYA_ACCEL_GRID) define("TREES", options.tuning.trees);
     if (options.tuning.beams && options.accel == RAYA_ACCEL_GRID) define("BEAMS", options.tuning.beams);

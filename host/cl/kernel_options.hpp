@@ -36,7 +36,8 @@ struct KernelOptions {
     bool filter = false;  // filter spheres and polygons in fp32 before the exact test, see filters_are_valid()
     // Each is true if the scene has such objects; patches are polygons with vertex normals.
     bool polygons = true, patches = true, cones = true;
-    bool costs = false;  // torus nodes record the cost of each packet
+    bool costs = false;    // torus nodes record the cost of each packet
+    bool packets = false;  // ring: RingSettings::packets
     KernelTuning tuning{};
 };
 

@@ -207,17 +207,18 @@ void add_bench_command(CLI::App& program) {
     const auto options = std::make_shared<BenchCommand>();
     add_short_help(*command, bench_short_help());
     OptionGroup group(*command, "Workload");
-    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
-             "Scene in NFF; -: stdin; default: 30 spheres and a plane, 512 x 512");
+    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE",
+             std::string(kSceneHelp) + "; default: 30 spheres and a plane, 512 x 512");
     add_render_options(*command, options->render, false);
     add_value(
         *command, "--variants", options->variants,
         "Time whole renders instead of the trace kernel, for a comma-separated list of variants; none, grid and bvh "
-        "are the ring machine with that --accel; torus is 4x4x4 nodes without a memory limit; raya compares the "
-        "other variants with the first")
+        "are the ring machine with that --accel; packets is bvh with neighbouring rays together, in fp32 and tiles; "
+        "torus "
+        "is 4x4x4 nodes without a memory limit; raya compares the other variants with the first")
         ->delimiter(',')
         ->allow_extra_args(false)  // so that the scene may follow
-        ->type_name("none,grid,bvh,torus")
+        ->type_name("none,grid,bvh,packets,torus")
         ->excludes(command->get_option("--accel"));
     CLI::Option* denormals = command->add_flag(
         "--denormals", options->denormals,

@@ -110,7 +110,8 @@ BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, 
 
 BenchRow render_row(Session& session, const Scene& scene, const RingSettings& settings, const NumberFormat& format,
                     const std::string& variant) {
-    const TuningKey key = Workload{variant, format}.key();
+    const bool packets = variant == "packets";
+    const TuningKey key = Workload{packets ? "bvh" : variant, format}.key();
     RingSettings s = settings;
     s.format = format;
     if (key.torus) {
@@ -121,6 +122,11 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
                       [](const TorusResult& r) { return r.render_s; });
     }
     s.accel = {.kind = static_cast<AccelKind>(key.accel)};
+    if (packets) use_packets(s, s.mapping.kind != RAYA_TILES);
+    if (packets && !s.packets)
+        throw UserError(fmt::format(
+            "--variants packets: needs --format fp32 and tiles that divide the image, not {} and {}x{} pixels",
+            format_name(format), s.mapping.width, s.mapping.height));
     return row_of(make_measurement("render, " + variant, scene, s, array_text(s)), format,
                   std::make_shared<RingRenderer>(session, scene, s), events_of_ring,
                   [](const RingResult& r) { return r.render_s; });

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/cli/scene_input.hpp"
+
 namespace raya {
 namespace {
 
@@ -195,9 +197,10 @@ ValueCompletion value_completion(const OptionText& option) {
         return {.kind = kList, .choices = choices};
     if (option.placeholder.starts_with("DIR")) return {.kind = kFolder};
     if (!starts_with_one_of(option.placeholder, {"FILE", "SCENE", "IMAGE"})) return {};
-    const std::size_t dot = std::min(option.placeholder.find('.'), option.placeholder.size());
-    std::string extension = option.placeholder.substr(dot);
-    return {.kind = kFile, .extension = extension.substr(0, extension.find('['))};
+    if (option.placeholder == "SCENE") return {.kind = kFile, .extensions = scene_extensions()};
+    const std::size_t dot = option.placeholder.find('.');
+    if (dot == std::string::npos) return {.kind = kFile};
+    return {.kind = kFile, .extensions = {option.placeholder.substr(dot, option.placeholder.find('[') - dot)}};
 }
 
 std::string description_of(const OptionText& option) {

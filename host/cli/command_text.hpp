@@ -49,11 +49,11 @@ struct CommandText {
 struct ValueCompletion {
     enum class Kind { kOther, kChoice, kList, kFile, kFolder } kind = Kind::kOther;  // kOther: no candidates
     std::vector<std::string> choices{};  // kChoice: the value is one of them; kList: several of them, comma-separated
-    std::string extension{};             // kFile: extension of the file, ".json"; empty: any
+    std::vector<std::string> extensions{};  // kFile: extensions of the files, ".json"; empty: any
 };
 
 /// Returns how shells complete the option's value. Uses the option's choices or, if there are none, the placeholder of
-/// its value: "ring|bus" is a choice, "none,grid" a list; FILE.json, SCENE.nff and IMAGE are files, DIR is a folder.
+/// its value: "ring|bus" is a choice, "none,grid" a list; FILE.json, SCENE and IMAGE are files, DIR is a folder.
 ValueCompletion value_completion(const OptionText& option);
 
 /// Returns the option's help and default; if the help is empty, the placeholder of its value.

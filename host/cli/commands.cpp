@@ -53,6 +53,7 @@ constexpr const char* kEnvironment =
     "  RAYA_BINARIES       off: ignore the kernels that render --cache-kernels stored, and compile\n"
     "  RAYA_PYTHON         the Python that runs studies; default: /usr/bin/python3\n"
     "  RAYA_MPIRUN         the command with which study ranks starts ranks; default: mpirun --bind-to none\n"
+    "  RAYA_MESH_TIMEOUT   seconds that reading a mesh may take; default: 120\n"
     "  RAYA_RANK_TIMEOUT   seconds that a rank waits for other ranks; default: 600\n"
     "  XDG_CACHE_HOME      raya tune stores its values in raya/ in this folder; default: ~/.cache";
 

@@ -44,7 +44,7 @@ std::string bash_offer_of(const OptionText& option) {
         case ValueCompletion::Kind::kList:
             return fmt::format("list {}", fmt::join(value.choices, " "));
         case ValueCompletion::Kind::kFile:
-            return "files " + value.extension;
+            return fmt::format("files {}", fmt::join(value.extensions, " "));
         case ValueCompletion::Kind::kFolder:
             return "folders";
         case ValueCompletion::Kind::kOther:
@@ -85,7 +85,7 @@ constexpr const char* kBashEnd = R"(    esac
 }
 
 # Sets COMPREPLY to the candidates that begin with $1. $2 is the kind of candidates; its parameters follow:
-# words W..., list W... (comma-separated words), files EXTENSION, folders, nothing.
+# words W..., list W... (comma-separated words), files EXTENSION..., folders, nothing.
 _raya_offer() {
     local begun=$1 kind=$2 before=''
     shift 2
@@ -94,7 +94,8 @@ _raya_offer() {
     words | list) mapfile -t COMPREPLY < <(compgen -P "$before" -W "$*" -- "$begun") ;;
     files | folders)
         compopt -o filenames 2>/dev/null
-        mapfile -t COMPREPLY < <(compgen -d -- "$begun"; [[ $kind == folders ]] || compgen -f -X "!*$1" -- "$begun") ;;&
+        (($# > 0)) || set -- ''
+        mapfile -t COMPREPLY < <(compgen -d -- "$begun"; [[ $kind == folders ]] || for kind; do compgen -f -X "!*$kind" -- "$begun"; done) ;;&
     files) mapfile -t COMPREPLY < <(printf '%s\n' "${COMPREPLY[@]}" | sort -u) ;;
     esac
     [[ ${#COMPREPLY[@]} != 1 || -n ${COMPREPLY[0]} ]] || COMPREPLY=()

@@ -198,9 +198,7 @@ void add_explore_command(CLI::App& program) {
     const auto options = std::make_shared<ExploreCommand>();
     add_short_help(*command, explore_short_help());
     const OptionGroup group(*command, kFiles);
-    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
-             "Scene in NFF, the format of the SPD programs; -: stdin")
-        ->required();
+    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE", kSceneHelp)->required();
     add_file(*command, FileUse::kWritten, "-o,--output", options->page, "FILE.html",
              "HTML page to write: one file below 1 MB that needs no network; -: stdout")
         ->required();

@@ -11,6 +11,7 @@
 #include "host/cl/spirv.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
+#include "host/mesh/mesh_file.hpp"
 
 namespace raya {
 namespace {
@@ -49,7 +50,7 @@ class FileCheck {
     void check_output_folder(const NamedFile& folder) const {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder.file, error))
-            if (entry.path().extension() != ".nff")
+            if (entry.path().extension() != ".nff" && !is_mesh_file(entry.path()))
                 refuse_if_input({folder.option, entry.path().string()}, file_identity(entry.path()));
     }
 

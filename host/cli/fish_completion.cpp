@@ -22,7 +22,9 @@ std::string fish_offer_of(const OptionText& option) {
         case ValueCompletion::Kind::kList:
             return fmt::format(" -a '(__fish_append , {})'", fmt::join(value.choices, " "));
         case ValueCompletion::Kind::kFile:
-            return fmt::format(" -a '(__fish_complete_suffix \"{}\")'", value.extension);
+            // The function lists files with other extensions, too, but last.
+            return fmt::format(" -a '(__fish_complete_suffix \"{}\")'",
+                               value.extensions.empty() ? "" : value.extensions.front());
         case ValueCompletion::Kind::kFolder:
             return " -a '(__fish_complete_directories)'";
         case ValueCompletion::Kind::kOther:

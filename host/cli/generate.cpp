@@ -19,7 +19,7 @@ namespace {
 
 struct GenerateOptions {
     std::string output;
-    int level = 4, sphere_count = 0;
+    int level = 4, sphere_count = 0, triangles = 100'000;
     std::uint32_t cylinders = 12, wheels = 4;  // number of each along an edge of the cube
     std::string voxels = "4x4x4";
     std::uint64_t seed = 1;
@@ -30,18 +30,40 @@ void write_scene(const GenerateOptions& options, Make&& make) {
     ProgressBar bar(true, "generating");
     const Scene scene = make();
     bar.stage("writing");
-    write_whole_file(options.output, write_nff(scene));
+    write_whole_file(options.output, nff_pieces(scene));
+}
+
+void write_terrain(const GenerateOptions& options) {
+    const ProgressBar bar(true, "writing");
+    const bool ply = options.output.ends_with(".ply");
+    write_whole_file(options.output,
+                     ply ? terrain_ply(options.triangles, options.seed) : terrain_nff(options.triangles, options.seed));
 }
 
 CLI::App* add_generator(CLI::App& command, GenerateOptions& options, const std::string& name, const std::string& help,
-                        const std::vector<ExampleText>& examples) {
+                        const std::vector<ExampleText>& examples,
+                        const std::string& file_help = "NFF file to write; -: stdout") {
     CLI::App* generator = command.add_subcommand(name, help);
     add_examples(*generator, examples);
     generator->option_defaults()->group("Scene");
     const OptionGroup group(*generator, kFiles);
-    add_file(*generator, FileUse::kWritten, "-o,--output", options.output, "SCENE.nff", "NFF file to write; -: stdout")
-        ->required();
+    add_file(*generator, FileUse::kWritten, "-o,--output", options.output, "SCENE.nff", file_help)->required();
     return generator;
+}
+
+void add_terrain(CLI::App& command, const std::shared_ptr<GenerateOptions>& options) {
+    CLI::App* terrain = add_generator(
+        command, *options, "terrain", "A height field of N triangles, for large scenes",
+        {{"raya generate terrain -o terrain.nff", "100,000 triangles"},
+         {"raya generate terrain --triangles 10000000 -o terrain.ply", "Ten million triangles, as binary PLY"}},
+        "File to write, binary PLY if its name ends in .ply, else NFF; -: stdout, as NFF");
+    add_value(*terrain, "--triangles", options->triangles, "Number N of triangles, 1..20000000")
+        ->type_name("N")
+        ->capture_default_str();
+    add_value(*terrain, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
+        ->type_name("N")
+        ->capture_default_str();
+    terrain->callback([options] { write_terrain(*options); });
 }
 
 }  // namespace
@@ -89,7 +111,7 @@ void add_generate_command(CLI::App& program) {
         *command, *options, "uniform", "N matt spheres, evenly distributed over the voxels of a cube",
         {{"raya generate uniform 64 --voxels 4x4x4 -o even.nff", "One sphere in each of 64 voxels"},
          {"raya generate uniform 1000 --voxels 2x2x1 -o slab.nff", "250 spheres in each of four voxels"}});
-    add_value(*uniform, "N", options->sphere_count, "Number of spheres, 1..1000000")->type_name("COUNT")->required();
+    add_value(*uniform, "N", options->sphere_count, "Number of spheres, 1..20000000")->type_name("COUNT")->required();
     add_value(*uniform, "--voxels", options->voxels,
               "Number of voxels along x, y and z, 1..256 each, at most 1,048,576 in total")
         ->type_name("XxYxZ")
@@ -105,12 +127,14 @@ void add_generate_command(CLI::App& program) {
     CLI::App* random = add_generator(*command, *options, "random", "N spheres at random positions in a cube",
                                      {{"raya generate random 500 -o random.nff", "500 spheres"},
                                       {"raya generate random 500 --seed 2 -o other.nff", "500 other spheres"}});
-    add_value(*random, "N", options->sphere_count, "Number of spheres, 1..1000000")->type_name("COUNT")->required();
+    add_value(*random, "N", options->sphere_count, "Number of spheres, 1..20000000")->type_name("COUNT")->required();
     add_value(*random, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
         ->type_name("N")
         ->capture_default_str();
     random->callback(
         [options] { write_scene(*options, [&] { return generate_random(options->sphere_count, options->seed); }); });
+
+    add_terrain(*command, options);
 
     CLI::App* cluster =
         add_generator(*command, *options, "cluster",

@@ -33,9 +33,7 @@ constexpr std::array<const char*, 17> kExecutionOptions = {
     "--link-exchange", "--packets", "--replay", "--async",    "--il"};
 
 void add_options(CLI::App& command, InfoCommand& options) {
-    add_file(command, FileUse::kRead, "SCENE", options.render.scene, "SCENE.nff",
-             "Scene in NFF, the format of the SPD programs; -: stdin")
-        ->required();
+    add_file(command, FileUse::kRead, "SCENE", options.render.scene, "SCENE", kSceneHelp)->required();
     OptionGroup group(command, kFiles);
     command.add_flag("--json", options.json, "Print JSON");
     add_render_options(command, options.render);

@@ -109,9 +109,7 @@ CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<Render
     command->callback([options] {});  // keeps the options
     add_short_help(*command, render_short_help());
     const OptionGroup group(*command, kFiles);
-    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE.nff",
-             "Scene in NFF, the format of the SPD programs; -: stdin")
-        ->required();
+    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE", kSceneHelp)->required();
     add_render_command_options(*command, *options);
     command->get_option("--output")->required();
     OptionGroup last_options(*command, kDiagnostics);

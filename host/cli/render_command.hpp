@@ -38,6 +38,7 @@ struct RenderCommand {
     bool prints_profile = true;   // print the table of --profile
     ProgressCallback progress{};  // empty: progress bar on a terminal
     PixelSubset pixels{};         // torus: pixels for which primary rays are traced
+    bool counts = false;          // count all events, even if nothing else needs them, see needs_counts()
     bool record_costs = false;    // ring: store the cost of each pixel in Render::ring
     bool keep_packets = false;    // torus: store packets, cycles and link_words in Render
 
@@ -53,6 +54,12 @@ struct RenderCommand {
     }
     /// Returns true if a report is needed: for --report, or for --page, which is made from a report.
     bool needs_report() const { return !report.empty() || !page.empty(); }
+    /// Returns true if all events must be counted, not only rays. On the machine `grande`, which is no model of a
+    /// machine, they are counted only for options that need them.
+    bool needs_counts() const {
+        return counts || render.machine != "grande" || needs_report() || needs_roofline() || record_costs ||
+               !cost.empty() || !trace.file.empty() || !checkpoint.file.empty();
+    }
     /// Returns true if the report compares kernels with the device's peak.
     bool needs_roofline() const { return profile || !page.empty(); }
 };

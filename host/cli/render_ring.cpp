@@ -57,6 +57,8 @@ RenderReport make_report(const RenderCommand& command, const SceneInput& input, 
         report.machine.fold = settings.mapping.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic";
         report.machine.offset = settings.mapping.parameter;
     }
+    report.accel_s = result.accel_s;
+    report.counted = !settings.packets;
     report.events = result.all.events;
     report.load = result.all.load;
     report.requests = result.requests;
@@ -88,9 +90,13 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     const Scene& scene = input.scene;
     RingSettings settings = ring_settings(run.options, scene);
     settings.record_costs = command.record_costs || !command.cost.empty();
+    if (!command.needs_counts())
+        use_packets(settings, run.options.mapping.empty() && !run.options.offset && run.options.fold.empty());
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     Session& session = run.session();
-    RingRenderer renderer(session, scene, settings, ranks);
+    RingRenderer renderer(session, scene, settings, ranks, [&] {
+        if (!command.frames.given()) drop_objects(input.scene);  // frames need them again
+    });
     if (ranks.is_first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     run.progress.stage("rendering");
     const CheckpointFile checkpoint(command.checkpoint);

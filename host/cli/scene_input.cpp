@@ -11,6 +11,7 @@
 #include "host/cl/program.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
+#include "host/mesh/mesh_file.hpp"
 #include "host/model/unit_text.hpp"
 
 namespace raya {
@@ -26,17 +27,24 @@ void add_strict_option(CLI::App& command, bool& strict) {
     const OptionGroup group(command, kFiles);
     command.add_flag(
         "--strict", strict,
-        "Refuse a scene with facets that are degenerate or not planar, or with entities that NFF does not define; "
-        "without --strict, raya omits or triangulates such facets and skips such entities, with a warning");
+        "Refuse a scene with facets that are degenerate or not planar, or with entities that NFF does not define or "
+        "that raya does not use in meshes; without --strict, raya omits or triangulates such facets and skips such "
+        "entities, with a warning");
+}
+
+std::vector<std::string> scene_extensions() {
+    std::vector<std::string> extensions = {".nff"};
+    extensions.insert(extensions.end(), mesh_extensions().begin(), mesh_extensions().end());
+    return extensions;
 }
 
 SceneInput read_scene(const std::string& file, bool strict) {
     SceneInput input;
     const auto warn_of_remarks = [&] {
-        for (const NffRemark& remark : input.remarks) input.warnings.add(remark_text(input_name(file), remark));
+        for (const SceneRemark& remark : input.remarks) input.warnings.add(remark_text(input_name(file), remark));
     };
     try {
-        input.scene = read_nff(file, strict ? nullptr : &input.remarks);
+        input.scene = read_scene_file(file, strict ? nullptr : &input.remarks);
     } catch (const UserError&) {
         warn_of_remarks();  // the remarks may explain the error
         throw;

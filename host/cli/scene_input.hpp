@@ -5,7 +5,7 @@
 
 #include "host/model/number_format.hpp"
 #include "host/scene/length_scale.hpp"
-#include "host/scene/nff.hpp"
+#include "host/scene/remark.hpp"
 #include "host/scene/scene.hpp"
 
 namespace CLI {
@@ -28,14 +28,21 @@ class Warnings {
 /// changing these contents.
 void add_strict_option(CLI::App& command, bool& strict);
 
+/// Help of the argument SCENE.
+inline constexpr const char* kSceneHelp =
+    "Scene in NFF, the format of the SPD programs, or a mesh: .obj, .ply, .gltf, .glb, .stl; -: NFF from stdin";
+
+/// Returns the extensions of scenes: ".nff" and those of meshes.
+std::vector<std::string> scene_extensions();
+
 struct SceneInput {
     Scene scene;
-    std::vector<NffRemark> remarks;  // contents of the file that were skipped or changed
+    std::vector<SceneRemark> remarks;  // contents of the file that were skipped or changed
     Warnings warnings;
 };
 
-/// Reads a scene from a file or stdin ("-"). Warns of skipped and changed contents. Throws UserError as read_nff()
-/// does.
+/// Reads a scene from a file or stdin ("-"). Warns of skipped and changed contents. Throws UserError as
+/// read_scene_file() does.
 SceneInput read_scene(const std::string& file, bool strict);
 
 /// Warns of options in the environment variable RAYA_BUILD_OPTIONS that may change pixels and counts.

@@ -121,8 +121,9 @@ void add_study_options(CLI::App& command, StudyCommand& options) {
         add_file(command, FileUse::kRead, "STUDY", options.study, "STUDY|all|FILE.py",
                  "Name of a study in the list below, all for all studies, or a file with your own study");
     offer_choices(study->required(), study_names());
-    add_file(command, FileUse::kRead, "SCENE", options.scenes, "SCENE.nff",
-             "Scenes in NFF; one of them may be -: stdin; with `all`, studies of a single scene take the first scene; "
+    add_file(command, FileUse::kRead, "SCENE", options.scenes, "SCENE",
+             "Scenes in NFF, or meshes (.obj, .ply, .gltf, .glb, .stl); one of them may be -: stdin; with `all`, "
+             "studies of a single scene take the first scene; "
              "default: the study's own scenes");
     add_file(command, FileUse::kWrittenFolder, "-o,--output", options.folder, "DIR",
              "Folder for index.html, Markdown, CSV, JSON and plots; created if missing")

@@ -155,8 +155,9 @@ void tune_device(const CLI::App& parser, TuneCommand& command) {
 void add_rendered_options(CLI::App& command, TuneCommand& options) {
     TrialSetup& render = options.render;
     OptionGroup group(command, "Workload");
-    add_file(command, FileUse::kRead, "SCENE", render.scene, "SCENE.nff",
-             "Scene in NFF to render with candidates for lanes, group and other values that change only the time; "
+    add_file(command, FileUse::kRead, "SCENE", render.scene, "SCENE",
+             "Scene in NFF, or mesh (.obj, .ply, .gltf, .glb, .stl), to render with candidates for lanes, group and "
+             "other values that change only the time; "
              "default: without accelerator, 30 spheres and a plane; with an accelerator, SPD's balls of 7,381 spheres");
     add_strict_option(command, render.strict);
     add_value(command, "--variants", options.variants,

@@ -83,7 +83,8 @@ std::vector<std::pair<std::string, std::string>> ViewOptions::given_options() co
 void add_view_options(CLI::App& command, ViewOptions& v) {
     const OptionGroup group(command, kCamera);
     add_value(command, "--from", v.from,
-              "Position of the eye in scene units; default of all six camera and light options: the scene's")
+              "Position of the eye in scene units; default of all six camera and light options: the scene's, "
+              "or a view of the whole mesh")
         ->type_name("X,Y,Z");
     add_value(command, "--at", v.at, "Point at the centre of the image")->type_name("X,Y,Z");
     add_value(command, "--up", v.up, "Up direction of the image, of any length")->type_name("X,Y,Z");

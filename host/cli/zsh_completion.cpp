@@ -28,7 +28,9 @@ std::string zsh_value_spec(const OptionText& option) {
             return fmt::format("{}_values -s , {} {}", name, shell_quoted(zsh_escaped(option.placeholder)),
                                fmt::join(value.choices, " "));
         case ValueCompletion::Kind::kFile:
-            return fmt::format("{}_files -g \"*{}(-.)\"", name, value.extension);
+            return fmt::format("{}_files -g \"*{}(-.)\"", name,
+                               value.extensions.size() > 1 ? fmt::format("({})", fmt::join(value.extensions, "|"))
+                                                           : fmt::format("{}", fmt::join(value.extensions, "")));
         case ValueCompletion::Kind::kFolder:
             return name + "_files -/";
         case ValueCompletion::Kind::kOther:

@@ -82,10 +82,12 @@ void add_generators(py::module_& module) {
                    "size^3 gear wheels. size: number of wheels along each edge, 1..16.");
     generators.def(
         "uniform", generate_uniform, py::arg("count"), py::arg("voxels"),
-        "count spheres (1..1000000) in a cube that is divided into x * y * z voxels. Each voxel contains floor(n) or "
+        "count spheres (1..20000000) in a cube that is divided into x * y * z voxels. Each voxel contains floor(n) or "
         "ceil(n) spheres, n = count / (x * y * z). voxels: (x, y, z).");
     generators.def("random", generate_random, py::arg("count"), py::arg("seed") = 1,
-                   "count spheres (1..1000000) with random centres in the cube [-1, 1]^3.");
+                   "count spheres (1..20000000) with random centres in the cube [-1, 1]^3.");
+    generators.def("terrain", generate_terrain, py::arg("triangles") = 100'000, py::arg("seed") = 1,
+                   "A height field of triangles (1..20000000) above a square whose cells have side 1.");
     generators.def(
         "cluster", [](std::uint64_t seed) { return generate_cluster(seed); }, py::arg("seed") = 1,
         "Seven random spheres above a floor. Averaged over many seeds, load and imbalance match those that Kohata & "
@@ -149,9 +151,10 @@ void add_scenes(py::module_& module) {
                         [](const py::tuple& state) {
                             return parse_nff(state[1].cast<std::string>(), state[0].cast<std::string>());
                         }));
-    module.def("load", loaded, py::arg("path"), py::arg("strict") = false,
-               "Reads an NFF file. Skips unknown content with a warning unless strict. Raises ValueError with file, "
-               "line and reason.");
+    module.def(
+        "load", loaded, py::arg("path"), py::arg("strict") = false,
+        "Reads an NFF file or a mesh. Skips unknown content with a warning unless strict. Raises ValueError with file, "
+        "place and reason.");
     module.def(
         "example", example, py::arg("name"),
         "Returns one of the embedded scenes. name: 'centre', 'spheres', 'mirrors', 'glass', 'polygons', 'cones' or "

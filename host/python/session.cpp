@@ -151,6 +151,7 @@ std::shared_ptr<Render> PythonSession::render(const Scene& scene, const py::dict
     command.render.scene = scene.name;
     command.record_costs = stores_costs || !command.cost.empty();
     command.keep_packets = stores_packets;
+    command.counts = true;
     command.summary = command.prints_profile = false;
     command.progress = [&progress](double fraction) {
         const py::gil_scoped_acquire gil;

@@ -4,16 +4,10 @@
 #include "host/base/json.hpp"
 #include "host/model/budget.hpp"
 #include "host/report/profile_table.hpp"
+#include "host/report/scene_report.hpp"
 
 namespace raya {
 namespace {
-
-Json skipped_json(const std::vector<NffRemark>& skipped) {
-    Json json = Json::array();
-    for (const NffRemark& remark : skipped)
-        json.push_back({{"what", remark.what}, {"count", remark.count}, {"line", remark.line}});
-    return json;
-}
 
 Json codes_json(const std::optional<CodeConversion>& codes) {
     if (!codes) return {};
@@ -112,6 +106,7 @@ Json modelled_json(const ModelledTime& time) {
 Json measured_json(const RenderReport& report) {
     const auto& m = report.measured;
     Json json = {{"build_s", m.build_s}, {"render_s", m.render_s}};
+    if (report.accel_s > 0) json["accel_s"] = report.accel_s;
     if (m.earlier_s > 0) json["earlier_s"] = m.earlier_s;
     json["commands"] = commands_json(m.commands, m.roofline.has_value());
     if (!report.ranks.empty()) json["ranks"] = report.ranks;

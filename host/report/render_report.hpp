@@ -45,7 +45,7 @@ struct RenderReport {
     std::string raya;  // version of raya
     std::string scene;
     std::vector<std::string> warnings;  // the warnings on stderr
-    std::vector<NffRemark> skipped;     // entities of the scene file that were skipped
+    std::vector<SceneRemark> skipped;   // entities of the scene file that were skipped
 
     Json view;  // camera and lights after applying command-line options (view_json() in scene_report.hpp)
 
@@ -78,6 +78,7 @@ struct RenderReport {
         std::string tuned;  // source of lanes, group and related options: "defaults", "options", "FILE, DATE"
     } device;
 
+    bool counted = true;  // false: only rays and their hits were counted, so loads and modelled times are missing
     EventCounts events{};
     std::optional<std::uint64_t> requests;            // number of pixel requests; empty: scheduling was static
     Load load;                                        // loads summed over all phases
@@ -91,6 +92,7 @@ struct RenderReport {
     std::vector<Json> ranks;  // device, times, messages and roofline of each MPI rank; empty for one rank
     std::vector<std::string> rank_rooflines;  // with --profile or --page: roofline of each rank, as text
 
+    double accel_s = 0;  // measured time to build the grid or BVH; 0: none
     struct {
         double build_s = 0, render_s = 0;
         std::vector<LabelSummary> commands;

@@ -53,17 +53,18 @@ std::string machine_text(const RenderReport& r) {
 std::string accel_line(const RenderReport& r) {
     if (!r.accel) return {};
     const AccelSummary& a = *r.accel;
-    const EventCounts& e = r.events;
-    const auto rays = static_cast<double>(ray_count(e));
-    const double tests = static_cast<double>(test_count(e)) / rays, steps = static_cast<double>(e[RAYA_STEPS]) / rays;
+    const auto rays = static_cast<double>(ray_count(r.events));
+    const std::string tests =
+        r.counted ? fmt::format("; {:.1f} tests and {:.1f} {} a ray", static_cast<double>(test_count(r.events)) / rays,
+                                static_cast<double>(r.events[RAYA_STEPS]) / rays,
+                                a.kind == AccelKind::kBvh ? "nodes" : "steps")
+                  : "";
     const std::string separate = a.separate ? fmt::format(", {} listed separately", a.separate) : "";
     if (a.kind == AccelKind::kBvh)
-        return fmt::format("bvh     {}, {}, depth {}{}; {:.1f} tests and {:.1f} nodes a ray\n",
-                           counted(a.nodes, "node"), counted(a.leaves, "leaf", "leaves"), a.depth, separate, tests,
-                           steps);
-    return fmt::format("grid    {}x{}x{} voxels, {} of objects{}; {:.1f} tests and {:.1f} steps a ray\n",
-                       a.divisions[0], a.divisions[1], a.divisions[2], counted(a.copies, "copy", "copies"), separate,
-                       tests, steps);
+        return fmt::format("bvh     {}, {}, depth {}{}{}\n", counted(a.nodes, "node"),
+                           counted(a.leaves, "leaf", "leaves"), a.depth, separate, tests);
+    return fmt::format("grid    {}x{}x{} voxels, {} of objects{}{}\n", a.divisions[0], a.divisions[1], a.divisions[2],
+                       counted(a.copies, "copy", "copies"), separate, tests);
 }
 
 std::string scale_line(const RenderReport& r) {
@@ -106,8 +107,9 @@ std::string summary_text(const RenderReport& r) {
                     machine_text(r), r.machine.format, counted(r.machine.bounces, "bounce"));
     text += fmt::format("rays    {} = {} primary + {} reflected + {} refracted + {} shadow\n", rays, e[RAYA_PRIMARY],
                         e[RAYA_REFLECTED], e[RAYA_REFRACTED], e[RAYA_SHADOW]);
-    text += load_line("load", r.load, r.requests ? ", simulated" : "");
-    text += r.torus ? torus_lines(*r.torus) : antialias_lines(r) + model_line(r);
+    if (r.counted) text += load_line("load", r.load, r.requests ? ", simulated" : "");
+    text += r.torus ? torus_lines(*r.torus) : antialias_lines(r);
+    if (r.counted && !r.torus) text += model_line(r);
     text += accel_line(r) + scale_line(r) + memory_line(r);
     text += fmt::format("time    kernel build {:.2f} s, render {:.3f} s, {} on {} ({})\n", r.measured.build_s,
                         r.measured.render_s, rate_text(static_cast<double>(rays) / r.measured.render_s), r.device.name,

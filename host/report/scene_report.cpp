@@ -76,10 +76,6 @@ Json list_json(const std::vector<T>& list, Json (*element_json)(const T&)) {
     return json;
 }
 
-Json remark_json(const NffRemark& remark) {
-    return {{"what", remark.what}, {"count", remark.count}, {"line", remark.line}};
-}
-
 std::string objects_text(const Scene& s) {
     std::vector<std::string> kinds;
     const auto add = [&](std::uint64_t count, const std::string& singular, const std::string& plural) {
@@ -173,7 +169,7 @@ Json to_json(const SceneReport& r) {
     json["raya"] = r.raya;
     json["scene"] = r.file;
     json["warnings"] = r.warnings;
-    json["skipped"] = list_json(r.skipped, remark_json);
+    json["skipped"] = skipped_json(r.skipped);
     json["objects"] = objects_json(s);
     json["surfaces"] = s.surfaces.size();
     json["checkers"] = count_checkers(s);
@@ -193,12 +189,25 @@ std::string summary_text(const SceneReport& r) {
                         vector_text(r.scene.background));
     text += fmt::format("lights  {}\n", lights_text(r.scene));
     text += fmt::format("extent  {}\n", extent_text(r));
-    for (const NffRemark& remark : r.skipped) text += fmt::format("skipped {}\n", remark_text(r.file, remark));
+    for (const SceneRemark& remark : r.skipped) text += fmt::format("skipped {}\n", remark_text(r.file, remark));
     for (const FormatFit& f : r.formats) text += fmt::format("format  {}\n", format_text(f));
     return text + "\n" + machine_table(r.machines) + refusals_text(r.machines);
 }
 
 Json vector_json(const Vec3& v) { return std::array{v.x, v.y, v.z}; }
+
+Json skipped_json(const std::vector<SceneRemark>& skipped) {
+    Json list = Json::array();
+    for (const SceneRemark& remark : skipped) {
+        Json json = {{"what", remark.what}, {"count", remark.count}};
+        if (remark.line > 0)
+            json["line"] = remark.line;
+        else
+            json["place"] = remark.place;
+        list.push_back(json);
+    }
+    return list;
+}
 
 Json view_json(const Scene& scene) {
     Json lights = Json::array();

@@ -11,7 +11,7 @@
 #include "host/base/json.hpp"
 #include "host/model/machine.hpp"
 #include "host/scene/length_scale.hpp"
-#include "host/scene/nff.hpp"
+#include "host/scene/remark.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {
@@ -49,7 +49,7 @@ struct SceneReport {
     std::string file;
     Scene scene;
     Imath::Box3d box;  // bounding box of the finite objects
-    std::vector<NffRemark> skipped;
+    std::vector<SceneRemark> skipped;
     std::vector<std::string> warnings;
     std::vector<FormatFit> formats;
     std::vector<MachineNeeds> machines;
@@ -63,6 +63,9 @@ Json to_json(const SceneReport& report);
 std::string summary_text(const SceneReport& report);
 
 Json vector_json(const Vec3& v);
+
+/// Returns the member `skipped` of a report.
+Json skipped_json(const std::vector<SceneRemark>& skipped);
 
 /// Returns camera, background, and lights with their emitted colours. A render with these values as --from, --at,
 /// --up, --angle, --background and --light gives the same image.

@@ -5,6 +5,8 @@
 #include <array>
 #include <functional>
 
+#include "host/base/huge_pages.hpp"
+#include "host/base/parallel.hpp"
 #include "host/error.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/ring/tracer.hpp"
@@ -13,13 +15,14 @@
 namespace raya {
 namespace {
 
+constexpr std::uint32_t kInterleavedPes = 16;
+
 /// Calls visit(PE, pixel, image pixel) for the pixels in `range` of the share of every PE of the segment. The arguments
 /// are the index of the PE in the segment, the index of the pixel in the PE's device buffer, and the index of the pixel
 /// in the image. Neighbouring PEs often own neighbouring columns, so the runs of kInterleavedPes PEs are interleaved
 /// for memory locality.
 template <class Visit>
 void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange range, Visit&& visit) {
-    constexpr std::uint32_t kInterleavedPes = 16;
     for (std::uint32_t first = 0; first < segment.count; first += kInterleavedPes) {
         const std::uint32_t pes = std::min(kInterleavedPes, segment.count - first);
         std::array<raya_share, kInterleavedPes> shares{};
@@ -49,8 +52,9 @@ void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange 
 }
 
 Image black_image(const raya_mapping& m) {
-    return {static_cast<int>(m.width), static_cast<int>(m.height),
-            std::vector<float>(3 * std::size_t{m.width} * m.height)};
+    Image image{static_cast<int>(m.width), static_cast<int>(m.height), {}};
+    resize_in_huge_pages(image.rgb, 3 * std::size_t{m.width} * m.height);
+    return image;
 }
 
 // Throws DeviceError unless one primary ray was counted for each pixel of this rank. Some devices silently end long
@@ -98,7 +102,7 @@ void RingRenderer::place_gathered_and_allocate(RingResult& result) {
     const SpanLog::Span span = session_.span("prepare memory");
     if (result.image.rgb.empty() && ranks_.is_first()) result.image = black_image(settings_.mapping);
     place_gathered_pixels(result);
-    gathered_.resize(pixels_.size());
+    resize_in_huge_pages(gathered_, pixels_.size());
 }
 
 void RingRenderer::gather(PixelRange range, RingResult& result) {
@@ -125,13 +129,19 @@ void RingRenderer::place_gathered_pixels(RingResult& result) {
 void RingRenderer::place_pixels(const PeSegment& pes, PixelRange range, std::span<const float> pixels,
                                 RingResult& result) const {
     const std::size_t window = window_;
-    const float* const colours = pixels.data();
     float* const image = result.image.rgb.data();
-    for_each_pixel(settings_.mapping, pes, range, [=](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
-        const float* const red = colours + 3 * pe * window + pixel;
-        image[3 * image_pixel] = *red;
-        image[3 * image_pixel + 1] = red[window];
-        image[3 * image_pixel + 2] = red[2 * window];
+    constexpr std::size_t kFewPixels = 1 << 16;
+    const std::uint32_t parts = (pes.count + kInterleavedPes - 1) / kInterleavedPes;
+    parallel_for(parts, pixels.size() > 3 * kFewPixels ? core_count() : 1, [&](std::size_t part) {
+        const auto skipped = static_cast<std::uint32_t>(part) * kInterleavedPes;
+        const PeSegment some{pes.first + skipped, std::min(kInterleavedPes, pes.count - skipped)};
+        const float* const colours = pixels.data() + 3 * skipped * window;
+        for_each_pixel(settings_.mapping, some, range, [=](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
+            const float* const red = colours + 3 * pe * window + pixel;
+            image[3 * image_pixel] = *red;
+            image[3 * image_pixel + 1] = red[window];
+            image[3 * image_pixel + 2] = red[2 * window];
+        });
     });
 }
 

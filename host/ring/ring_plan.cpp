@@ -46,9 +46,11 @@ PackedJob pack_in_span(const Session& session, const Scene& scene, const RingSet
     return pack_for_ring(scene, settings, scale);
 }
 
-RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSettings& settings) {
+RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSettings& settings,
+                      const std::function<void()>& packed) {
     const LengthScale scale = length_scale(scene, settings.format);
     RingJob job{pack_in_span(session, scene, settings, scale), {}, 0, scale, scene.object_count()};
+    if (packed) packed();
     if (settings.accel.kind == AccelKind::kNone) return job;
     const SpanLog::Span span = session.span("divide scene");
     const Clock::time_point start = Clock::now();
@@ -67,6 +69,16 @@ struct RingFigures {
 };
 
 }  // namespace
+
+void use_packets(RingSettings& settings, bool may_change_mapping) {
+    if (settings.accel.kind != AccelKind::kBvh || !settings.format.is_fp32() || settings.dynamic) return;
+    const raya_mapping& m = settings.mapping;
+    if (may_change_mapping && settings.antialias.method == AntialiasMethod::kNone)
+        for (const auto& [width, height] : {std::pair{4u, 4u}, {8u, 2u}, {2u, 8u}, {16u, 1u}})
+            if (m.kind != RAYA_TILES && m.width % width == 0 && m.height % height == 0)
+                settings.mapping = make_mapping(tiles_mapping(width, height), {m.width, m.height}, m.pes);
+    settings.packets = m.kind == RAYA_TILES;
+}
 
 JobSettings job_settings(const RingSettings& settings, const LengthScale& scale) {
     return {{settings.mapping.width, settings.mapping.height},
@@ -126,11 +138,16 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
             .polygons = job.has_polygons(),
             .patches = job.has_patches(),
             .cones = job.has_cones(),
+            .packets = settings.packets,
             .tuning = settings.kernels.tuning};
 }
 
 PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
-    PackedJob job = pack_job(scene, job_settings(settings, scale));
+    // More than most BVHs need. Without it, append_accel() would copy the job to other memory.
+    constexpr std::size_t kBvhWordsPerObject = 20;
+    JobSettings for_job = job_settings(settings, scale);
+    if (settings.accel.kind == AccelKind::kBvh) for_job.spare_words = kBvhWordsPerObject * scene.object_count();
+    PackedJob job = pack_job(scene, for_job);
     raya_job header = job.header();
     header.mapping = settings.mapping;
     job.set_header(header);
@@ -143,7 +160,8 @@ AccelSummary append_accel(PackedJob& job, const RingSettings& settings) {
                : append_grid(job, accel_partition(job, settings.format, settings.accel));
 }
 
-RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks) {
+RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks,
+                      const std::function<void()>& packed) {
     if (!ranks.is_first()) {
         RingFigures figures;
         std::vector<std::uint32_t> words;
@@ -153,7 +171,7 @@ RingJob make_ring_job(const Session& session, const Scene& scene, const RingSett
         return {PackedJob(header, std::move(words), figures.has_patches), figures.accel, figures.accel_s, figures.scale,
                 figures.objects};
     }
-    RingJob job = pack_ring_job(session, scene, settings);
+    RingJob job = pack_ring_job(session, scene, settings, packed);
     if (!ranks.has_several()) return job;
     const SpanLog::Span span = session.span("send scene");
     RingFigures figures{job.accel, job.accel_s, job.scale, job.objects, job.job.has_patches()};

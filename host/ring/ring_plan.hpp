@@ -1,6 +1,7 @@
 // Preparation of a render on a ring machine: the user's settings, the settings that raya chooses, and the packed scene.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "host/cl/commands.hpp"
@@ -27,6 +28,9 @@ struct RingSettings {
     NumberFormat format;
     Sampling sampling = Sampling::kCentres;
     Antialias antialias;
+    // Rays of neighbouring pixels descend through the BVH together, which takes less time. Only rays and their hits are
+    // counted then, because the numbers of steps and tests would depend on the neighbours. See use_packets().
+    bool packets = false;
     bool record_costs = false;  // record each pixel's cost, which takes 8 bytes of host memory; implied by `dynamic`
     Accel accel;
     KernelChoice kernels;
@@ -37,6 +41,10 @@ struct RingSettings {
     // about one second.
     std::uint32_t work_per_launch = 0;
 };
+
+/// Sets settings.packets if that is possible: in fp32 with a BVH, if the mapping is tiles, so that the lanes hold
+/// neighbouring pixels. If `may_change_mapping`, first chooses small tiles that divide the image, if there are any.
+void use_packets(RingSettings& settings, bool may_change_mapping);
 
 JobSettings job_settings(const RingSettings& settings, const LengthScale& scale);
 
@@ -73,7 +81,9 @@ PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const 
 /// Builds the accelerator of settings.accel, which must not be kNone, and appends it to the job.
 AccelSummary append_accel(PackedJob& job, const RingSettings& settings);
 
-/// Collective: rank 0 packs the scene and sends the job to all ranks. Other ranks do not use `scene`.
-RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks);
+/// Collective: rank 0 packs the scene, calls `packed` if it is not empty, and sends the job to all ranks. After the
+/// call of `packed` the scene's objects are not used. Other ranks do not use `scene`.
+RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks,
+                      const std::function<void()>& packed = {});
 
 }  // namespace raya

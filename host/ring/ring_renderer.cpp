@@ -32,12 +32,13 @@ std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings
 
 }  // namespace
 
-RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks)
+RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks,
+                           const std::function<void()>& packed)
     : session_(session),
       ranks_(ranks),
       settings_(checked_settings(settings, session.device())),
       pes_(checked_segment(settings_.mapping, ranks)),
-      job_(make_ring_job(session, scene, settings_, ranks)),
+      job_(make_ring_job(session, scene, settings_, ranks, packed)),
       share_pixels_(largest_share(settings_.mapping)),
       memory_(plan_pe_memory(settings_.machine, pe_demand(settings_, scene.name, job_.job.words().size()))),
       window_(device_window(memory_, settings_)),

@@ -25,9 +25,11 @@ namespace raya {
 class RingRenderer {
   public:
     /// Packs the scene, checks that it fits a PE's memory, builds the kernels and allocates the device memory for the
-    /// PEs of this rank. Only rank 0 uses `scene`. Throws UserError if the scene does not fit, a setting is out of
+    /// PEs of this rank. Only rank 0 uses `scene`; it calls `packed`, if not empty, when it no longer needs the scene's
+    /// objects. Throws UserError if the scene does not fit, a setting is out of
     /// range or there are more ranks than PEs, and DeviceError if the device fails.
-    RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks = Ranks::single());
+    RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks = Ranks::single(),
+                 const std::function<void()>& packed = {});
 
     /// Renders one image. May be called repeatedly. In ranks other than 0 the result covers only this rank and has no
     /// image. With `checkpointing` the image is traced in bands, and a checkpoint may be saved after each band. A

@@ -34,7 +34,8 @@ Tracer::Tracer(Kernels& kernels, const PeSegment& pes, std::uint32_t capacity, c
       saved_trees_(session_.buffer<std::uint32_t>("saved trees", saved_tree_words(options_, pes.count))) {}
 
 PassCounters Tracer::make_counters(const std::string& pass) const {
-    return {session_.buffer<std::uint64_t>("pixel cycles of " + pass, std::size_t{pes_.count} * capacity_),
+    const std::size_t costs = options_.packets ? 1 : std::size_t{pes_.count} * capacity_;  // else not counted
+    return {session_.buffer<std::uint64_t>("pixel cycles of " + pass, costs),
             session_.buffer<std::uint64_t>("events of " + pass,
                                            std::size_t{pes_.count} * options_.group_size * RAYA_EVENTS)};
 }

@@ -16,8 +16,8 @@ namespace {
 constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // values of the parameter `parts` of rounded()
 
 void check_count(const char* kind, int count) {
-    if (count < 1 || count > kMaxSpheres)
-        throw UserError(fmt::format("{}: {} spheres: must be 1..{}", kind, count, kMaxSpheres));
+    if (count < 1 || count > kMaxObjects)
+        throw UserError(fmt::format("{}: {} spheres: must be 1..{}", kind, count, kMaxObjects));
 }
 
 /// Returns a view of the cube [-1, 1]^3 from outside one of its corners. The cube fills most of the image.
@@ -105,6 +105,7 @@ Scene generate_uniform(int count, std::array<int, 3> voxels) {
          {Colour(0.9, 0.5, 0.3), Colour(0.4, 0.7, 0.9), Colour(0.9, 0.8, 0.4), Colour(0.5, 0.8, 0.5)})
         scene.surfaces.push_back({colour, 0.9, 0, 0, 0, 1, {}});
     const Vec3 sides(2.0 / voxels[0], 2.0 / voxels[1], 2.0 / voxels[2]);
+    scene.spheres.reserve(static_cast<std::size_t>(count));
     SplitMix random(static_cast<std::uint64_t>(count));
     for (std::int64_t voxel = 0; voxel < voxel_count; ++voxel) {
         const std::int64_t spheres = (voxel + 1) * count / voxel_count - voxel * count / voxel_count;
@@ -131,6 +132,7 @@ Scene generate_random(int count, std::uint64_t seed) {
         scene.surfaces.push_back(
             {rounded({red, green, blue}, kMillionths), 0.9 - specular, specular, i % 3 == 0 ? 0.0 : 30.0, 0, 1, {}});
     }
+    scene.spheres.reserve(static_cast<std::size_t>(count));
     const double mean_radius = std::cbrt(0.05 * 8 / (count * 4 / 3.0 * std::numbers::pi));
     for (int i = 0; i < count; ++i) {
         const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);

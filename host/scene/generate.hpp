@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <string_view>
 
 #include "host/scene/scene.hpp"
 
@@ -12,7 +14,8 @@ namespace raya {
 inline constexpr int kMaxBallsLevel = 6;    // `level` of generate_balls(); makes 597,871 spheres
 inline constexpr int kMaxLatticeSize = 64;  // `size` of generate_lattice(); makes 274,625 spheres and 811,200 cylinders
 inline constexpr int kMaxGearsSize = 16;    // `size` of generate_gears(); makes 598,017 polygons
-inline constexpr int kMaxSpheres = 1'000'000;  // `count` of generate_uniform() and generate_random()
+// `count` of generate_uniform() and generate_random(), `triangles` of generate_terrain()
+inline constexpr int kMaxObjects = 20'000'000;
 inline constexpr int kMaxVoxelsPerAxis = 256;  // each element of `voxels` of generate_uniform()
 inline constexpr int kMaxVoxels = 1'048'576;   // product of `voxels` of generate_uniform()
 
@@ -42,14 +45,26 @@ Scene generate_gears(int size);
 
 /// `count` matt spheres in the cube [-1, 1]^3, distributed evenly over v = voxels[0] * voxels[1] * voxels[2] voxels:
 /// every voxel contains floor(count / v) or ceil(count / v) spheres. Each sphere lies inside its voxel, and no two
-/// spheres touch. The scene has one light. Throws UserError unless 1 <= count <= 1,000,000, 1 <= voxels[axis] <= 256
+/// spheres touch. The scene has one light. Throws UserError unless 1 <= count <= 20,000,000, 1 <= voxels[axis] <= 256
 /// and v <= 1,048,576.
 Scene generate_uniform(int count, std::array<int, 3> voxels);
 
 /// `count` spheres with uniformly random centres in the cube [-1, 1]^3. Radii are 0.5 to 1.5 times r, and at most 0.6;
 /// r is the radius with which `count` equal spheres have a twentieth of the cube's volume. Spheres may overlap. Their
-/// twelve surfaces are matt, glossy or mirroring. Throws UserError unless 1 <= count <= 1,000,000.
+/// twelve surfaces are matt, glossy or mirroring. Throws UserError unless 1 <= count <= 20,000,000.
 Scene generate_random(int count, std::uint64_t seed);
+
+/// A height field of `triangles` triangles above a square: octaves of value noise (D. S. Ebert et al., "Texturing and
+/// Modeling: A Procedural Approach", 1994), computed in integers so that it is equal on all platforms. The square's
+/// cells have side 1, and each has two triangles; the last row of cells may be incomplete. The scene has one matt
+/// surface and one light. Throws UserError unless 1 <= triangles <= 20,000,000.
+Scene generate_terrain(int triangles, std::uint64_t seed);
+
+/// Return functions that return the terrain as NFF (the text of write_nff()) or as binary PLY in pieces, for
+/// write_whole_file(). They need memory for two rows of cells only. The PLY file has little-endian floats and no view,
+/// light or surface.
+std::function<std::string_view()> terrain_nff(int triangles, std::uint64_t seed);
+std::function<std::string_view()> terrain_ply(int triangles, std::uint64_t seed);
 
 /// The project's main scene, an example of the worst case for a static distribution of pixels over PEs (Kohata & Ito,
 /// IPSJ Journal 1993): expensive glass and mirror spheres in the centre of the image, above a cheap checkered plane.

@@ -16,28 +16,24 @@
 // An entity starts on a new line. Its numbers may span several lines, except after `#raya`. All six parts of `v` are
 // required, in any order. `hither` does not change the image.
 #pragma once
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "host/base/parallel.hpp"
+#include "host/scene/remark.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {
 
-/// A remark on a part of a file that the reader has left out or changed. Equal remarks are stored once and counted.
-struct NffRemark {
-    std::string what;         // description: "polygon without area, left out"
-    std::uint64_t count = 0;  // number of equal remarks
-    int line = 0;             // line of the first occurrence
+/// How parse_nff() divides a long text. The result, errors and remarks do not depend on it.
+struct NffPieces {
+    std::size_t bytes = std::size_t{1} << 20;  // length of a piece
+    unsigned threads = core_count();
 };
-
-/// Adds a remark, or increments the count of the equal remark if there is one.
-void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line);
-
-/// Returns the remark as text: "FILE:LINE: polygon without area, left out (3 in all)".
-std::string remark_text(const std::string& file, const NffRemark& remark);
 
 /// Parses NFF. In the returned scene, equal surfaces are merged (merge_equal_surfaces()), and normals have length 1.
 /// The scene's name is `name` without folder. Throws UserError "NAME:LINE: reason" if the text is not NFF or the scene
@@ -47,15 +43,19 @@ std::string remark_text(const std::string& file, const NffRemark& remark);
 /// objects without size and polygons without area, cuts polygons that are not flat into triangles, converts patches
 /// with a normal of 0 into polygons, and skips entities of other NFF dialects (la, lf, tt, ...) and a mail header.
 /// Prose, a missing view and a file without objects remain errors.
-Scene parse_nff(std::string_view text, const std::string& name, std::vector<NffRemark>* remarks = nullptr);
+Scene parse_nff(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks = nullptr,
+                const NffPieces& pieces = {});
 
 /// Reads and parses a file; "-" reads from stdin, which is named "stdin" in messages. Throws UserError as parse_nff()
 /// does, and UserError "NAME: reason" if the file cannot be read.
-Scene read_nff(const std::filesystem::path& path, std::vector<NffRemark>* remarks = nullptr);
+Scene read_nff(const std::filesystem::path& path, std::vector<SceneRemark>* remarks = nullptr);
 
 /// Returns a scene as NFF text. Numbers have the minimum number of digits that round-trip, so parse_nff() of the text
 /// returns an equal scene if equal surfaces of `scene` are merged (merge_equal_surfaces()). Throws UserError for a
 /// checker on a sphere or cone, which NFF cannot express.
 std::string write_nff(const Scene& scene);
+
+/// Returns a function that returns the text of write_nff() in pieces, for write_whole_file(). `scene` must outlive it.
+std::function<std::string_view()> nff_pieces(const Scene& scene);
 
 }  // namespace raya

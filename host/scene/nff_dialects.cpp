@@ -92,18 +92,4 @@ MailHeader mail_header(std::string_view text) {
     return {at, static_cast<int>(std::max(count_of('\n'), count_of('\r')))};
 }
 
-void add_remark(std::vector<NffRemark>& remarks, const std::string& what, int line) {
-    const auto equal_remark =
-        std::find_if(remarks.begin(), remarks.end(), [&](const NffRemark& known) { return known.what == what; });
-    if (equal_remark == remarks.end())
-        remarks.push_back({what, 1, line});
-    else
-        ++equal_remark->count;
-}
-
-std::string remark_text(const std::string& file, const NffRemark& remark) {
-    const std::string total = remark.count > 1 ? fmt::format(" ({} in all)", remark.count) : "";
-    return fmt::format("{}:{}: {}{}", file, remark.line, remark.what, total);
-}
-
 }  // namespace raya

@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <system_error>
 #include <utility>
@@ -16,9 +18,21 @@ namespace {
 
 constexpr std::string_view kDirective = "#raya";
 
-bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+enum class CharKind : std::uint8_t { kText, kBlank, kLineEnd, kHash, kBinary };
 
-bool is_binary(char c) { return (static_cast<unsigned char>(c) < ' ' && !is_blank(c)) || c == '\x7f'; }
+constexpr std::array<CharKind, 256> kCharKinds = [] {
+    std::array<CharKind, 256> kinds{};
+    for (std::size_t c = 0; c < ' '; ++c) kinds[c] = CharKind::kBinary;
+    kinds[0x7f] = CharKind::kBinary;
+    for (const char c : {' ', '\t', '\v', '\f'}) kinds[static_cast<std::size_t>(c)] = CharKind::kBlank;
+    for (const char c : {'\r', '\n'}) kinds[static_cast<std::size_t>(c)] = CharKind::kLineEnd;
+    kinds['#'] = CharKind::kHash;
+    return kinds;
+}();
+
+CharKind kind_of(char c) { return kCharKinds[static_cast<unsigned char>(c)]; }
+
+bool is_blank(char c) { return kind_of(c) == CharKind::kBlank || kind_of(c) == CharKind::kLineEnd; }
 
 struct ParsedNumber {
     double value = 0;
@@ -64,24 +78,37 @@ bool NffTokens::is_at_directive() const {
     return rest.size() == kDirective.size() || is_blank(rest[kDirective.size()]);
 }
 
+void NffTokens::refuse_binary() const {
+    refuse(line_, "a control character: is this a binary file? NFF is plain text");
+}
+
 void NffTokens::skip_blanks_and_comments() {
     bool comment = false;
     for (; position_ < text_.size(); ++position_) {
-        const char c = text_[position_];
-        if (is_binary(c)) refuse(line_, "a control character: is this a binary file? NFF is plain text");
-        if (c == '\n' || c == '\r') {
-            const bool is_cr_of_crlf = c == '\r' && text_.substr(position_ + 1).starts_with('\n');
-            line_ += is_cr_of_crlf ? 0 : 1;
-            at_line_start_ = true;
-            comment = false;
-        } else if (c == '#' && !comment) {
-            if (is_at_directive()) {
-                if (at_line_start_) return;
-                refuse(line_, "'#raya' must be the first word of its line");
+        switch (kind_of(text_[position_])) {
+            case CharKind::kBinary:
+                refuse_binary();
+            case CharKind::kLineEnd: {
+                const bool is_cr_of_crlf =
+                    text_[position_] == '\r' && position_ + 1 < text_.size() && text_[position_ + 1] == '\n';
+                line_ += is_cr_of_crlf ? 0 : 1;
+                at_line_start_ = true;
+                comment = false;
+                break;
             }
-            comment = true;
-        } else if (!comment && !is_blank(c)) {
-            return;
+            case CharKind::kHash:
+                if (comment) break;
+                if (is_at_directive()) {
+                    if (at_line_start_) return;
+                    refuse(line_, "'#raya' must be the first word of its line");
+                }
+                comment = true;
+                break;
+            case CharKind::kText:
+                if (!comment) return;
+                break;
+            case CharKind::kBlank:
+                break;
         }
     }
 }
@@ -89,13 +116,30 @@ void NffTokens::skip_blanks_and_comments() {
 void NffTokens::advance() {
     skip_blanks_and_comments();
     const std::size_t start = position_;
-    while (position_ < text_.size() && !is_blank(text_[position_])) {
-        if (text_[position_] == '#' && position_ > start) break;
-        if (is_binary(text_[position_])) refuse(line_, "a control character: is this a binary file? NFF is plain text");
-        ++position_;
-    }
+    if (position_ < text_.size()) ++position_;
+    while (position_ < text_.size() && kind_of(text_[position_]) == CharKind::kText) ++position_;
+    if (position_ < text_.size() && kind_of(text_[position_]) == CharKind::kBinary) refuse_binary();
     next_ = {text_.substr(start, position_ - start), line_, at_line_start_};
     at_line_start_ = false;
+}
+
+void NffTokens::start_at(std::size_t position) {
+    position_ = position;
+    line_ = 1;
+    at_line_start_ = true;
+    advance();
+}
+
+void NffTokens::continue_after(const NffTokens& piece) {
+    const int lines = next_.line - 1;  // before the piece
+    position_ = piece.position_;
+    line_ = piece.line_ + lines;
+    at_line_start_ = piece.at_line_start_;
+    next_ = piece.next_;
+    next_.line += lines;
+    entity_ = piece.entity_;
+    entity_line_ = piece.entity_line_ + lines;
+    one_line_ = piece.one_line_;
 }
 
 std::string_view NffTokens::take_keyword() {

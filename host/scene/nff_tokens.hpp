@@ -31,6 +31,18 @@ class NffTokens {
     /// file, are an error.
     NffTokens(std::string_view text, std::string name, int first_line = 1);
 
+    /// Moves to the token at `position`, the start of a line, which becomes line 1.
+    void start_at(std::size_t position);
+
+    /// Moves to where `piece` is. `piece` is another reader of the same text that started at this reader's next token.
+    void continue_after(const NffTokens& piece);
+
+    /// The whole text, without a byte order mark.
+    std::string_view text() const { return text_; }
+
+    /// Index of the next token in text().
+    std::size_t next_at() const { return position_ - next_.text.size(); }
+
     /// Returns the next token without taking it.
     const NffToken& peek() const { return next_; }
 
@@ -66,6 +78,7 @@ class NffTokens {
   private:
     void advance();
     void skip_blanks_and_comments();
+    [[noreturn]] void refuse_binary() const;
     bool is_at_directive() const;
     NffToken take_part(std::string_view what);
 

@@ -17,6 +17,10 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 void drop_repeats(Polygon& polygon) {
+    const auto& vertices = polygon.vertices;
+    if (!vertices.empty() && vertices.front() != vertices.back() &&
+        std::adjacent_find(vertices.begin(), vertices.end()) == vertices.end())
+        return;
     const Polygon original = std::exchange(polygon, {{}, {}, polygon.surface});
     const std::size_t count = original.vertices.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -69,6 +73,22 @@ OutlineCheck clean_outline(Polygon& polygon) {
                             "it into triangles",
                             off_plane, kFlatness * size, kFlatness)};
     return {};
+}
+
+void add_polygon(Scene& scene, Polygon polygon, const RemarkOrRefuse& report) {
+    const OutlineCheck check = clean_outline(polygon);
+    if (check.fault == OutlineFault::kNone) {
+        scene.polygons.push_back(std::move(polygon));
+        return;
+    }
+    if (check.fault == OutlineFault::kCrosses)
+        return report("the polygon " + check.reason, "polygon that " + check.reason + ", left out");
+    // A triangle is flat by definition. If the check says otherwise, it is a sliver with almost no area, and it cannot
+    // be cut into triangles.
+    if (check.fault == OutlineFault::kNoArea || polygon.vertices.size() == 3)
+        return report("the polygon " + check.reason, "polygon without area, left out");
+    report("the polygon " + check.reason, "polygon that is not flat, cut into triangles");
+    for (const Polygon& triangle : triangles_of(polygon)) add_polygon(scene, triangle, report);
 }
 
 std::string view_error(const View& view) {

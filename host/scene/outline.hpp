@@ -1,6 +1,8 @@
 // Validation of polygon outlines, views and colours from scene files and the command line.
 #pragma once
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include "host/scene/scene.hpp"
 
@@ -26,6 +28,14 @@ struct OutlineCheck {
 /// Removes each vertex that equals the previous one, with its normal, and checks the outline. A self-intersection is
 /// detected only if the signed area is 0.
 OutlineCheck clean_outline(Polygon& polygon);
+
+/// Reports a polygon that cannot be traced as given. Throws UserError with `reason`, a sentence about the polygon, or
+/// adds the remark `what`.
+using RemarkOrRefuse = std::function<void(const std::string& reason, const std::string& what)>;
+
+/// Adds a polygon to the scene after clean_outline(). Reports a polygon without area and leaves it out; reports a
+/// polygon that is not flat and cuts it into triangles.
+void add_polygon(Scene& scene, Polygon polygon, const RemarkOrRefuse& report);
 
 /// Returns `v` normalised. Returns a vector unchanged if its length is 1 up to rounding, so that writing and reading a
 /// scene does not change it; also returns the zero vector unchanged.

@@ -6,7 +6,9 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
+#include "host/base/parallel.hpp"
 #include "host/error.hpp"
 #include "host/scene/polygon.hpp"
 
@@ -74,22 +76,21 @@ void pack_surface(JobWords& words, const Surface& s) {
 // A flat polygon of the packed scene: a whole polygon, or one triangle of a patch.
 struct Face {
     const Polygon* polygon;
-    std::vector<int> corners;  // indices of vertices
+    std::span<const int> corners;  // indices of vertices
 };
 
-std::vector<Face> faces_of(const Scene& scene) {
-    std::vector<Face> faces;
-    for (const Polygon& p : scene.polygons) {
-        if (p.normals.empty() || p.vertices.size() == 3) {
-            Face whole{&p, {}};
-            for (int i = 0; i < static_cast<int>(p.vertices.size()); ++i) whole.corners.push_back(i);
-            faces.push_back(std::move(whole));
-        } else {
-            for (const auto& t : triangulate(p.vertices, newell_normal(p.vertices)))
-                faces.push_back({&p, {t[0], t[1], t[2]}});
-        }
+bool is_one_face(const Polygon& p) { return p.normals.empty() || p.vertices.size() == 3; }
+
+// Calls visit(face) for each face of a polygon.
+template <class Visit>
+void for_faces(const Polygon& p, const Visit& visit) {
+    if (is_one_face(p)) {
+        std::vector<int> corners(p.vertices.size());
+        std::iota(corners.begin(), corners.end(), 0);
+        return visit(Face{&p, corners});
     }
-    return faces;
+    for (const std::array<int, 3>& triangle : triangulate(p.vertices, newell_normal(p.vertices)))
+        visit(Face{&p, triangle});
 }
 
 struct Point2 {
@@ -120,26 +121,66 @@ void pack_patch(JobWords& words, const Face& face, int axis) {
     put_per_length(words, area != 0 ? (b.u * nc - c.u * nb) / area : Vec3(0));
 }
 
-void pack_faces(JobWords& words, const std::vector<Face>& faces, const std::vector<std::uint32_t>& surface_at) {
-    const std::size_t polygons_at = words.size();
-    words.resize(polygons_at + faces.size() * RAYA_POLYGON_WORDS);
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-        const Polygon& polygon = *faces[i].polygon;
-        const Vec3 normal = newell_normal(polygon.vertices).normalized();
-        const int axis = dropped_axis(normal);
-        JobWords record(words.format, words.unit);
-        put(record, normal);
-        put_length(record, normal.dot(polygon.vertices[0]));
-        record.push_back(surface_at[polygon.surface]);
-        put_index(record, axis);
-        put_index(record, faces[i].corners.size());
-        put_index(record, words.size());
-        pack_corners(words, faces[i]);
-        put_index(record, polygon.normals.empty() ? 0 : words.size());
-        if (!polygon.normals.empty()) pack_patch(words, faces[i], axis);
-        std::copy(record.begin(), record.end(),
-                  words.begin() + static_cast<std::ptrdiff_t>(polygons_at + i * RAYA_POLYGON_WORDS));
+// The words of some polygons: their faces' records, and the corners and normals to which the records refer.
+struct FaceWords {
+    std::size_t records = 0, details = 0;
+};
+
+FaceWords face_words(std::span<const Polygon> polygons) {
+    FaceWords words;
+    for (const Polygon& p : polygons) {
+        const std::size_t corners = p.vertices.size(),
+                          faces = is_one_face(p) ? 1 : std::max<std::size_t>(corners, 2) - 2;
+        words.records += faces * RAYA_POLYGON_WORDS;
+        words.details += (is_one_face(p) ? corners : 3 * faces) * RAYA_CORNER_WORDS;
+        if (!p.normals.empty()) words.details += faces * RAYA_PATCH_WORDS;
     }
+    return words;
+}
+
+// Appends a face to `records` and `details`. `details_at`: offset of `details` in the job.
+void pack_face(JobWords& records, JobWords& details, std::size_t details_at, const Face& face,
+               const std::vector<std::uint32_t>& surface_at) {
+    const Polygon& polygon = *face.polygon;
+    const Vec3 normal = newell_normal(polygon.vertices).normalized();
+    const int axis = dropped_axis(normal);
+    put(records, normal);
+    put_length(records, normal.dot(polygon.vertices[0]));
+    records.push_back(surface_at[polygon.surface]);
+    put_index(records, axis);
+    put_index(records, face.corners.size());
+    put_index(records, details_at + details.size());
+    pack_corners(details, face);
+    put_index(records, polygon.normals.empty() ? 0 : details_at + details.size());
+    if (!polygon.normals.empty()) pack_patch(details, face, axis);
+}
+
+// Appends all polygons, on several threads. Each thread packs a part of the polygons and copies their words into place.
+void pack_polygons(JobWords& words, std::span<const Polygon> polygons, const std::vector<std::uint32_t>& surface_at) {
+    constexpr std::size_t kPolygons = 1 << 14;  // of a part
+    const std::size_t parts = (polygons.size() + kPolygons - 1) / kPolygons;
+    const auto polygons_of = [&](std::size_t part) {
+        const std::size_t first = part * kPolygons;
+        return polygons.subspan(first, std::min(kPolygons, polygons.size() - first));
+    };
+    std::vector<FaceWords> starts(parts + 1);  // the words of all earlier parts
+    parallel_for(parts, core_count(), [&](std::size_t part) { starts[part + 1] = face_words(polygons_of(part)); });
+    for (std::size_t part = 0; part < parts; ++part) {
+        starts[part + 1].records += starts[part].records;
+        starts[part + 1].details += starts[part].details;
+    }
+    const std::size_t records_at = words.size(), details_at = records_at + starts[parts].records;
+    words.resize(details_at + starts[parts].details);
+    parallel_for(parts, core_count(), [&](std::size_t part) {
+        JobWords records(words.format, words.unit), details(words.format, words.unit);
+        const std::size_t own_records_at = records_at + starts[part].records;
+        const std::size_t own_details_at = details_at + starts[part].details;
+        for (const Polygon& polygon : polygons_of(part))
+            for_faces(polygon,
+                      [&](const Face& face) { pack_face(records, details, own_details_at, face, surface_at); });
+        std::copy(records.begin(), records.end(), words.begin() + static_cast<std::ptrdiff_t>(own_records_at));
+        std::copy(details.begin(), details.end(), words.begin() + static_cast<std::ptrdiff_t>(own_details_at));
+    });
 }
 
 void pack_cone(JobWords& words, const Cone& c, const std::vector<std::uint32_t>& surface_at) {
@@ -167,10 +208,16 @@ raya_job header_of(const Scene& scene, const JobSettings& settings) {
     return job;
 }
 
+std::size_t words_of_objects(const Scene& scene) {
+    const FaceWords faces = face_words(scene.polygons);
+    return scene.spheres.size() * (RAYA_SPHERE_WORDS + 1) + scene.lights.size() * RAYA_LIGHT_WORDS +
+           scene.planes.size() * RAYA_PLANE_WORDS + scene.cones.size() * RAYA_CONE_WORDS + faces.records +
+           faces.details;
+}
+
 // Appends spheres, lights, planes, cones and polygons. Writes the number of each kind and the offset of its list into
 // the job's header.
-void pack_objects(JobWords& words, raya_job& job, const Scene& scene, const std::vector<Face>& faces,
-                  const std::vector<std::uint32_t>& surface_at) {
+void pack_objects(JobWords& words, raya_job& job, const Scene& scene, const std::vector<std::uint32_t>& surface_at) {
     const auto start_list = [&](const auto& list, std::uint32_t& count, std::uint32_t& at) {
         count = static_cast<std::uint32_t>(list.size());
         at = static_cast<std::uint32_t>(words.size());
@@ -194,8 +241,10 @@ void pack_objects(JobWords& words, raya_job& job, const Scene& scene, const std:
     }
     start_list(scene.cones, job.objects.cones, job.objects.cones_at);
     for (const Cone& c : scene.cones) pack_cone(words, c, surface_at);
-    start_list(faces, job.objects.polygons, job.objects.polygons_at);
-    pack_faces(words, faces, surface_at);
+    job.objects.polygons_at = static_cast<std::uint32_t>(words.size());
+    job.objects.polygons =
+        static_cast<std::uint32_t>(face_words(scene.polygons).records / std::size_t{RAYA_POLYGON_WORDS});
+    pack_polygons(words, scene.polygons, surface_at);
 }
 
 }  // namespace
@@ -208,6 +257,12 @@ PackedJob::PackedJob(const raya_job& header, std::vector<std::uint32_t> words, b
 void PackedJob::set_header(const raya_job& header) {
     header_ = header;
     put_record(words_, 0, header);
+}
+
+std::span<std::uint32_t> PackedJob::append_zeros(std::size_t count) {
+    const std::size_t at = words_.size();
+    words_.resize(at + count);
+    return std::span(words_).subspan(at);
 }
 
 void PackedJob::append(const std::vector<std::uint32_t>& words) {
@@ -223,15 +278,15 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
         surface_at.push_back(static_cast<std::uint32_t>(words.size()));
         pack_surface(words, s);
     }
-    const std::vector<Face> faces = faces_of(scene);
-    pack_objects(words, job, scene, faces, surface_at);
-    if (words.size() > kMaxWords)
+    const std::size_t all_words = words.size() + words_of_objects(scene);
+    if (all_words > kMaxWords)
         throw UserError(
             fmt::format("{}: the scene needs {} words, more than 32-bit indices can address; use fewer objects",
-                        scene.name, words.size()));
-
+                        scene.name, all_words));
+    words.reserve(all_words + settings.spare_words);
+    pack_objects(words, job, scene, surface_at);
     const bool has_patches =
-        std::any_of(faces.begin(), faces.end(), [](const Face& f) { return !f.polygon->normals.empty(); });
+        std::any_of(scene.polygons.begin(), scene.polygons.end(), [](const Polygon& p) { return !p.normals.empty(); });
     return {job, std::move(words), has_patches};
 }
 

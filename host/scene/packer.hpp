@@ -55,6 +55,7 @@ struct JobSettings {
     std::array<std::uint32_t, RAYA_EVENTS> cycles{};  // modelled cycles of one event of each kind
     NumberFormat format{};                            // format of every number in the job
     int length_exponent = 0;                          // lengths are multiplied by 2^length_exponent; see length_scale()
+    std::size_t spare_words = 0;                      // for which memory is reserved after the job's words
 };
 
 /// The words of a job, which begin with its header.
@@ -71,6 +72,8 @@ class PackedJob {
 
     void set_header(const raya_job& header);
     void append(const std::vector<std::uint32_t>& words);
+    /// Appends `count` words of 0 and returns them. The span is valid until more words are appended.
+    std::span<std::uint32_t> append_zeros(std::size_t count);
 
   private:
     raya_job header_;

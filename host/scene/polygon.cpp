@@ -83,4 +83,16 @@ std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& vertices, c
     return triangles;
 }
 
+std::vector<Polygon> triangles_of(const Polygon& polygon) {
+    std::vector<Polygon> triangles;
+    for (const std::array<int, 3>& corners : triangulate(polygon.vertices, newell_normal(polygon.vertices))) {
+        Polygon& triangle = triangles.emplace_back(Polygon{{}, {}, polygon.surface});
+        for (const int corner : corners) {
+            triangle.vertices.push_back(polygon.vertices[static_cast<std::size_t>(corner)]);
+            if (!polygon.normals.empty()) triangle.normals.push_back(polygon.normals[static_cast<std::size_t>(corner)]);
+        }
+    }
+    return triangles;
+}
+
 }  // namespace raya

@@ -23,4 +23,7 @@ int dropped_axis(const Vec3& normal);
 /// ears", Amer. Math. Monthly 82, 1975), in the two coordinates other than dropped_axis().
 std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& vertices, const Vec3& normal);
 
+/// Returns the triangles of triangulate() as polygons, with the normals and the surface of `polygon`.
+std::vector<Polygon> triangles_of(const Polygon& polygon);
+
 }  // namespace raya

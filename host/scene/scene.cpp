@@ -1,5 +1,7 @@
 #include "host/scene/scene.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,6 +48,17 @@ void merge_equal_surfaces(Scene& scene) {
     renumber(scene.planes);
     renumber(scene.polygons);
     renumber(scene.cones);
+}
+
+void drop_objects(Scene& scene) {
+    // `= {}` would keep the vectors' memory.
+    scene.spheres = std::vector<Sphere>();
+    scene.planes = std::vector<Plane>();
+    scene.polygons = std::vector<Polygon>();
+    scene.cones = std::vector<Cone>();
+#ifdef __GLIBC__
+    malloc_trim(0);  // glibc keeps freed blocks of small size, which the vertices of polygons are
+#endif
 }
 
 Colour light_colour(const Scene& scene, const Light& light) {

@@ -108,6 +108,9 @@ struct Scene {
 /// the number of the first object that uses them.
 void merge_equal_surfaces(Scene& scene);
 
+/// Removes all objects and returns their memory to the system. A large scene's objects take more memory than its job.
+void drop_objects(Scene& scene);
+
 /// Returns the colour of a light of this scene: Light::colour, or if it is empty, white of intensity sqrt(n) / (2 n)
 /// for n lights (SPD, E. Haines).
 Colour light_colour(const Scene& scene, const Light& light);

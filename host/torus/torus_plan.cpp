@@ -43,9 +43,11 @@ NodeBuffers buffers_of(const Scene& scene, const NodeMemories& memories, const T
 
 // Packs the scene and divides it among all nodes. Returns the job with the memories of all nodes.
 TorusJob divide_scene(const Session& session, const Scene& scene, const TorusSettings& s,
-                      const NodeDistribution& distribution, const DeviceMemory& device) {
+                      const NodeDistribution& distribution, const DeviceMemory& device,
+                      const std::function<void()>& packed) {
     const LengthScale scale = length_scale(scene, s.format);
     const PackedJob job = packed_job(session, scene, s, scale);
+    if (packed) packed();
     const SpanLog::Span span = session.span("divide scene");
     const Partition partition = raya::partition(job, s.format, s.voxels);
     TorusJob whole_job{
@@ -194,9 +196,10 @@ DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks) {
 }
 
 TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& settings,
-                        const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks) {
+                        const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks,
+                        const std::function<void()>& packed) {
     if (!ranks.is_first()) return receive_job(distribution, ranks);
-    TorusJob job = divide_scene(session, scene, settings, distribution, device);
+    TorusJob job = divide_scene(session, scene, settings, distribution, device, packed);
     if (!ranks.has_several()) return job;
     const SpanLog::Span span = session.span("send nodes");
     send_to_ranks(job, distribution, ranks);

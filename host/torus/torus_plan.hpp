@@ -2,6 +2,7 @@
 // of the nodes.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -82,9 +83,11 @@ DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks);
 
 /// Collective: returns this rank's job. Rank 0 packs the scene, divides it among the nodes and sends each rank the
 /// words of its nodes; until then the host memory of rank 0 holds the words of all nodes. Other ranks do not read
-/// `scene`. `device`: smallest_device_memory(). Throws UserError if the scene or the buffers exceed the memory of a
+/// `scene`; rank 0 calls `packed`, if not empty, when it no longer needs the scene's objects. `device`:
+/// smallest_device_memory(). Throws UserError if the scene or the buffers exceed the memory of a
 /// node or of the device.
 TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& settings,
-                        const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks);
+                        const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks,
+                        const std::function<void()>& packed = {});
 
 }  // namespace raya

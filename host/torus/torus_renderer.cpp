@@ -46,11 +46,12 @@ struct TorusRenderer::Impl {
     void describe(TorusResult& result) const;
 };
 
-TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks) {
+TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks,
+                             const std::function<void()>& packed) {
     const TorusSettings chosen = checked_settings(settings, scene, session.device());
     const NodeDistribution distribution(chosen.torus, ranks.count(), ranks.rank());
     const DeviceMemory device_memory = smallest_device_memory(session.device(), ranks);
-    TorusJob job = make_torus_job(session, scene, chosen, distribution, device_memory, ranks);
+    TorusJob job = make_torus_job(session, scene, chosen, distribution, device_memory, ranks, packed);
     const KernelOptions options = kernel_options(chosen, job.header_only);
     impl_.reset(new Impl{.session = session,
                          .ranks = ranks,

@@ -2,6 +2,7 @@
 // other as packets.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "host/base/checkpoint.hpp"
@@ -20,9 +21,11 @@ namespace raya {
 class TorusRenderer {
   public:
     /// Collective: packs and divides the scene, checks that it fits the nodes, builds the kernels and allocates the
-    /// device memory for the nodes of this rank. Only rank 0 reads `scene`. Throws UserError if the scene does not fit,
+    /// device memory for the nodes of this rank. Only rank 0 reads `scene`; it calls `packed`, if not empty, when it no
+    /// longer needs the scene's objects. Throws UserError if the scene does not fit,
     /// a setting is out of range or there are more ranks than nodes, and DeviceError if the device fails.
-    TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks = Ranks::single());
+    TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks = Ranks::single(),
+                  const std::function<void()>& packed = {});
     ~TorusRenderer();
 
     /// Renders one image; can be called repeatedly. All ranks must set the same members of `observers`. In ranks other

@@ -9,6 +9,7 @@
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 #include "host/image/image.hpp"
+#include "host/mesh/mesh_file.hpp"
 #include "host/report/render_report.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
@@ -51,8 +52,8 @@ struct TrialInput {
 Scene scene_of(const TrialSetup& render, const Variant& variant) {
     constexpr const char* kSpheres = "scenes/spheres.nff";
     constexpr int kLevel = 4;
-    std::vector<NffRemark> remarks;  // not printed: the parent process prints them
-    if (!render.scene.empty()) return read_nff(render.scene, render.strict ? nullptr : &remarks);
+    std::vector<SceneRemark> remarks;  // not printed: the parent process prints them
+    if (!render.scene.empty()) return read_scene_file(render.scene, render.strict ? nullptr : &remarks);
     if (variant.accel != AccelKind::kNone) return generate_balls(kLevel);
     return parse_nff(embedded_files().at(kSpheres), kSpheres);
 }

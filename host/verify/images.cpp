@@ -62,11 +62,13 @@ Rendered render_on_ring(const KernelChoice& kernels, Session& session, const Ren
     settings.accel.kind = r.accel;
     settings.work_per_launch = r.work_per_launch;
     settings.kernels = kernels_for(kernels, r);
-    settings.record_costs = true;
+    settings.packets = r.packets;
+    settings.record_costs = !r.packets;
     if (r.pe_bytes) settings.machine.pe_memory_bytes = r.pe_bytes;
     RingResult result = RingRenderer(session, scene_of(image), settings).render();
-    const std::string counts = counts_text(
-        result.all.events, {{"cycles", sum(result.all.load.per_pe)}, {"pixel_cycles", sum(result.cost().cycles)}});
+    std::vector<std::pair<const char*, std::uint64_t>> cycles = {{"cycles", sum(result.all.load.per_pe)}};
+    if (!r.packets) cycles.emplace_back("pixel_cycles", sum(result.cost().cycles));
+    const std::string counts = counts_text(result.all.events, cycles);
     return {std::move(result.image), result.build_options, counts,
             launches_fault(r, session.device(), result.commands)};
 }

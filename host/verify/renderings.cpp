@@ -20,6 +20,7 @@ std::string Rendering::check_kind() const {
     if (torus)
         return fmt::format("{} {}{}{}", links_name(links), sides_text(nodes), inject == Injection::kRoot ? " root" : "",
                            queue ? fmt::format(", queue {}", queue) : "");
+    if (packets) return "packets";
     return accel == AccelKind::kNone ? "ring" : accel_text({.kind = accel});
 }
 
@@ -80,6 +81,19 @@ std::vector<Rendering> standard_renderings() {
         {.image = "polygons fp32", .min_depth = Depth::kQuick, .accel = AccelKind::kBvh},
         {.image = "leaves fp32", .min_depth = Depth::kQuick, .lanes = 4, .group_size = 1, .accel = AccelKind::kBvh},
         {.image = "leaves spa22", .min_depth = Depth::kQuick, .lanes = 1, .group_size = 1, .accel = AccelKind::kBvh},
+        {.image = "polygons fp32",
+         .min_depth = Depth::kQuick,
+         .mapping = tiles_mapping(4, 4),
+         .pes = 7,
+         .accel = AccelKind::kBvh,
+         .packets = true},
+        {.image = "leaves fp32", .mapping = tiles_mapping(4, 4), .pes = 7, .accel = AccelKind::kBvh, .packets = true},
+        {.image = "cones fp32",
+         .mapping = tiles_mapping(20, 1),
+         .pes = 7,
+         .accel = AccelKind::kBvh,
+         .packets = true,
+         .fallback_code = true},
         {.image = "polygons fp32", .accel = AccelKind::kBvh, .global_words = true, .fallback_code = true},
         {.image = "cones fp32", .lanes = 8, .group_size = 1, .accel = AccelKind::kBvh, .fallback_code = true},
         {.image = "polygons fp32", .lanes = 4, .group_size = 1, .accel = AccelKind::kBvh, .fallback_code = true},
@@ -146,6 +160,13 @@ std::vector<Rendering> renderings_of_all_builds() {
                 all.push_back({.image = image, .lanes = lanes, .group_size = group, .accel = AccelKind::kBvh});
                 all.push_back({.image = image, .lanes = lanes, .group_size = group, .torus = true});
             }
+            all.push_back({.image = "polygons fp32",
+                           .lanes = lanes,
+                           .group_size = group,
+                           .mapping = tiles_mapping(4, 4),
+                           .pes = 7,
+                           .accel = AccelKind::kBvh,
+                           .packets = true});
             all.push_back({.image = "glass fp32 filter", .lanes = lanes, .group_size = group});
             all.push_back({.image = "mirrors spa22 axes", .lanes = lanes, .group_size = group});
         }

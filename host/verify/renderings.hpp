@@ -22,6 +22,7 @@ struct Rendering {
     std::uint32_t pes = kReferenceSide;
     std::uint32_t work_per_launch = 0;  // see RingSettings and TorusSettings; 0: default
     AccelKind accel = AccelKind::kNone;
+    bool packets = false;  // ring: RingSettings::packets
     bool torus = false;
     std::array<std::uint32_t, 3> nodes = {2, 2, 2};
     // More voxels than nodes, so that some nodes have several.

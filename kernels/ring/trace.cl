@@ -62,10 +62,13 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
                               volatile __local uint* next, uint work) {
     ray_pool pool;
     open_pool(&pool);
+    // The minimum number of idle lanes that take new points. If all start together, their rays remain similar.
+    const uint refill = RAYA_RAY_PACKETS ? RAYA_LANES : 1;
     for (;;) {
         int active = 0;
         for (uint i = 0; i < RAYA_TREES; ++i) {
-            if (mask_any(mask_not(trees[i].active))) next_points(scene, &trees[i], store, &pixels[i], next);
+            const uint idle = popcount(mask_bits(mask_not(trees[i].active)));
+            if (idle >= refill) next_points(scene, &trees[i], store, &pixels[i], next);
             active |= mask_any(trees[i].active);
         }
         if (!active) return !store->drained;
@@ -148,7 +151,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     const save_cursor last_state = open_save_cursor(saved, 1), new_state = open_save_cursor(saved, 0);
     if (trace_share(scene, &store, &mine->next, work, last_state, new_state, resumes)) atomic_inc(&mine->left);
     __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
-    for (uint e = 0; e < RAYA_EVENTS; ++e) counted[e] += sum_of(store.totals[e]);
+    for (uint e = 0; e < RAYA_COUNTED; ++e) counted[e] += sum_of(store.totals[e]);
     if (loops_were_cut(min(word_count, 2u))) atomic_inc(&mine->cut);
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);  // after this all work-items have read progress[group]
     if (item) return;

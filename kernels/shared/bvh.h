@@ -80,6 +80,9 @@ RAYA_SHARED_FUNCTION raya_u32 raya_outline_rows(raya_u32 corners) {
     return (corners + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH + 1;
 }
 
+// Maximum distance by which a hit in fp32 may lie outside of its object's box, relative to raya_bvh.reach.
+#define RAYA_BVH_HIT_MARGIN 0x1p-14f
+
 // A link is one word. Bits 29..31 are the kind of the link's target. If the target is an object (RAYA_LINK_OBJECT),
 // bits 0..28 are the object's number. Else bits 25..28 are the number of objects in the leaf - 1, and bits 0..24 are
 // the target's first row.

@@ -1,10 +1,14 @@
 // Invariants of BVHs, checked on BVHs built from random items.
 #include <algorithm>
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
 #include "host/accel/bvh.hpp"
+#include "host/accel/hit_regions.hpp"
+#include "host/scene/generate.hpp"
+#include "host/scene/packer.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/thorough.hpp"
 
@@ -85,6 +89,96 @@ TEST_CASE("BVH: every item is in one leaf of its kind, and boxes are tight", "[t
         REQUIRE(rebuilt.items.size() == tree.items.size());
         for (std::size_t i = 0; i < count; ++i) CHECK(rebuilt.items[i].number == tree.items[i].number);
     }
+}
+
+/// Requires that two BVHs have equal items, nodes and depth.
+void require_equal(const Bvh& a, const Bvh& b) {
+    const auto same_box = [](const Bounds& c, const Bounds& d) { return c.low == d.low && c.high == d.high; };
+    const auto same_child = [&](const BvhChild& c, const BvhChild& d) {
+        return same_box(c.box, d.box) && c.kind == d.kind && c.first == d.first && c.items == d.items;
+    };
+    REQUIRE(
+        std::equal(a.items.begin(), a.items.end(), b.items.begin(), b.items.end(),
+                   [&](const BvhItem& c, const BvhItem& d) { return c.number == d.number && same_box(c.box, d.box); }));
+    REQUIRE(std::equal(
+        a.nodes.begin(), a.nodes.end(), b.nodes.begin(), b.nodes.end(), [&](const BvhNode& c, const BvhNode& d) {
+            return c.count == d.count &&
+                   std::equal(c.children.begin(), c.children.begin() + c.count, d.children.begin(), same_child);
+        }));
+    REQUIRE(same_child(a.root, b.root));
+    REQUIRE(a.depth == b.depth);
+}
+
+TEST_CASE("BVH: the same tree for any number of threads", "[tree]") {
+    for (unsigned seed = 1; seed <= quick_cases(8, 80); ++seed) {
+        SplitMix random(seed);
+        const int layout = static_cast<int>(seed % 4);
+        // Enough items for subtrees of several threads and, with the first seeds, for splits by several threads.
+        const auto count = static_cast<std::uint32_t>((seed <= 2 ? 70'000 : 5'000) + random.next() % 20'000);
+        std::vector<BvhItem> items;
+        for (std::uint32_t i = 0; i < count; ++i) items.push_back(item_at(random, i, 0.01, layout));
+        CAPTURE(seed, count, layout);
+        const Bvh tree = build_bvh(items, 1);
+        std::multiset<std::uint32_t> numbers;
+        CHECK(check_child(tree, tree.root, numbers) == tree.depth);
+        CHECK(numbers.size() == count);
+        for (const unsigned threads : {2u, 3u, 8u}) {
+            CAPTURE(threads);
+            require_equal(build_bvh(items, threads), tree);
+        }
+    }
+}
+
+TEST_CASE("BVH: the same words for any number of threads", "[tree]") {
+    for (const Scene& scene :
+         {generate_random(9000, 3), generate_lattice(12), generate_gears(3), generate_terrain(9001, 2)})
+        for (const NumberFormat& format : {parse_format("fp32"), parse_format("e6m15")}) {
+            CAPTURE(scene.name, format_name(format));
+            const PackedJob job = pack_job(scene, {.image = {1, 1}, .format = format});
+            PackedJob expected = job;
+            const AccelSummary summary = append_bvh(expected, format, 1);
+            for (const unsigned threads : {2u, 3u, 8u}) {
+                PackedJob got = job;
+                CHECK(append_bvh(got, format, threads).leaves == summary.leaves);
+                CHECK(got.words() == expected.words());
+            }
+        }
+}
+
+/// Returns the bounding box of a sphere or polygon.
+Box exact_box(const PackedJob& job, std::uint32_t number) {
+    const auto& objects = job.header().objects;
+    const auto real = [&](std::size_t at) { return double{std::bit_cast<float>(job.words()[at])}; };
+    const auto vector = [&](std::size_t at) { return Vec3(real(at), real(at + 1), real(at + 2)); };
+    if (number < objects.spheres) {
+        const std::size_t at = objects.spheres_at + std::size_t{number} * RAYA_SPHERE_WORDS;
+        const Vec3 radii(std::sqrt(std::abs(real(at + RAYA_SPHERE_SQUARE))));
+        return {vector(at + RAYA_SPHERE_CENTRE) - radii, vector(at + RAYA_SPHERE_CENTRE) + radii};
+    }
+    const std::size_t polygon = number - objects.spheres - objects.planes;
+    const std::size_t at = objects.polygons_at + polygon * RAYA_POLYGON_WORDS;
+    Box box;
+    for (std::uint32_t i = 0; i < job.words()[at + RAYA_POLYGON_CORNERS]; ++i)
+        box.extendBy(vector(job.words()[at + RAYA_POLYGON_CORNERS_AT] + i * RAYA_CORNER_WORDS));
+    return box;
+}
+
+TEST_CASE("BVH: hits in fp32 lie within RAYA_BVH_HIT_MARGIN of their objects' boxes", "[tree]") {
+    for (const Scene& scene : {generate_random(500, 3), generate_gears(2), generate_terrain(500, 2)})
+        for (const double reach : {2.0, 8.0, 64.0}) {
+            CAPTURE(scene.name, reach);
+            const PackedJob job = pack_job(scene, {.image = {1, 1}});
+            const HitRegions regions(job, {}, reach);
+            REQUIRE(regions.all_bounded());
+            const double margin = RAYA_BVH_HIT_MARGIN * regions.reach();
+            for (std::size_t i = 0; i < regions.size(); ++i) {
+                const Box exact = exact_box(job, regions.number(i)), hits = regions.region(i).box;
+                for (int axis = 0; axis < 3; ++axis) {
+                    REQUIRE(hits.min[axis] >= exact.min[axis] - margin);
+                    REQUIRE(hits.max[axis] <= exact.max[axis] + margin);
+                }
+            }
+        }
 }
 
 TEST_CASE("a BVH without items is empty", "[tree]") {

@@ -90,8 +90,9 @@ TEST_CASE("COMMAND --help, --help-all: give unit, default and range of every opt
         {{"generate", "balls"}, {"--level LEVEL", "default: 4", "0..6", "7,381 spheres", "SCENE.nff"}},
         {{"generate", "lattice"}, {"--size N", "default: 12", "1..64", "2,197 spheres", "SCENE.nff"}},
         {{"generate", "gears"}, {"--size N", "default: 4", "1..16", "9,345 polygons", "SCENE.nff"}},
-        {{"generate", "uniform"}, {"1..1000000", "--voxels XxYxZ", "1..256 each"}},
-        {{"generate", "random"}, {"1..1000000", "--seed N", "default: 1"}},
+        {{"generate", "uniform"}, {"1..20000000", "--voxels XxYxZ", "1..256 each"}},
+        {{"generate", "terrain"}, {"--triangles N", "1..20000000", "default: 100000", ".ply"}},
+        {{"generate", "random"}, {"1..20000000", "--seed N", "default: 1"}},
         {{"generate", "centre"}, {"-o, --output SCENE.nff"}}};
     for (const Row& row : rows) {
         Arguments arguments = row.command;
@@ -200,7 +201,8 @@ TEST_CASE("render --counters: requires a roofline and a CPU", "[cli]") {
 TEST_CASE("generate: every kind of scene can be rendered", "[cli]") {
     const Arguments kind = GENERATE(Arguments{"balls", "--level", "1"}, Arguments{"lattice", "--size", "2"},
                                     Arguments{"gears", "--size", "1"}, Arguments{"uniform", "9", "--voxels", "2x2x2"},
-                                    Arguments{"random", "9", "--seed", "3"}, Arguments{"centre"});
+                                    Arguments{"random", "9", "--seed", "3"}, Arguments{"terrain", "--triangles", "9"},
+                                    Arguments{"centre"});
     const ScratchFolder folder;
     Arguments arguments = {"generate"};
     arguments.insert(arguments.end(), kind.begin(), kind.end());

@@ -40,10 +40,11 @@ TEST_CASE("value_completion: the kind of a value follows from its placeholder in
     CHECK(value("none|bvh|grid[:AxBxC]").choices == std::vector<std::string>{"none", "bvh", "grid"});
     CHECK(value("none,grid").kind == Kind::kList);
     CHECK(value("none,grid").choices == std::vector<std::string>{"none", "grid"});
-    CHECK(value("FILE.json[.gz]").extension == ".json");
-    CHECK(value("FILE.csv.gz").extension == ".csv.gz");
+    CHECK(value("FILE.json[.gz]").extensions == std::vector<std::string>{".json"});
+    CHECK(value("FILE.csv.gz").extensions == std::vector<std::string>{".csv.gz"});
     for (const char* file : {"SCENE.nff", "IMAGE", "FILE.html", "FILE"}) CHECK(value(file).kind == Kind::kFile);
-    CHECK(value("IMAGE").extension.empty());
+    CHECK(value("IMAGE").extensions.empty());
+    CHECK(value("SCENE").extensions.size() == 6);
     CHECK(value("DIR").kind == Kind::kFolder);
     for (const char* text : {"N|WxH", "p", "ALPHA,BETA", "1,2,...", "NAME,...", "BYTES", ""})
         CHECK(value(text).kind == Kind::kOther);

@@ -112,8 +112,9 @@ TEST_CASE("bench, generate: refuse numbers outside their ranges", "[cli]") {
     check_refused(outputs, {"generate", "uniform", "9", "--voxels", "257x1x1", "-o", scene}, 2,
                   {"257 voxels", "1..256"});
     check_refused(outputs, {"generate", "uniform", "9", "-o", scene}, 2, {"--voxels is required"});
-    check_refused(outputs, {"generate", "random", "0", "-o", scene}, 2, {"0 spheres", "1..1000000"});
-    check_refused(outputs, {"generate", "random", "1000001", "-o", scene}, 2, {"1000001 spheres", "1..1000000"});
+    check_refused(outputs, {"generate", "random", "0", "-o", scene}, 2, {"0 spheres", "1..20000000"});
+    check_refused(outputs, {"generate", "random", "20000001", "-o", scene}, 2, {"20000001 spheres", "1..20000000"});
+    check_refused(outputs, {"generate", "terrain", "--triangles", "0", "-o", scene}, 2, {"0 triangles", "1..20000000"});
     check_refused(outputs, {"generate", "random", "9", "--seed", "x", "-o", scene}, 2, {"--seed", "x"});
 }
 

@@ -38,10 +38,10 @@ void check_round_trip(const Scene& scene) {
 
 /// Checks lenient reading. Without remarks, it must give the same scene as strict reading.
 void check_leniently(std::string_view text) {
-    std::vector<NffRemark> remarks;
+    std::vector<SceneRemark> remarks;
     const Scene scene = parse_nff(text, kFile, &remarks);
     check_round_trip(scene);
-    for (const NffRemark& remark : remarks) {
+    for (const SceneRemark& remark : remarks) {
         if (remark.count == 0 || remark.line < 1) report_finding("a remark without count or line", remark.what);
         check_refusal_with_line(remark_text(kFile, remark), kFile);
     }

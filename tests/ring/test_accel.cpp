@@ -191,6 +191,27 @@ Scene scene_with_copies(std::uint64_t seed) {
     return scene;
 }
 
+TEST_CASE("rays that descend through the BVH together have the same hits", "[ring][accel][slow]") {
+    Session session(choose_device(""));
+    const std::uint32_t lanes = GENERATE(from_range(quick(1, {16u, 4u, 8u, 1u})));
+    const bool has_copies = GENERATE(false, true);
+    for (unsigned seed = 1; seed <= quick_cases(2, 100); ++seed) {
+        Scene scene = has_copies ? scene_with_copies(seed) : crowded_scene(seed);
+        if (seed % 3 == 0) scene.view.from = scene.view.at - Vec3(0, 0, 8);  // view along an axis
+        CAPTURE(lanes, has_copies, seed);
+        const RingCase c{
+            .width = 48, .height = 40, .pes = 5, .mapping = tiles_mapping(4, 4), .lanes = lanes, .bounces = 3};
+        RingSettings settings = raya::settings_of(c);
+        settings.accel = bvh;
+        const RingResult alone = RingRenderer(session, scene, settings).render();
+        settings.packets = true;
+        const RingResult together = RingRenderer(session, scene, settings).render();
+        CHECK(pixel_hash(together.image) == pixel_hash(alone.image));
+        for (std::size_t event = 0; event < RAYA_EVENTS; ++event)
+            CHECK(together.all.events[event] == (event < RAYA_SPHERE_TESTS ? alone.all.events[event] : 0));
+    }
+}
+
 TEST_CASE("of objects at equal distances, the one with the lowest number is hit, for any voxels", "[ring][accel]") {
     Session session(choose_device(""));
     const std::string format = GENERATE(from_range(quick(2, {"fp32", "spa22", "e5m6"})));

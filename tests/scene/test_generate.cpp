@@ -342,7 +342,7 @@ TEST_CASE("centre: the committed file is the generator's output", "[generate]") 
 
 TEST_CASE("generated scenes are equal after writing and reading", "[generate]") {
     for (const Scene& s : {generate_balls(3), generate_lattice(4), generate_gears(2), generate_uniform(100, {3, 3, 3}),
-                           generate_random(100, 1), generate_centre(), generate_cluster(1)})
+                           generate_random(100, 1), generate_terrain(100, 1), generate_centre(), generate_cluster(1)})
         CHECK(parse_nff(write_nff(s), s.name) == s);
 }
 
@@ -353,8 +353,10 @@ TEST_CASE("generators refuse parameters out of range", "[generate]") {
     CHECK_THROWS_WITH(generate_lattice(65), "lattice: size 65: must be 1..64");
     CHECK_THROWS_WITH(generate_gears(0), "gears: size 0: must be 1..16");
     CHECK_THROWS_WITH(generate_gears(17), "gears: size 17: must be 1..16");
-    CHECK_THROWS_WITH(generate_random(0, 1), "random: 0 spheres: must be 1..1000000");
-    CHECK_THROWS_WITH(generate_uniform(1000001, {1, 1, 1}), "uniform: 1000001 spheres: must be 1..1000000");
+    CHECK_THROWS_WITH(generate_random(0, 1), "random: 0 spheres: must be 1..20000000");
+    CHECK_THROWS_WITH(generate_uniform(20000001, {1, 1, 1}), "uniform: 20000001 spheres: must be 1..20000000");
+    CHECK_THROWS_WITH(generate_terrain(0, 1), "terrain: 0 triangles: must be 1..20000000");
+    CHECK_THROWS_WITH(terrain_ply(20000001, 1), "terrain: 20000001 triangles: must be 1..20000000");
     CHECK_THROWS_WITH(generate_uniform(1, {1, 0, 1}), "uniform: 0 voxels along an axis: must be 1..256");
     CHECK_THROWS_WITH(generate_uniform(1, {1, 1, 257}), "uniform: 257 voxels along an axis: must be 1..256");
     CHECK_THROWS_WITH(generate_uniform(1, {256, 256, 17}), "uniform: 1114112 voxels: at most 1048576");

@@ -24,9 +24,9 @@ struct Parsed {
 
 Parsed parse_lenient(const std::string& text) {
     Parsed parsed;
-    std::vector<NffRemark> nff_remarks;
+    std::vector<SceneRemark> nff_remarks;
     parsed.scene = parse_nff(text, "t.nff", &nff_remarks);
-    for (const NffRemark& remark : nff_remarks) parsed.remarks.push_back(remark_text("t.nff", remark));
+    for (const SceneRemark& remark : nff_remarks) parsed.remarks.push_back(remark_text("t.nff", remark));
     return parsed;
 }
 
@@ -76,9 +76,11 @@ TEST_CASE("the error for a file of another format names the format", "[dialects]
                           {"camera{location 0}", "a POV-Ray"}}) {
         CAPTURE(text);
         write_whole_file(file, text);
-        const std::string message = file + ":1: this looks like " + format + " file; raya reads NFF";
+        const std::string message =
+            file + ":1: this looks like " + format +
+            " file; raya reads NFF, and meshes whose names end in .obj, .ply, .gltf, .glb or .stl";
         CHECK_THROWS_WITH(read_nff(file), message);
-        std::vector<NffRemark> remarks;
+        std::vector<SceneRemark> remarks;
         CHECK_THROWS_WITH(read_nff(file, &remarks), message);
         CHECK(remarks.empty());
     }

@@ -255,7 +255,7 @@ TEST_CASE("header() agrees with the words after set_header() and append()", "[pa
     raya_job header = job.header();
     header.mapping = {8, 6, 5, 7, RAYA_FOLD_BLOCK};
     job.set_header(header);
-    job.append({11, 12, 13});
+    job.append(std::vector<std::uint32_t>{11, 12, 13});
     CHECK(words_of(job.header()) == words_of(header));
     CHECK(words_of(PackedScene(job.words()).job()) == words_of(header));
     const auto first = static_cast<std::ptrdiff_t>(kWordsOf<raya_job>);

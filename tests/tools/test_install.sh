@@ -71,6 +71,19 @@ expect 0 "8191 terms, sum 9.848633"
 code=0 out=$(cd "$scratch/other" && ./harmonic 2>&1) || code=$?
 expect 1 "OpenCL error"  # without pkg-config's options the kernel does not find number/number.clh
 
+# Meshes, with and without the program that reads them.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$scratch/home/t.obj"
+run_installed raya info t.obj
+expect 0 "t.obj: 1 object: 1 polygon"
+if [[ -d $prefix/lib/python3 ]]; then
+    run_installed env PYTHONPATH="$prefix/lib/python3/dist-packages" /usr/bin/python3 -c "import raya; print(raya.load('t.obj').objects)"
+    expect 0 "1"
+fi
+mv "$prefix/lib/raya/raya_import" "$scratch"
+run_installed raya info t.obj
+expect 2 "t.obj: cannot read meshes: there is no file '$prefix/lib/raya/raya_import'"
+mv "$scratch/raya_import" "$prefix/lib/raya"
+
 # Without the image module, or without its libraries, raya refuses to write a PNG, with a remedy, and still writes PPM.
 rm "$prefix/lib/raya/raya_pictures.so"
 run_installed raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png

@@ -28,16 +28,16 @@ package --build "$build" -o "$scratch/two"
 expect 0 "raya_"
 cmp "$deb" "$scratch"/two/raya_*.deb || fail "the same build gives a different package"
 
-# The package depends on the program's libraries, recommends OpenImageIO and a driver, and suggests MPI.
+# The package depends on the program's libraries, recommends OpenImageIO, assimp and a driver, and suggests MPI.
 field() { dpkg-deb -f "$deb" "$1"; }
 [[ $(field Version) == "$version" ]] || fail "version $(field Version)"
 [[ $(field Depends) == *ocl-icd-libopencl1* && $(field Depends) != *openimageio* && $(field Depends) != *mpi* ]] || fail "Depends: $(field Depends)"
-[[ $(field Recommends) == *"libopenimageio"*"pocl-opencl-icd | opencl-icd" ]] || fail "Recommends: $(field Recommends)"
+[[ $(field Recommends) == *"libassimp"*"libopenimageio"*"pocl-opencl-icd | opencl-icd" ]] || fail "Recommends: $(field Recommends)"
 [[ ! -e $build/raya_mpi.so || $(field Suggests) == *mpi* ]] || fail "Suggests: $(field Suggests)"
 [[ $(field Maintainer) == "the raya authors <raya@example.org>" ]] || fail "Maintainer: $(field Maintainer)"
 
 dpkg-deb -x "$deb" "$scratch/whole"
-for file in bin/raya lib/raya/raya_pictures.so share/man/man1/raya.1.gz share/man/man1/raya-render.1.gz share/raya/scenes/centre.nff \
+for file in bin/raya lib/raya/raya_pictures.so lib/raya/raya_import share/man/man1/raya.1.gz share/man/man1/raya-render.1.gz share/raya/scenes/centre.nff \
     share/bash-completion/completions/raya share/zsh/vendor-completions/_raya share/fish/vendor_completions.d/raya.fish share/doc/raya/copyright \
     share/doc/raya/changelog.gz share/doc/raya/licences/libcli11-dev include/raya/number/number.clh share/pkgconfig/raya-number.pc; do
     [[ -s $scratch/whole/usr/$file ]] || fail "no /usr/$file"

@@ -128,6 +128,12 @@ class Reports:
         path.write_text((SCENES / "planes.nff").read_text() + "p 3\n0 0 0\n0 0 0\n1 1 1\ntt 1\n")
         return path
 
+    def odd_mesh(self):
+        """Writes a mesh for which raya warns, with a face without area. Returns its path."""
+        path = self.folder / "odd.obj"
+        path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n")
+        return path
+
     def make_renders(self):
         odd = self.odd_scene()
         quick_options = ["--size", "16", "--lanes", "1", "--format", "fp32", "--quiet", "--report", "r.json"]  # building kernels takes most of the time
@@ -169,7 +175,7 @@ class Reports:
         self.make("verify", "verify", "--as", f"render {scene} --lanes 1 --format e7m11", "--only", "number", "--report", "r.json", code=4)
         self.run(self.patch_kernels, "kernels", *FAULT)
         self.make("verify", *check, "--kernel-dir", "kernels", code=4)
-        for arguments in ((self.odd_scene(), "--accel", "grid"), (SCENES / "centre.nff", "--offset", "3")):
+        for arguments in ((self.odd_scene(), "--accel", "grid"), (self.odd_mesh(),), (SCENES / "centre.nff", "--offset", "3")):
             self.add_report("info", f"info {arguments[0]}", self.run(self.raya, "info", *arguments, "--json", stdout=subprocess.PIPE))
         self.add_report("gpu_day", "tools/gpu_day", gpu_day(self.raya, self.folder / "day")[0].read_text())
         for mapping in ("cyclic:3", "rows"):

@@ -3,9 +3,10 @@
 //
 //   embree_peer SCENE.nff WxH BOUNCES centres|corners SAMPLES
 //
-// Prints for each of two methods "METHOD RAYS SECONDS...", with the seconds of each render, and "mean METHOD R G B",
+// Prints for each of three methods "METHOD RAYS SECONDS...", with the seconds of each render, and "mean METHOD R G B",
 // the image's mean colour; then "build SECONDS". `single` traces single rays; `sixteen` traces the ray trees of 4 x 4
-// pixels in lockstep, in packets of 16 rays. Only the loop over the pixels is timed. Exit codes: 0 done; 2 an error.
+// pixels in lockstep, in packets of 16 rays; `coherent` does the same, and tells Embree that the rays are coherent.
+// Only the loop over the pixels is timed. Exit codes: 0 done; 2 an error.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -41,6 +42,7 @@ int run(char** arguments) {
     const int samples = std::atoi(arguments[4]);
     measure("single", picture, &Picture::render_single_rays, samples);
     measure("sixteen", picture, &Picture::render_packets, samples);
+    measure("coherent", picture, &Picture::render_coherent_packets, samples);
     std::printf("build %f\n", embree.build_s());
     return 0;
 }

@@ -1,6 +1,5 @@
 // Renders a picture with Embree on all cores, with single rays or with packets of 16 rays, one for each of 16 pixels.
 #pragma once
-#include <embree3/rtcore.h>
 #include <pmmintrin.h>
 
 #include <array>
@@ -8,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "tools/embree/embree_api.hpp"
 #include "tools/embree/whitted.hpp"
 
 namespace raya {
@@ -72,6 +72,11 @@ class Picture {
         });
     }
 
+    long render_coherent_packets() {
+        coherent_ = true;
+        return render_packets();
+    }
+
     /// Returns the mean colour of the pixels.
     V3 mean() const {
         V3 sum;
@@ -83,19 +88,18 @@ class Picture {
     V3& pixel(int row, int column) { return pixels_[static_cast<std::size_t>(row) * camera_.width + column]; }
 
     V3 trace(V3 direction, long& rays) const {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
+        Tracing tracing(false);
         V3 colour;
         RayStack stack;
         stack.push_back({camera_.eye, direction, 1, 0});
         while (!stack.empty()) {
             const PendingRay r = stack.pop();
             ++rays;
-            RTCRayHit q{};
+            RayHit q{};
             q.ray = {r.origin.x, r.origin.y, r.origin.z, 0, r.direction.x, r.direction.y, r.direction.z, 0,
                      kFar,       ~0u,        0,          0};
             q.hit.geomID = q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-            rtcIntersect1(whitted_.embree().rtc(), &context, &q);
+            tracing.intersect(whitted_.embree().rtc(), q);
             const PeerHit h = whitted_.embree().hit(r.origin, r.direction, q.ray.tfar, q.hit.geomID, q.hit.primID,
                                                     {q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z}, q.hit.u, q.hit.v);
             if (h.surface < 0) {
@@ -113,7 +117,7 @@ class Picture {
                 if (whitted_.embree().plane_blocks(m.outer, to_light, distance)) continue;
                 RTCRay s = {m.outer.x,  m.outer.y, m.outer.z, 0,   to_light.x, to_light.y,
                             to_light.z, 0,         distance,  ~0u, 0,          0};
-                rtcOccluded1(whitted_.embree().rtc(), &context, &s);
+                tracing.occluded(whitted_.embree().rtc(), s);
                 if (s.tfar > 0) colour = colour + r.weight * whitted_.light_contribution(r, m, light, to_light);
             }
             whitted_.push_secondary_rays(stack, r, m);
@@ -130,8 +134,7 @@ class Picture {
     };
 
     long trace_tile(int top, int left) {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
+        Tracing tracing(coherent_);
         std::array<Lane, kPacketRays> lanes;
         for (int i = 0; i < kPacketRays; ++i) {
             const int row = top + i / kTileSide, column = left + i % kTileSide;
@@ -139,7 +142,7 @@ class Picture {
                 lanes[i].stack.push_back({camera_.eye, camera_.direction(row, column), 1, 0});
         }
         long rays = 0;
-        while (const long traced_rays = trace_next_rays(lanes, context, rays)) rays += traced_rays;
+        while (const long traced_rays = trace_next_rays(lanes, tracing, rays)) rays += traced_rays;
         for (int i = 0; i < kPacketRays; ++i) {
             const int row = top + i / kTileSide, column = left + i % kTileSide;
             if (row < camera_.height && column < camera_.width) pixel(row, column) = lanes[i].colour;
@@ -148,9 +151,9 @@ class Picture {
     }
 
     // Traces the next ray of each lane and returns the number of these rays. Adds the number of shadow rays to `rays`.
-    long trace_next_rays(std::array<Lane, kPacketRays>& lanes, RTCIntersectContext& context, long& rays) const {
+    long trace_next_rays(std::array<Lane, kPacketRays>& lanes, Tracing& tracing, long& rays) const {
         alignas(64) std::array<int, kPacketRays> valid{};
-        alignas(64) RTCRayHit16 q;
+        alignas(64) RayHit16 q;
         long traced_rays = 0;
         for (int i = 0; i < kPacketRays; ++i) {
             if (lanes[i].stack.empty()) continue;
@@ -161,7 +164,7 @@ class Picture {
             q.hit.geomID[i] = q.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
         }
         if (traced_rays == 0) return 0;
-        rtcIntersect16(valid.data(), whitted_.embree().rtc(), &context, &q);
+        tracing.intersect(valid.data(), whitted_.embree().rtc(), q);
         for (int i = 0; i < kPacketRays; ++i) {
             if (valid[i] == 0) continue;
             Lane& lane = lanes[i];
@@ -176,7 +179,7 @@ class Picture {
             lane.point = whitted_.shading_point(lane.ray, h);
             lane.colour = lane.colour + lane.ray.weight * whitted_.ambient(lane.point);
         }
-        for (const PeerLight& light : whitted_.lights()) rays += add_light(lanes, valid, light, context);
+        for (const PeerLight& light : whitted_.lights()) rays += add_light(lanes, valid, light, tracing);
         for (int i = 0; i < kPacketRays; ++i)
             if (valid[i] != 0) whitted_.push_secondary_rays(lanes[i].stack, lanes[i].ray, lanes[i].point);
         return traced_rays;
@@ -184,7 +187,7 @@ class Picture {
 
     // Adds the contribution of a light to the colours of the lanes with a hit. Returns the number of shadow rays.
     long add_light(std::array<Lane, kPacketRays>& lanes, const std::array<int, kPacketRays>& valid,
-                   const PeerLight& light, RTCIntersectContext& context) const {
+                   const PeerLight& light, Tracing& tracing) const {
         alignas(64) std::array<int, kPacketRays> unblocked{};
         alignas(64) RTCRay16 s;
         std::array<V3, kPacketRays> to_light;
@@ -203,7 +206,7 @@ class Picture {
             unblocked[i] = -1;
             has_unblocked = true;
         }
-        if (has_unblocked) rtcOccluded16(unblocked.data(), whitted_.embree().rtc(), &context, &s);
+        if (has_unblocked) tracing.occluded(unblocked.data(), whitted_.embree().rtc(), s);
         for (int i = 0; i < kPacketRays; ++i)
             if (unblocked[i] != 0 && s.tfar[i] > 0)
                 lanes[i].colour =
@@ -227,6 +230,7 @@ class Picture {
 
     const Whitted& whitted_;
     Camera camera_;
+    bool coherent_ = false;  // whether Embree is told that the rays of a packet are coherent
     std::vector<V3> pixels_;
 };
 

@@ -1,0 +1,42 @@
+#include "host/base/parallel.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace raya {
+
+unsigned core_count() { return std::max(1u, std::thread::hardware_concurrency()); }
+
+void parallel_for(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work) {
+    std::atomic<std::size_t> next{0};
+    std::mutex mutex;
+    std::exception_ptr exception;
+    const auto take_indices = [&] {
+        try {
+            for (std::size_t i = next++; i < count; i = next++) work(i);
+        } catch (...) {
+            next = count;
+            const std::lock_guard lock(mutex);
+            exception = std::current_exception();
+        }
+    };
+    std::vector<std::jthread> helpers;
+    try {
+        for (std::size_t i = 1; i < std::min<std::size_t>(threads, count); ++i) helpers.emplace_back(take_indices);
+    } catch (const std::system_error&) {
+        // The system allows no more threads: those that started do the work.
+    } catch (...) {
+        next = count;
+        throw;
+    }
+    take_indices();
+    helpers.clear();
+    if (exception) std::rethrow_exception(exception);
+}
+
+}  // namespace raya

@@ -1,0 +1,27 @@
+// Loops whose iterations run on several threads.
+#pragma once
+#include <cstddef>
+#include <functional>
+
+namespace raya {
+
+/// Returns the number of cores that this process may use, at least 1.
+unsigned core_count();
+
+/// Calls work(i) once for each i in 0 .. count - 1, on up to `threads` threads; the calling thread is one of them. The
+/// threads take the indices in ascending order. If a call throws, no further calls start, and the exception is thrown
+/// to the caller; of several exceptions, one.
+void parallel_for(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work);
+
+/// The indices begin .. end - 1.
+struct IndexRange {
+    std::size_t begin, end;
+    std::size_t size() const { return end - begin; }
+};
+
+/// Returns part i of the indices 0 .. count - 1, which are divided into `parts` consecutive ranges of about equal size.
+constexpr IndexRange part_of_range(std::size_t i, std::size_t parts, std::size_t count) {
+    return {i * count / parts, (i + 1) * count / parts};
+}
+
+}  // namespace raya

@@ -1,0 +1,270 @@
+// raya_import DESCRIPTOR FILE: reads a mesh with assimp and writes it as records (import_records.hpp) to the descriptor
+// of a pipe. raya starts it. It uses no code of raya, so that a memory error of assimp meets nothing but assimp's data.
+#include <assimp/BaseImporter.h>
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/GltfMaterial.h>
+#include <assimp/ObjMaterial.h>
+#include <assimp/material.h>
+#include <assimp/scene.h>
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "host/mesh/import_records.hpp"
+
+namespace raya {
+namespace {
+
+/// Limits the memory to half of the computer's, and forbids files, so that a damaged file cannot exhaust them.
+void limit_resources() {
+    const auto limit_to = [](__rlimit_resource_t resource, rlim_t value) {
+        rlimit limit{};
+        ::getrlimit(resource, &limit);
+        limit.rlim_cur = limit.rlim_max = std::min(limit.rlim_max, value);
+        ::setrlimit(resource, &limit);
+    };
+#ifndef __SANITIZE_ADDRESS__  // the sanitizer reserves more address space than any computer has memory
+    limit_to(RLIMIT_AS,
+             static_cast<rlim_t>(::sysconf(_SC_PHYS_PAGES)) / 2 * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)));
+#endif
+    limit_to(RLIMIT_CORE, 0);
+    limit_to(RLIMIT_FSIZE, 0);
+}
+
+/// Writes records. If raya has closed the pipe, SIGPIPE ends the program.
+class Records {
+  public:
+    explicit Records(int descriptor) : file_(::fdopen(descriptor, "wb")) {
+        if (file_ == nullptr) std::exit(EXIT_FAILURE);
+    }
+
+    template <class Value>
+    void put(const Value* values, std::size_t count) {
+        if (std::fwrite(values, sizeof(Value), count, file_) != count) std::exit(EXIT_FAILURE);
+    }
+    template <class Value>
+    void put(const Value& value) {
+        put(&value, 1);
+    }
+    void put_text(std::string_view text) {
+        text = text.substr(0, kMaxImportedText);
+        put(static_cast<std::uint32_t>(text.size()));
+        put(text.data(), text.size());
+    }
+
+    void ignore(std::string_view what, const std::string& place = "") {
+        put(ImportRecord::kIgnored);
+        put_text(what);
+        put_text(place);
+    }
+
+    /// Writes the last record and ends the program.
+    [[noreturn]] void end(const std::string& error = "") {
+        put(error.empty() ? ImportRecord::kEnd : ImportRecord::kError);
+        if (!error.empty()) put_text(error);
+        std::fflush(file_);
+        ::_exit(EXIT_SUCCESS);  // without destructors, which a damaged heap could crash
+    }
+
+  private:
+    std::FILE* file_;
+};
+
+/// Opens files for assimp, and reports those that cannot be opened: an OBJ file may name a missing material file.
+class ReportingFiles : public Assimp::DefaultIOSystem {
+  public:
+    explicit ReportingFiles(Records& records) : records_(records) {}
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        Assimp::IOStream* const stream = Assimp::DefaultIOSystem::Open(file, mode);
+        // assimp opens a file several times.
+        if (stream == nullptr && missing_.insert(file).second)
+            records_.ignore("file that cannot be opened", std::string("file '") + file + "'");
+        return stream;
+    }
+
+  private:
+    Records& records_;
+    std::set<std::string> missing_;
+};
+
+/// Removes all importers of assimp but that of the extension, because assimp would choose one by the file's contents.
+void keep_one_format(Assimp::Importer& importer, const std::string& extension) {
+    std::vector<Assimp::BaseImporter*> others;
+    for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
+        std::set<std::string> extensions;
+        importer.GetImporter(i)->GetExtensionList(extensions);
+        if (!extensions.contains(extension)) others.push_back(importer.GetImporter(i));
+    }
+    for (Assimp::BaseImporter* const other : others) importer.UnregisterLoader(other);
+}
+
+template <class Value>
+Value property(const aiMaterial& material, const char* key, unsigned type, unsigned index, Value value) {
+    material.Get(key, type, index, value);  // leaves the value unchanged if there is no such property
+    return value;
+}
+
+bool is_black(const aiColor3D& c) { return c.r == 0 && c.g == 0 && c.b == 0; }
+
+float largest(const aiColor3D& c) { return std::max({c.r, c.g, c.b}); }
+
+/// Maps the reflection of an MTL material. Its illumination models 3 to 9 reflect; the others have only a highlight.
+void map_obj_reflection(const aiMaterial& material, ImportedSurface& s, Records& records, const std::string& place) {
+    constexpr int kFirstMirror = 3;
+    const auto specular = property(material, AI_MATKEY_COLOR_SPECULAR, aiColor3D(0, 0, 0));
+    if (is_black(specular)) return;
+    if (property(material, AI_MATKEY_OBJ_ILLUM, 0) < kFirstMirror)
+        return records.ignore("highlight without reflection", place);
+    s.specular = largest(specular);
+    s.shine = property(material, AI_MATKEY_SHININESS, 0.0f);
+    if (specular.r != specular.g || specular.g != specular.b) records.ignore("colour of a reflection", place);
+}
+
+/// Maps the reflection of a glTF material: raya's mirrors are sharp, so that a rough metal is mostly diffuse.
+void map_gltf_reflection(const aiMaterial& material, ImportedSurface& s, Records& records, const std::string& place) {
+    const float metallic = property(material, AI_MATKEY_METALLIC_FACTOR, 1.0f);
+    const float smoothness = 1 - property(material, AI_MATKEY_ROUGHNESS_FACTOR, 1.0f);
+    s.specular = metallic * smoothness;
+    s.diffuse = 1 - s.specular;
+    s.shine = 1000 * smoothness * smoothness;
+    if (s.specular > 0 && !(s.colour[0] == s.colour[1] && s.colour[1] == s.colour[2]))
+        records.ignore("colour of a reflection", place);
+    if (metallic < 1 && smoothness > 0) records.ignore("highlight without reflection", place);
+}
+
+void map_transparency(const aiMaterial& material, ImportedSurface& s) {
+    const std::string mode = property(material, AI_MATKEY_GLTF_ALPHAMODE, aiString()).C_Str();
+    const float opacity = mode == "OPAQUE" ? 1 : property(material, AI_MATKEY_OPACITY, 1.0f);
+    s.transmittance = 1 - opacity * (1 - property(material, AI_MATKEY_TRANSMISSION_FACTOR, 0.0f));
+    s.diffuse *= 1 - s.transmittance;
+    const float index = property(material, AI_MATKEY_REFRACTI, 1.0f);
+    if (index > 0) s.refraction_index = index;
+}
+
+void count_textures(const aiMaterial& material, Records& records, const std::string& place) {
+    unsigned textures = 0;
+    for (int type = aiTextureType_NONE + 1; type <= AI_TEXTURE_TYPE_MAX; ++type)
+        textures += material.GetTextureCount(static_cast<aiTextureType>(type));
+    for (; textures > 0; --textures) records.ignore("texture", place);
+}
+
+void put_material(const aiMaterial& material, Records& records) {
+    ImportedSurface s;
+    const std::string name = property(material, AI_MATKEY_NAME, aiString()).C_Str();
+    const std::string place = "material '" + name + "'";
+    if (name != AI_DEFAULT_MATERIAL_NAME) {  // assimp's own, for a mesh without a material, is grey
+        const auto colour = property(material, AI_MATKEY_COLOR_DIFFUSE, aiColor3D(1, 1, 1));
+        s.colour[0] = colour.r, s.colour[1] = colour.g, s.colour[2] = colour.b;
+        const bool is_gltf = property(material, AI_MATKEY_METALLIC_FACTOR, -1.0f) >= 0;
+        (is_gltf ? map_gltf_reflection : map_obj_reflection)(material, s, records, place);
+        map_transparency(material, s);
+        if (!is_black(property(material, AI_MATKEY_COLOR_EMISSIVE, aiColor3D(0, 0, 0))))
+            records.ignore("emission", place);
+        count_textures(material, records, place);
+    }
+    records.put(ImportRecord::kSurface);
+    records.put_text(name);
+    records.put(s);
+}
+
+/// What of assimp's data raya uses in a format.
+struct Format {
+    bool has_materials, has_normals;
+};
+
+/// Puts the mesh of a node. `to_scene` transforms its points; a mirroring transformation turns the faces around.
+void put_mesh(const aiMesh& mesh, const aiMatrix4x4& to_scene, const Format& format, Records& records) {
+    const bool has_normals = format.has_normals && mesh.HasNormals();
+    const bool is_mirrored = to_scene.Determinant() < 0;
+    std::vector<std::uint32_t> sizes, corners;
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+        const aiFace& face = mesh.mFaces[i];
+        sizes.push_back(face.mNumIndices);
+        corners.insert(corners.end(), face.mIndices, face.mIndices + face.mNumIndices);
+        if (is_mirrored) std::reverse(corners.end() - face.mNumIndices, corners.end());
+    }
+    if (std::ranges::all_of(sizes, [](std::uint32_t size) { return size == 3; })) sizes.clear();
+    records.put(ImportRecord::kMesh);
+    records.put_text(mesh.mName.C_Str());
+    records.put(ImportedMesh{.vertices = mesh.mNumVertices,
+                             .normals = has_normals ? mesh.mNumVertices : 0,
+                             .faces = sizes.size(),
+                             .corners = corners.size(),
+                             .surface = format.has_materials ? mesh.mMaterialIndex + 1 : 0});
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) records.put(to_scene * mesh.mVertices[i]);
+    const aiMatrix3x3 of_normals = aiMatrix3x3(to_scene).Inverse().Transpose();
+    for (unsigned i = 0; has_normals && i < mesh.mNumVertices; ++i) records.put(of_normals * mesh.mNormals[i]);
+    records.put(sizes.data(), sizes.size());
+    records.put(corners.data(), corners.size());
+}
+
+void put_nodes(const aiScene& scene, const Format& format, Records& records) {
+    std::vector<std::pair<const aiNode*, aiMatrix4x4>> nodes = {{scene.mRootNode, aiMatrix4x4()}};
+    while (!nodes.empty()) {
+        const aiNode& node = *nodes.back().first;
+        const aiMatrix4x4 to_scene = nodes.back().second * node.mTransformation;
+        nodes.pop_back();
+        for (unsigned i = 0; i < node.mNumMeshes; ++i)
+            put_mesh(*scene.mMeshes[node.mMeshes[i]], to_scene, format, records);
+        for (unsigned i = node.mNumChildren; i > 0; --i) nodes.emplace_back(node.mChildren[i - 1], to_scene);
+    }
+}
+
+void put_scene(const aiScene& scene, const Format& format, Records& records) {
+    const auto ignore = [&](unsigned count, const char* what) {
+        for (; count > 0; --count) records.ignore(what);
+    };
+    ignore(scene.mNumCameras, "camera");
+    ignore(scene.mNumLights, "light");
+    ignore(scene.mNumAnimations, "animation");
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+        ignore(scene.mMeshes[i]->HasVertexColors(0), "colour of vertices");
+        ignore(scene.mMeshes[i]->HasBones(), "skeleton");
+        ignore(scene.mMeshes[i]->mNumAnimMeshes, "morph target");
+    }
+    for (unsigned i = 0; format.has_materials && i < scene.mNumMaterials; ++i)
+        put_material(*scene.mMaterials[i], records);
+    put_nodes(scene, format, records);
+}
+
+[[noreturn]] void import(Records& records, const std::string& file) {
+    records.put(ImportRecord::kStart);
+    try {
+        Assimp::Importer importer;
+        importer.SetIOHandler(new ReportingFiles(records));  // the importer deletes it
+        std::string extension = file.substr(file.rfind('.') + 1);
+        for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
+        keep_one_format(importer, extension);
+        const aiScene* const scene = importer.ReadFile(file, 0);
+        if (scene == nullptr) records.end(std::string("assimp: ") + importer.GetErrorString());
+        // assimp invents grey materials for STL and PLY. STL's normals are those of the facets, which raya computes.
+        put_scene(*scene, {extension != "stl" && extension != "ply", extension != "stl"}, records);
+        records.end();
+    } catch (const std::exception& error) {
+        records.end(std::string("assimp: ") + error.what());
+    }
+}
+
+}  // namespace
+}  // namespace raya
+
+int main(int argc, char** argv) {
+    if (argc != 3) return EXIT_FAILURE;
+    raya::limit_resources();
+    // A message of the C library on a damaged heap would stand between raya's own messages.
+    if (std::freopen("/dev/null", "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr)
+        return EXIT_FAILURE;
+    raya::Records records(std::atoi(argv[1]));
+    raya::import(records, argv[2]);
+}

@@ -1,0 +1,38 @@
+#include "host/mesh/mesh_file.hpp"
+
+#include <algorithm>
+
+#include "host/mesh/import_process.hpp"
+#include "host/mesh/mesh_scene.hpp"
+#include "host/scene/nff.hpp"
+
+namespace raya {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lower_case_extension(const fs::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
+    return extension;
+}
+
+}  // namespace
+
+const std::vector<std::string>& mesh_extensions() {
+    static const std::vector<std::string> extensions = {".obj", ".ply", ".gltf", ".glb", ".stl"};
+    return extensions;
+}
+
+bool is_mesh_file(const fs::path& path) {
+    return std::ranges::count(mesh_extensions(), lower_case_extension(path)) > 0;
+}
+
+Scene read_scene_file(const fs::path& path, std::vector<SceneRemark>* remarks) {
+    if (!is_mesh_file(path)) return read_nff(path, remarks);
+    MeshScene mesh(path.string(), remarks);
+    import_mesh(path, mesh);
+    return mesh.finish(lower_case_extension(path) == ".stl" ? UpAxis::kZ : UpAxis::kY);
+}
+
+}  // namespace raya

@@ -1,0 +1,120 @@
+// The checks of faces, in binary PLY: normals, polygons, faults.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/mesh/mesh_files.hpp"
+
+namespace raya {
+namespace {
+
+using Catch::Contains;
+using Remarks = std::vector<std::string>;
+
+/// Returns a little-endian PLY file of triangles, with floats x, y, z and further properties of the vertices.
+std::string ply(const std::vector<std::vector<float>>& vertices, const std::vector<std::vector<std::int32_t>>& faces,
+                const std::string& more_properties = "") {
+    std::string bytes = fmt::format(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float "
+        "z\n{}element face {}\nproperty list uchar int vertex_index\nend_header\n",
+        vertices.size(), more_properties, faces.size());
+    for (const std::vector<float>& vertex : vertices)
+        for (const float x : vertex) append(bytes, x);
+    for (const std::vector<std::int32_t>& face : faces) {
+        append(bytes, static_cast<std::uint8_t>(face.size()));
+        for (const std::int32_t corner : face) append(bytes, corner);
+    }
+    return bytes;
+}
+
+const std::vector<std::vector<float>> kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+const char* const kNormals = "property float nx\nproperty float ny\nproperty float nz\n";
+
+TEST_CASE("binary PLY of both byte orders and ascii PLY give the same scene", "[mesh]") {
+    const ReadMesh little = read_mesh("t.ply", tetrahedron_ply());
+    CHECK(little.remarks.empty());
+    REQUIRE(little.scene.polygons.size() == 4);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Polygon& polygon = little.scene.polygons[i];
+        REQUIRE(polygon.vertices.size() == 3);
+        CHECK(polygon.normals.empty());
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto& v = kCorners[kFaces[i][k]];
+            CHECK(polygon.vertices[k] == Vec3(v[0], v[1], v[2]));
+        }
+    }
+    CHECK(little.scene.surfaces == std::vector{Surface{}});
+    CHECK(little.scene.name == "t.ply");
+    CHECK(read_mesh("t.ply", tetrahedron_ply(true)).scene == little.scene);
+    CHECK(read_mesh("t.ply", tetrahedron_ascii_ply()).scene == little.scene);
+    CHECK(read_mesh("t.ply", tetrahedron_ply(), true).scene == little.scene);
+    CHECK(read_mesh("T.PLY", tetrahedron_ply()).scene.polygons == little.scene.polygons);
+    CHECK(read_mesh("t.ply", replaced(tetrahedron_ply(), "4\nproperty", "4\r\nproperty")).scene == little.scene);
+}
+
+TEST_CASE("meshes: faces with equal normals are flat, others become patches with normals of length 1", "[mesh]") {
+    const auto normals_of = [](std::vector<std::vector<float>> vertices) {
+        return read_mesh("n.ply", ply(vertices, {{0, 1, 2}}, kNormals));
+    };
+    CHECK(normals_of({{0, 0, 0, 0, 0, 1}, {1, 0, 0, 0, 0, 1}, {0, 1, 0, 0, 0, 1}}).scene.polygons[0].normals.empty());
+    const ReadMesh patch = normals_of({{0, 0, 0, 0, 0, 2}, {1, 0, 0, 3, 0, 4}, {0, 1, 0, 0, 0, 1}});
+    CHECK(patch.remarks.empty());
+    CHECK(patch.scene.polygons[0].normals == std::vector<Vec3>{{0, 0, 1}, {0.6, 0, 0.8}, {0, 0, 1}});
+    const ReadMesh zero = normals_of({{0, 0, 0, 0, 0, 0}, {1, 0, 0, 3, 0, 4}, {0, 1, 0, 0, 0, 1}});
+    CHECK(zero.remarks == Remarks{"n.ply: face 1: face with a normal of 0, taken as flat"});
+    CHECK(zero.scene.polygons[0].normals.empty());
+}
+
+TEST_CASE("meshes: polygons are cut into triangles", "[mesh]") {
+    const ReadMesh square = read_mesh("s.ply", ply(kSquare, {{0, 1, 2, 3}}));
+    CHECK(square.remarks.empty());
+    CHECK(square.scene.polygons.size() == 2);
+    const auto bent = std::vector<std::vector<float>>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5f}, {0, 1, 0}};
+    const ReadMesh bent_mesh = read_mesh("s.ply", ply(bent, {{0, 1, 2}, {0, 1, 2, 3}}));
+    CHECK(bent_mesh.remarks == Remarks{"s.ply: face 2: polygon that is not flat, cut into triangles"});
+    CHECK(bent_mesh.scene.polygons.size() == 3);
+    CHECK_THROWS_WITH(read_mesh("s.ply", ply(bent, {{0, 1, 2, 3}}), true),
+                      Contains("s.ply: face 1: the polygon is not flat"));
+}
+
+TEST_CASE("meshes: faces that cannot be traced are left out and counted; --strict refuses them", "[mesh]") {
+    const float nan = std::nanf("");
+    auto vertices = kSquare;
+    vertices.insert(vertices.end(), {{nan, 0, 0}, {2, 0, 0}});
+    const std::string bytes = ply(vertices, {{0, 1, 2}, {0, 1, 4}, {0, 1, 5}, {0, 0, 1}, {0, 1}, {2}, {4, 1, 2}});
+    const ReadMesh mesh = read_mesh("f.ply", bytes);
+    CHECK(mesh.remarks ==
+          Remarks{"f.ply: face 2: face with a coordinate that is not finite or above 1e30, left out (2 in all)",
+                  "f.ply: face 3: polygon without area, left out (2 in all)",
+                  "f.ply: face 5: point or line, left out (2 in all)"});
+    CHECK(mesh.scene.polygons.size() == 1);
+    CHECK_THROWS_WITH(read_mesh("f.ply", bytes, true),
+                      "f.ply: face 2: a coordinate is not finite or above 1e30 in magnitude");
+    CHECK_THROWS_WITH(read_mesh("f.ply", ply(vertices, {{0, 0, 1}}), true),
+                      "f.ply: face 1: the polygon has fewer than three different vertices");
+    CHECK_THROWS_WITH(read_mesh("f.ply", ply(vertices, {{0, 1}}), true), "f.ply: face 1: it is a point or a line");
+}
+
+TEST_CASE("meshes: errors name the file and the face", "[mesh]") {
+    const auto check = [](const std::string& bytes, const std::string& message) {
+        CAPTURE(bytes);
+        CHECK_THROWS_WITH(read_mesh("e.ply", bytes), Catch::StartsWith("e.ply: " + message));
+    };
+    const std::string good = ply(kSquare, {{0, 1, 2}});
+    check(ply(kSquare, {{0, 1, 2}, {0, 1, 4}}), "face 2: there is no vertex 4; the mesh has 4, numbered from 0");
+    check(ply(kSquare, {{0, 1, -1}}), "face 1: there is no vertex 4294967295; the mesh has 4, numbered from 0");
+    check(ply(kSquare, {}), "");
+    check(ply(kSquare, {{0, 0, 0}}), "it has no triangle: the image would be empty");
+    check(good.substr(0, good.size() - 1), "");
+    check("", "cannot read the mesh: ");
+    check("plx\n", "cannot read the mesh: ");
+    CHECK_THROWS_WITH(read_scene_file("/none/e.ply"), "/none/e.ply: cannot read the mesh: No such file or directory");
+}
+
+TEST_CASE("meshes: colours of vertices are ignored with a warning; --strict refuses them", "[mesh]") {
+    const std::string bytes = ply({{0, 0, 0, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}}, {{0, 1, 2}}, "property float red\n");
+    CHECK(read_mesh("c.ply", bytes).remarks == Remarks{"c.ply: colour of vertices, ignored"});
+    CHECK_THROWS_WITH(read_mesh("c.ply", bytes, true), "c.ply: colour of vertices has no counterpart in raya");
+}
+
+}  // namespace
+}  // namespace raya
