@@ -30,6 +30,7 @@ class LocalRun:
         self.work, self.store, self.variables = scratch / "work", scratch / "store", dict(variables or {})
         self.summary, self.steps = scratch / "summary.md", []  # steps: (job, step, exit code, seconds)
         self.data = yaml.safe_load(workflow.replace("/tmp/", f"{scratch}/tmp/"))
+        scratch.chmod(0o755)  # some tests run raya as another user
         for folder in ("tmp", "home", "store", "stubs"):
             (scratch / folder).mkdir()
         self.summary.touch()
@@ -75,6 +76,7 @@ class LocalRun:
         name, options = step["uses"].split("@")[0], {key: self.expanded(str(value), values) for key, value in step.get("with", {}).items()}
         if name == "actions/checkout":
             copy_sources(self.work)
+            subprocess.run(["git", "init", "-q"], cwd=self.work, check=True)  # tests list the files with git
         elif name == "actions/cache":
             saved = self.store / "cache" / options["restore-keys"]
             if saved.exists():

@@ -69,6 +69,7 @@ def main():
         return 77
     build = Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as scratch:
+        Path(scratch).chmod(0o755)  # some tests run raya as another user
         bundle_workflow(build, Path(scratch))
         if "--all" in sys.argv:
             portability_workflow(Path(scratch))
