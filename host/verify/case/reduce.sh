@@ -1,5 +1,5 @@
 # Run by `make reduce`: writes reduced.cl, the smallest part of kernel.cl that cvise finds in which the first wrong word is
-# still wrong on the failing device, and right in Oclgrind, which must report no invalid memory access.
+# still wrong on the failing device, and right in Oclgrind, which must report no invalid access and no unset value.
 folder=$(cd "$(dirname "$0")" && pwd)
 for program in cvise oclgrind; do
     command -v $program >/dev/null || { echo "reduce: $program is missing; remedy: apt-get install $program" >&2; exit 125; }
@@ -11,7 +11,7 @@ cat > "$folder/interesting.sh" <<END
 #!/bin/sh
 $RUN "$folder/repro" reduced.cl >/dev/null 2>&1
 [ \$? = 1 ] || exit 1
-DEVICE=Oclgrind oclgrind "$folder/repro" reduced.cl >oclgrind.log 2>&1 || exit 1
+DEVICE=Oclgrind oclgrind --uninitialized "$folder/repro" reduced.cl >oclgrind.log 2>&1 || exit 1
 ! grep -q -E 'Invalid|Uninitialized|Race|error' oclgrind.log
 END
 chmod +x "$folder/interesting.sh"
