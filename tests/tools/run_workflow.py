@@ -76,7 +76,8 @@ class LocalRun:
         name, options = step["uses"].split("@")[0], {key: self.expanded(str(value), values) for key, value in step.get("with", {}).items()}
         if name == "actions/checkout":
             copy_sources(self.work)
-            subprocess.run(["git", "init", "-q"], cwd=self.work, check=True)  # tests list the files with git
+            for command in ("init -q", "add -A"):  # tests list the files with git
+                subprocess.run(["git", *command.split()], cwd=self.work, check=True)
         elif name == "actions/cache":
             saved = self.store / "cache" / options["restore-keys"]
             if saved.exists():
