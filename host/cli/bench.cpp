@@ -214,8 +214,7 @@ void add_bench_command(CLI::App& program) {
         *command, "--variants", options->variants,
         "Time whole renders instead of the trace kernel, for a comma-separated list of variants; none, grid and bvh "
         "are the ring machine with that --accel; packets is bvh with neighbouring rays together, in fp32 and tiles; "
-        "torus "
-        "is 4x4x4 nodes without a memory limit; raya compares the other variants with the first")
+        "torus is 4x4x4 nodes without a memory limit; raya compares the other variants with the first")
         ->delimiter(',')
         ->allow_extra_args(false)  // so that the scene may follow
         ->type_name("none,grid,bvh,packets,torus")

@@ -58,11 +58,14 @@ struct RenderCommand {
     /// machine, they are counted only for options that need them.
     bool needs_counts() const {
         return counts || render.machine != "grande" || needs_report() || needs_roofline() || record_costs ||
-               !cost.empty() || !trace.file.empty() || !checkpoint.file.empty();
+               !cost.empty() || !trace.file.empty() || !checkpoint.file.empty() || frames.given();
     }
     /// Returns true if the report compares kernels with the device's peak.
     bool needs_roofline() const { return profile || !page.empty(); }
 };
+
+/// Returns the settings of a render on a ring machine. `options`: those of the command, possibly changed.
+RingSettings ring_settings_of(const RenderCommand& command, const RenderOptions& options, const Scene& scene);
 
 /// The results of a render on a ring machine (`ring`) or on the torus (`torus`).
 struct Render {

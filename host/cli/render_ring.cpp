@@ -83,15 +83,20 @@ void write_images(const RenderCommand& command, const RingResult& result, const 
 
 }  // namespace
 
+RingSettings ring_settings_of(const RenderCommand& command, const RenderOptions& options, const Scene& scene) {
+    RingSettings settings = ring_settings(options, scene);
+    settings.record_costs = command.record_costs || !command.cost.empty();
+    if (!command.needs_counts())
+        use_packets(settings, options.mapping.empty() && !options.offset && options.fold.empty());
+    return settings;
+}
+
 std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& run) {
     Ranks& ranks = run.ranks;
     RenderRecorder& recorder = run.recorder;
     SceneInput& input = run.input;
     const Scene& scene = input.scene;
-    RingSettings settings = ring_settings(run.options, scene);
-    settings.record_costs = command.record_costs || !command.cost.empty();
-    if (!command.needs_counts())
-        use_packets(settings, run.options.mapping.empty() && !run.options.offset && run.options.fold.empty());
+    const RingSettings settings = ring_settings_of(command, run.options, scene);
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     Session& session = run.session();
     RingRenderer renderer(session, scene, settings, ranks, [&] {

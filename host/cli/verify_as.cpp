@@ -48,7 +48,7 @@ RenderCase render_case(const std::string& text) {
         options.size = fmt::format("{}x{}", other_size.width, other_size.height);
         if (machine_named(options.machine).kind == MachineKind::kTorus)
             return torus_settings(options, command.torus, other);
-        return ring_settings(options, other);
+        return ring_settings_of(command, options, other);
     };
     return {std::move(scene), size, settings,
             std::shared_ptr<ScopedTunedSource>(new ScopedTunedSource(use_tuned(command.render.no_tuned)))};

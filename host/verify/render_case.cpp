@@ -93,7 +93,10 @@ std::optional<Settings> reference_case(const RenderCase& render, const Reference
             },
             settings);
         if (auto* ring = std::get_if<RingSettings>(&settings)) {
-            ring->accel = std::get<RingSettings>(small_case(render).settings).accel;
+            const RingSettings small = std::get<RingSettings>(small_case(render).settings);
+            ring->accel = small.accel;
+            ring->packets = false;
+            if (small.packets) use_packets(*ring, true);
             ring->antialias.method = image.antialias;
             ring->antialias.points = image.points;
             ring->antialias.threshold = Antialias{}.threshold;

@@ -63,7 +63,7 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
     ray_pool pool;
     open_pool(&pool);
     // The minimum number of idle lanes that take new points. If all start together, their rays remain similar.
-    const uint refill = RAYA_RAY_PACKETS ? RAYA_LANES : 1;
+    const uint refill = RAYA_MAKES_PACKETS ? RAYA_LANES : 1;
     for (;;) {
         int active = 0;
         for (uint i = 0; i < RAYA_TREES; ++i) {

@@ -161,6 +161,20 @@ TEST_CASE("render --frames: frames equal single renders, and existing frames are
     CHECK(sequence.rendered_frames({"--frames", "1:8"}) == 7);  // only frame 1 has the same camera
 }
 
+TEST_CASE("render --frames --machine grande: records the load of the counted events", "[cli][frames]") {
+    const Sequence sequence;
+    const Arguments options = {"--machine", "grande", "--accel", "bvh"};
+    Arguments frames = options, single = sequence.arguments(options);
+    frames.insert(frames.end(), {"--frames", "1:2"});
+    single.insert(single.end(), {"--report", sequence.file("r.json")});
+    std::erase(single, "--turn");
+    std::erase(single, "360");
+    REQUIRE(sequence.rendered_frames(frames) == 2);
+    REQUIRE(run_raya(single).code == 0);
+    const Document report = Document::parse(file_contents(sequence.file("r.json")));
+    CHECK(sequence.record()["frames"][0]["imbalance"] == report["load"]["imbalance"]);
+}
+
 TEST_CASE("render --frames: renders again the frames whose file or settings changed, and only those", "[cli][frames]") {
     const Sequence sequence;
     const Arguments frames = {"--frames", "1:3"};

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <sstream>
 
 #include "host/base/whole_file.hpp"
 #include "host/scene/nff.hpp"
@@ -22,6 +24,32 @@ TEST_CASE("render: two renders with equal options write equal bytes", "[cli]") {
     CHECK(file_contents(first.image()) == file_contents(second.image()));
     CHECK(file_contents(first.cost()) == file_contents(second.cost()));
     CHECK(first.report()["image"]["hash"] == second.report()["image"]["hash"]);
+}
+
+TEST_CASE("render --machine grande: without a report the image is the same, and the summary has no load", "[cli]") {
+    const ScratchFolder folder;
+    const auto lines = [&](const Arguments& more) {
+        Arguments arguments = {
+            "render", scene_file("polygons"), "--machine", "grande", "--accel", "bvh", "--size", "32", "--lanes", "16",
+            "-o",     folder / "x.ppm"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const RunOutcome run = run_raya(arguments);
+        INFO(run.describe());
+        REQUIRE(run.code == 0);
+        std::map<std::string, std::string> by_name;
+        std::istringstream text(run.out);
+        for (std::string line; std::getline(text, line);) by_name[line.substr(0, line.find(' '))] = line;
+        return by_name;
+    };
+    const auto quick = lines({}), counted = lines({"--report", folder / "r.json"});
+    CHECK(quick.at("rays") == counted.at("rays"));
+    CHECK(quick.at("image") == counted.at("image"));
+    for (const char* name : {"load", "model"}) {
+        CHECK_FALSE(quick.contains(name));
+        CHECK(counted.contains(name));
+    }
+    CHECK_THAT(counted.at("bvh"), Catch::Contains("tests"));
+    CHECK_THAT(quick.at("bvh"), !Catch::Contains("tests"));
 }
 
 TEST_CASE("render: loads OpenCL drivers before the image encoder module", "[cli]") {

@@ -42,6 +42,23 @@ TEST_CASE("verify --as: finds a fault only if the render meets it", "[cli][verif
                    Catch::Contains("-DRAYA_ACCEL=2"));
 }
 
+TEST_CASE("verify --as: checks ray packets if the render uses them", "[cli][verify]") {
+    const ScratchFolder scratch;
+    const std::string kernels = write_kernels(
+        scratch / "kernels", {{"bvh/packet.clh", "return entered & all;", "return entered & all & ~1u;"}});
+    const std::string render = "render " + scene_file("polygons") +
+                               " --machine grande --accel bvh --lanes 16 -o x.png --kernel-dir " + kernels;
+    const RunOutcome wrong = verify_as(render, {"--only", "image polygons"});
+    INFO(wrong.describe());
+    CHECK(wrong.code == 4);
+    CHECK_THAT(wrong.out,
+               Catch::Contains("FAIL  image     polygons fp32, as given") && Catch::Contains("-DRAYA_RAY_PACKETS=1"));
+    // A report needs all counts.
+    const RunOutcome counted = verify_as(render + " --report r.json", {"--only", "image polygons"});
+    INFO(counted.describe());
+    CHECK(counted.code == 0);
+}
+
 TEST_CASE("verify --as: without reference images in the format, compares with the simplest render", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string kernels = " --kernel-dir " + write_kernels(scratch / "kernels", {kLostLight});

@@ -27,7 +27,7 @@ void occluded1_of_embree4(RTCScene, RTCRay*, QueryArguments*) asm("rtcOccluded1"
 void occluded16_of_embree4(const int*, RTCScene, RTCRay16*, QueryArguments*) asm("rtcOccluded16");
 }
 
-/// Traces rays. `coherent`: Embree is told that the rays of a packet are coherent.
+/// Traces rays. `coherent`: with the flag for coherent rays.
 class Tracing {
   public:
     explicit Tracing(bool coherent) { arguments_.flags = coherent ? 1 << 16 : 0; }
@@ -47,7 +47,7 @@ class Tracing {
 using RayHit = RTCRayHit;
 using RayHit16 = RTCRayHit16;
 
-/// Traces rays. `coherent`: Embree is told that the rays of a packet are coherent.
+/// Traces rays. `coherent`: with the flag for coherent rays.
 class Tracing {
   public:
     explicit Tracing(bool coherent) {

@@ -230,7 +230,7 @@ class Picture {
 
     const Whitted& whitted_;
     Camera camera_;
-    bool coherent_ = false;  // whether Embree is told that the rays of a packet are coherent
+    bool coherent_ = false;  // with the flag for coherent rays
     std::vector<V3> pixels_;
 };
 
