@@ -59,7 +59,11 @@ Program build_number_program(Session& session, const NumberBuild& build) {
     KernelSources sources = build.sources;
     if (!build.optimised) sources.more_options.emplace_back("-cl-opt-disable");
     if (!build.trusted) sources.more_options.emplace_back(kNoBuiltins);
-    if (build.imprecise) sources.more_options.emplace_back("-DRAYA_IMPRECISE=1");
+    if (build.imprecise) {
+        // The simulated errors are added to the device's results, which are not exact without this option (NVIDIA).
+        sources.more_options.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
+        sources.more_options.emplace_back("-DRAYA_IMPRECISE=1");
+    }
     return Kernels(session, options, sources).program("checks/numbers.cl");
 }
 

@@ -96,7 +96,7 @@ first=$(cd "$out/steps" && md5sum verify-quick.txt devices.txt)
 gpu_day
 expect 0 "| 1 | devices, verify --quick | 2 | 0 | 0" "hashes (not done)"
 gpu_day --next
-expect 0 "| 3 | hashes | 16 | 0 | 0" "verify --full | 1 | 0" "torus: 4 of 4 right" "large pictures, goals, ranks (not done)"
+expect 0 "| 3 | hashes | 16 | 0 | 0" "verify --full | 2 | 0" "torus: 4 of 4 right" "large pictures, goals, ranks (not done)"
 (($(count_finished) > before)) || fail "nothing ran after it was killed"
 [[ $(cd "$out/steps" && md5sum verify-quick.txt devices.txt) == "$first" ]] || fail "finished steps ran again"
 gpu_day --all
@@ -131,7 +131,7 @@ run_with_fault no_device --all
 expect 3 "no device: raya: no OpenCL device" "devices: exit code 3"
 [[ $(count_finished) == 1 ]] || fail "steps ran without a device"
 run_with_fault wrong_verify --all
-expect 4 "- verify-full: exit code 4" "FAIL  geometry  grid" "| 3 | hashes | 16 | 0 | 0" "| 1 | devices, verify --quick | 1 | 1 | 0"
+expect 4 "- verify-full-2: exit code 4" "FAIL  geometry  grid" "| 3 | hashes | 16 | 0 | 0" "| 1 | devices, verify --quick | 1 | 1 | 0"
 
 # A step that hangs; a stage that is out of time continues when it is requested again.
 sed -i 's/^limits=.*/limits=(0 3 1 0 60 60)/' "$day/gpu_day"
