@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <bit>
 #include <array>
 #include <cmath>
 
@@ -60,11 +61,14 @@ std::uint32_t default_lanes(const DeviceInfo& device) {
     return lanes;
 }
 
-std::uint32_t default_group_size(const DeviceInfo& device, bool torus) {
-    constexpr std::size_t kGpuGroupSize = 128, kLlvmpipeGroupSize = 8;
+std::uint32_t default_group_size(const DeviceInfo& device, bool torus, std::uint32_t pes) {
+    constexpr std::size_t kGpuGroupSize = 128, kLlvmpipeGroupSize = 8, kWorkItemsPerUnit = 512;
     const bool cpu = device.type == "cpu";
     if (cpu && (torus || !is_llvmpipe(device))) return 1;
-    return static_cast<std::uint32_t>(std::min(cpu ? kLlvmpipeGroupSize : kGpuGroupSize, device.max_group_size));
+    std::size_t group = cpu ? kLlvmpipeGroupSize : kGpuGroupSize;
+    if (!cpu && pes > 0)
+        group = std::clamp<std::size_t>(std::bit_floor(kWorkItemsPerUnit * device.compute_units / pes), 32, 256);
+    return static_cast<std::uint32_t>(std::min(group, device.max_group_size));
 }
 
 bool filters_are_valid(const NumberFormat& format, double extent) {

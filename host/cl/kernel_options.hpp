@@ -66,11 +66,11 @@ struct KernelChoice {
 std::uint32_t default_lanes(const DeviceInfo& device);
 
 /// Returns the default L. On a CPU it is 1, because a work-item's lanes fill the vectors. On llvmpipe it is 8,
-/// because llvmpipe vectorises over work-items with 256-bit vectors. On other devices it is 128: with 150 registers per
-/// work-item (kernel `trace`), a GPU with 132 multiprocessors runs about 256 PEs, of four warps each, at once
-/// (docs/gpu_resources.md). For a torus it is 1 on every CPU, because a node of one work-item keeps packets in order
-/// (docs/packets.md).
-std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false);
+/// because llvmpipe vectorises over work-items with 256-bit vectors. For a torus it is 1 on every CPU, because a node of
+/// one work-item keeps packets in order (docs/packets.md). On other devices it is 128, or, if `pes` is not 0, the power
+/// of 2 from 32 to 256 with which that many PEs have about 512 work-items on each compute unit: the fastest size for a
+/// ring without acceleration structure on an H100 (docs/gpus.md).
+std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false, std::uint32_t pes = 0);
 
 /// Returns true if the error bounds of kernels/geometry/sphere_filter.clh and outline_filter.clh are valid: `format` is
 /// a reduced format with at least 10 fraction bits, and the scene's `extent` (scene units) is so small that squares do

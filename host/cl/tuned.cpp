@@ -14,11 +14,11 @@ TunedSource& current_source() {
 
 }  // namespace
 
-TunedValues default_values(const DeviceInfo& device, const TuningKey& key) {
+TunedValues default_values(const DeviceInfo& device, const TuningKey& key, std::uint32_t pes) {
     constexpr std::uint32_t kSphereBatch = 16;  // fastest on llvmpipe (docs/tuning.md)
     const bool ring_without_accel = !key.torus && key.accel == RAYA_ACCEL_NONE;
     return {.lanes = default_lanes(device),
-            .group = default_group_size(device, key.torus),
+            .group = default_group_size(device, key.torus, ring_without_accel ? pes : 0),
             .batch = ring_without_accel && key.fp32 && is_llvmpipe(device) ? kSphereBatch : 0};
 }
 
@@ -39,17 +39,17 @@ ScopedTunedSource::ScopedTunedSource(TunedSource source) : previous_source_(std:
 }
 ScopedTunedSource::~ScopedTunedSource() { current_source() = std::move(previous_source_); }
 
-KernelChoice chosen_kernels(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key) {
+KernelChoice chosen_kernels(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key, std::uint32_t pes) {
     const bool user_set_link_move = kernels.link_move != LinkMove::kAutomatic;
     kernels.link_origin = user_set_link_move ? "options" : "";
     if (kernels.lanes == 0 && kernels.group_size == 0) {
         const auto tuned = current_source() ? current_source()(device, key) : std::nullopt;
-        kernels = with_values(kernels, tuned ? tuned->values : default_values(device, key));
+        kernels = with_values(kernels, tuned ? tuned->values : default_values(device, key, pes));
         kernels.origin = tuned ? tuned->origin : "defaults";
         if (!user_set_link_move && kernels.link_move != LinkMove::kAutomatic) kernels.link_origin = kernels.origin;
         return kernels;
     }
-    const TunedValues defaults = default_values(device, key);
+    const TunedValues defaults = default_values(device, key, pes);
     if (!kernels.lanes) kernels.lanes = defaults.lanes;
     if (!kernels.group_size) kernels.group_size = defaults.group;
     if (!kernels.tuning.sphere_batch) kernels.tuning.sphere_batch = defaults.batch;

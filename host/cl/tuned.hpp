@@ -41,8 +41,8 @@ inline constexpr std::array<std::pair<const char*, std::uint32_t TunedValues::*>
      {"registers", &TunedValues::registers},
      {"link_exchange", &TunedValues::link_exchange}}};
 
-/// Returns the default values for a device that was not tuned.
-TunedValues default_values(const DeviceInfo& device, const TuningKey& key);
+/// Returns the default values for a device that was not tuned. `pes`: number of PEs, 0 if unknown.
+TunedValues default_values(const DeviceInfo& device, const TuningKey& key, std::uint32_t pes = 0);
 
 /// Returns `kernels` with these values. If kernels.link_move is not kAutomatic, it stays unchanged. Throws UserError if
 /// link_exchange is out of range.
@@ -73,6 +73,7 @@ class ScopedTunedSource {
 /// the user has not set gets its default, and `origin` is "options". Otherwise, if the tuned source has values, these
 /// and their origin apply. Without tuned values the defaults apply, and `origin` is "defaults". `link_origin` is
 /// "options" if the user has set the link move, `origin` if the tuned values set it, and empty if it stays kAutomatic.
-KernelChoice chosen_kernels(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key);
+KernelChoice chosen_kernels(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key,
+                            std::uint32_t pes = 0);
 
 }  // namespace raya

@@ -101,7 +101,8 @@ RingSettings checked_settings(RingSettings settings, const DeviceInfo& device) {
     check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
     settings.kernels =
         chosen_kernels(settings.kernels, device,
-                       {.accel = static_cast<std::uint32_t>(settings.accel.kind), .fp32 = settings.format.is_fp32()});
+                       {.accel = static_cast<std::uint32_t>(settings.accel.kind), .fp32 = settings.format.is_fp32()},
+                       settings.mapping.pes);
     check_kernel_options(
         {.lanes = settings.kernels.lanes, .group_size = settings.kernels.group_size, .bounces = settings.bounces},
         device);

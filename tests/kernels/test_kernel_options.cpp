@@ -101,6 +101,15 @@ TEST_CASE("default lanes and group size depend on the device", "[ring]") {
     CHECK(default_group_size(device_with("gpu", 1, 1024)) == 128);
     CHECK(default_group_size(device_with("gpu", 1, 8)) == 8);
     CHECK(default_group_size(device_with("gpu", 1, 1024), true) == 128);
+    DeviceInfo h100 = device_with("gpu", 1, 1024);
+    h100.compute_units = 132;
+    for (const auto& [pes, group] : {std::pair{1U, 256U}, {256U, 256U}, {512U, 128U}, {2048U, 32U}, {100'000U, 32U}}) {
+        CHECK(default_group_size(h100, false, pes) == group);
+        CHECK(chosen_kernels({}, h100, {}, pes).group_size == group);
+        CHECK(chosen_kernels({}, h100, {.accel = RAYA_ACCEL_BVH}, pes).group_size == 128);
+    }
+    h100.max_group_size = 64;
+    CHECK(default_group_size(h100, false, 256) == 64);
 }
 
 TEST_CASE(
