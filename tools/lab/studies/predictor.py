@@ -87,10 +87,9 @@ def predictor(lab, scenes):
         root = mappings["p = sqrt(P)"]
         for name, values in mappings.items():
             mean, loss = hierarchical(values, families), hierarchical(values - root, families)
-            rows.append({"P": pes, "mapping": name, "mean u": mean.mean, "+-": mean.half, "mean u - u(sqrt(P))": loss.mean, "+-, difference": loss.half,
-                         "better than sqrt(P) (pictures)": int((values < root).sum())})
-        ranks = np.array([spearmanr(*pair)[0] for pair in zip(own, u)])
-        ranks = ranks[~np.isnan(ranks)]  # nan: all offsets have the same predicted or measured u
+            rows.append({"P": pes, "mapping": name, "mean u": mean.mean, "+-": mean.half, "mean u - u(sqrt(P))": loss.mean,
+                         "+-, difference": loss.half, "better than sqrt(P) (pictures)": int((values < root).sum())})
+        ranks = np.array([spearmanr(*pair)[0] for pair in zip(own, u) if min(map(np.ptp, pair)) > 0])  # undefined for a constant
         ratio = np.median(own / np.maximum(u, 1e-12), axis=1)
         accuracy.append({"P": pes, "median rank correlation": np.median(ranks), "rank correlations": range_text(ranks, 2),
                          "median predicted / measured u": np.median(ratio), "10 % of pictures below": np.quantile(ratio, 0.1),
