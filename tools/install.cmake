@@ -36,7 +36,7 @@ install(FILES ${completion_folder}/raya.fish DESTINATION ${CMAKE_INSTALL_DATADIR
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/raya/scenes FILES_MATCHING PATTERN "*.nff" PATTERN "README.md")
 # Documents are installed in the folder structure of the sources, so that their links work.
 install(FILES README.md CONTRIBUTING.md CHANGELOG.md SECURITY.md LICENSE DESTINATION ${doc})
-install(DIRECTORY docs DESTINATION ${doc} FILES_MATCHING REGEX "\\.(md|png|svg|dot|yml|json|ipynb|py)$|raya-health$")
+install(DIRECTORY docs DESTINATION ${doc} FILES_MATCHING REGEX "\\.(md|png|svg|dot|yml|json|ipynb|py|csv|bib|cff)$|raya-health$")
 install(FILES scenes/README.md DESTINATION ${doc}/scenes)
 install(FILES kernels/README.md DESTINATION ${doc}/kernels)
 install(FILES kernels/number/README.md DESTINATION ${doc}/kernels/number)
