@@ -73,7 +73,7 @@ def seeds_text(lab, part):
     return f"from {lab.seed + part * SEEDS}"
 
 
-@study("best-offset")
+@study("best-offset", prepare=lambda lab, scenes: scenes or ensembles_of_claim(lab))
 def best_offset(lab, scenes):
     chosen_scenes = scenes or [raya.example("centre")]
     by_scene = [choices_of(lab, scene) for scene in chosen_scenes]
@@ -125,8 +125,12 @@ def finding_of_choice(c):
             f"With clock factors of 1 to 8 the best offsets are p = {c.factors}.")
 
 
+def ensembles_of_claim(lab):
+    return [lab.ensemble([], papers.SIZE, "supersample", part=part) for part in (0, 2)]
+
+
 def claim_of_enough(lab):
-    search, evaluation = (lab.ensemble([], papers.SIZE, "supersample", part=part) for part in (0, 2))
+    search, evaluation = ensembles_of_claim(lab)
     families, tests, texts = evaluation.families, [], []
     for pes in numbers_of_pes(papers.SIZE):
         for method in METHODS:

@@ -45,7 +45,17 @@ def tabulate_speedups(image):
     return rows, {a: image.sum() / raya.loads(image, mapping=f"grid:{a}x{a}").max() for a in sides}
 
 
-@study("fig9", one_scene=True)
+def ensembles_of_sizes(lab):
+    return [lab.ensemble([], side, views=None if side == 256 else FINER_VIEWS) for side in (256, 512, 1024)]
+
+
+def prepare(lab, scenes):
+    lab.ensemble(scenes, lab.size(256))
+    if lab.size(256) == 256 and not scenes:
+        ensembles_of_sizes(lab)
+
+
+@study("fig9", one_scene=True, prepare=prepare)
 def fig9(lab, scenes):
     scene, size = first_scene(scenes), lab.size(256)
     ensemble, picture = lab.ensemble(scenes, size), lab.costs(scene, size).trace
@@ -137,9 +147,8 @@ def claims_of(lab, tables, ensemble):
     low_count = (efficiency.mean(0) < HIGH).sum()
     over_64, on_64 = cyclic[:, 255] / cyclic[:, 63], cyclic[:, 63]
     on_16 = speedups_on("p = 0")[:, 15] / 16
-    ensembles = [lab.ensemble([], side, views=None if side == 256 else FINER_VIEWS) for side in (256, 512, 1024)]
     efficiencies_by_size = [one.map(lambda costs: 1 / (1 + raya.imbalances(costs.trace, costs.trace.shape[1], [round(costs.trace.shape[1]**0.5)])[0]))
-                            for one in ensembles]
+                            for one in ensembles_of_sizes(lab)]
     return [judged("like-2d", within(like_2d, 1 - CLOSE, 1 + CLOSE, families), about,
                    f"Speed-up with p = 16 / speed-up of 16 x 16 PEs in two dimensions: {text(like_2d, 3)}. The mean speed-ups are "
                    f"{text(cyclic[:, 255], 1)} and {text([g[16] for _, g in tables], 1)}."),
