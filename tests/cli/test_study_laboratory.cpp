@@ -114,7 +114,7 @@ TEST_CASE("study: shards merge to the results of one process, and a manifest rep
     const Files files = files_in(outputs / "out");
     REQUIRE(files == files_in(outputs / "merged"));
     for (const std::string& file : files)
-        CHECK(file_contents(outputs / "out/" + file) == file_contents(outputs / "merged/" + file));
+        CHECK(file_contents(outputs.path() / "out" / file) == file_contents(outputs.path() / "merged" / file));
     const std::string checked = run_with({"study", "--check", outputs / "out/manifest.json"}, {}, 0);
     CHECK_THAT(checked, Catch::Contains("the same results: 4 data files equal, 0 different"));
 }

@@ -147,8 +147,9 @@ def claims_of(lab, tables, ensemble):
     low_count = (efficiency.mean(0) < HIGH).sum()
     over_64, on_64 = cyclic[:, 255] / cyclic[:, 63], cyclic[:, 63]
     on_16 = speedups_on("p = 0")[:, 15] / 16
+    ensembles = ensembles_of_sizes(lab)
     efficiencies_by_size = [one.map(lambda costs: 1 / (1 + raya.imbalances(costs.trace, costs.trace.shape[1], [round(costs.trace.shape[1]**0.5)])[0]))
-                            for one in ensembles_of_sizes(lab)]
+                            for one in ensembles]
     return [judged("like-2d", within(like_2d, 1 - CLOSE, 1 + CLOSE, families), about,
                    f"Speed-up with p = 16 / speed-up of 16 x 16 PEs in two dimensions: {text(like_2d, 3)}. The mean speed-ups are "
                    f"{text(cyclic[:, 255], 1)} and {text([g[16] for _, g in tables], 1)}."),
