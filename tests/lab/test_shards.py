@@ -3,6 +3,7 @@ is found and repaired by the same command."""
 import filecmp
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -224,6 +225,12 @@ def test_shards_of_different_runs_are_refused(study):
     with pytest.raises(ValueError, match="study table2: has no ensembles to divide"):
         run("table2", "--shard", "1/2", "-o", "t")
     assert not Path("t").exists()
+
+
+def test_document_names_the_studies_that_shards_divide():
+    text = " ".join((Path(__file__).parents[2] / "docs/clusters.md").read_text().split())
+    names = re.search(r"Shards can divide the studies (.*?), all of them", text)[1].replace(" and ", ", ").split(", ")
+    assert sorted(names) == sorted(study.name for study in program.studies().values() if study.prepare)
 
 
 def test_merge_refuses_another_program_study_or_scene(study, monkeypatch):

@@ -43,11 +43,11 @@ def write_header(folder, header):
 
 def start(folder, header):
     """Writes shard.json for a shard that starts or continues. Raises ValueError if the folder has another shard."""
+    header = json.loads(json.dumps(header))  # tuples become lists, as in the file
     try:
         present = read_header(folder)
     except (FileNotFoundError, ValueError):
         present = header
-    header = json.loads(json.dumps(header))
     for name in (*IDENTITY, "shard"):
         if present[name] != header[name]:
             raise ValueError(f"-o {folder}: contains shard {present['shard']}/{present['shards']} of study {present['study']}; its {name} "
