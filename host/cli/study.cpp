@@ -77,6 +77,8 @@ void check_study(const StudyCommand& command) {
         throw UserError("STUDY is required; raya help study lists the studies; remedy: raya study NAME -o DIR");
     if (command.folder.empty() && command.searched.empty() && command.manifest.empty())
         throw UserError("--output is required; remedy: raya study NAME -o DIR");
+    if (!command.folder.empty() && !command.searched.empty())
+        throw UserError("--output with --missing: no effect; leave it out");
     if (!command.shard.empty()) parse_shard(command.shard);
     if (command.folder == "-") throw UserError("-o -: a study writes several files, not stdout; name a folder");
     if (repeats && command.study.empty()) return;
@@ -141,11 +143,11 @@ void add_shard_options(CLI::App& command, StudyCommand& options) {
         add_file(command, FileUse::kRead, "--missing", options.searched, "DIR...",
                  "Folders of shards: list the shards that are absent, incomplete or damaged (exit code 4)");
     CLI::Option* const check =
-        add_file(command, FileUse::kRead, "--check", options.manifest, "MANIFEST",
+        add_file(command, FileUse::kRead, "--check", options.manifest, "FILE",
                  "Repeat the study of a manifest.json and compare the results (exit code 4: they differ)");
     for (CLI::Option* const option : {merge, missing, check}) option->excludes("--shard");
     merge->excludes(missing)->excludes(check);
-    missing->excludes(check)->excludes("--output");
+    missing->excludes(check);
 }
 
 void add_study_options(CLI::App& command, StudyCommand& options) {
