@@ -121,7 +121,7 @@ def run_shard(options, chosen, scenes):
         worker.close()
     shards.write_header(folder, {**header, "results": names})
     if options.verbosity >= 0:
-        print(f"{folder}: shard {number}/{count} of study {options.study}: {len(names)} results, {computed} of them computed now")
+        print(f"{folder}: shard {number}/{count} of study {options.study}: {computed} of {len(names)} results computed now")
 
 
 def print_missing(options):
@@ -146,8 +146,8 @@ def check_manifest(options, recorded, chosen, skip_notes, scenes):
     for line in lines:
         print(line)
     measured = f", {counts['measured']} with measured times not compared" if counts["measured"] else ""
-    print(f"{options.check}: {'other' if counts['different'] else 'the same'} results: {counts['equal']} data files equal, {counts['different']} "
-          f"different{measured}")
+    print(f"{options.check}: {'other' if counts['different'] else 'the same'} results: of the data files, {counts['equal']} equal, "
+          f"{counts['different']} different{measured}")
     return EXIT_DIFFERENT if counts["different"] else code
 
 

@@ -55,7 +55,7 @@ def check_inputs(inputs, recorded, source):
                              f"{other['sha256'][:12]}); remedy: use the same file")
     if len(inputs) != len(recorded):
         names = " ".join(one["name"] for one in recorded) or "none"
-        raise ValueError(f"{source}: records {len(recorded)} input files ({names}), but {len(inputs)} were given; remedy: name the same files")
+        raise ValueError(f"{source}: records the input files {names}, but {len(inputs)} were given; remedy: name the same files")
 
 
 def hash_of(file):

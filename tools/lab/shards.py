@@ -84,7 +84,8 @@ def problem_of(folder, header):
     if header["results"] is None:
         return f"incomplete: {folder}"
     damaged = [name for name in header["results"] if read_bytes(folder / name) is None]
-    return f"damaged: {folder}: {len(damaged)} of {len(header['results'])} results, first {damaged[0]}" if damaged else ""
+    more = f" and {len(damaged) - 1} more" if len(damaged) > 1 else ""
+    return f"damaged: {folder / damaged[0]}{more}" if damaged else ""
 
 
 def merged(options):
