@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "host/error.hpp"
 #include "host/model/unit_text.hpp"
@@ -49,7 +50,8 @@ class PartitionTrial {
             const bool all_everywhere = tried_partition.objects.size() == tried_partition.listed_objects * voxels;
             objects_everywhere_ = all_everywhere ? tried_partition.listed_objects : 0;
             // The assignment of voxels to nodes does not depend on the links.
-            result.words = fullest_node_words(job_, tried_partition, make_torus(nodes, Links::kTorus3d));
+            const NodeSizes sizes = node_sizes(job_, tried_partition, make_torus(nodes, Links::kTorus3d));
+            result.words = sizes.words[sizes.fullest()];
             return result;
         } catch (const TooManyEntries&) {
             return {};
@@ -80,42 +82,25 @@ std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint6
 // Memory that the nodes need for a scene and their buffers, and memory that a node has.
 struct MemoryDemand {
     const std::string& scene;
-    const NodeMemories& memories;
+    const NodeSizes& sizes;
     const raya_torus& torus;
     std::uint64_t limit;  // memory of a node, bytes
     NodeBuffers buffers;
 
     std::uint32_t nodes() const { return raya_nodes(torus); }
-    std::uint64_t words(std::uint32_t node) const { return memories.starts[node + 1] - memories.starts[node]; }
     std::uint64_t bytes(std::uint64_t words) const { return node_bytes(words, buffers, links_of_node(torus)); }
 };
 
-std::uint32_t fullest_node(const NodeMemories& memories) {
-    std::uint32_t fullest = 0;
-    const auto words = [&](std::uint32_t node) { return memories.starts[node + 1] - memories.starts[node]; };
-    for (std::uint32_t node = 1; node + 1 < memories.starts.size(); ++node)
-        if (words(node) > words(fullest)) fullest = node;
-    return fullest;
-}
-
 // Returns text such as "node 219 (voxel 3, 3, 3 with 2310 objects)".
-std::string node_text(const NodeMemories& memories, std::uint32_t number) {
-    const std::size_t start = memories.starts[number];
-    const auto node = record_at<raya_node>(memories.words, start);
-    std::uint64_t objects = node.job.objects.planes;
-    for (std::uint32_t local = 0; local < node.voxels; ++local) {
-        const raya_objects voxel =
-            record_at<raya_voxel_memory>(memories.words, start + node.voxels_at + local * kWordsOf<raya_voxel_memory>)
-                .objects;
-        objects += voxel.spheres + voxel.polygons + voxel.cones;
-    }
-    std::string voxels = counted(node.voxels, "voxel");
-    if (node.voxels == 1) {
-        const std::uint32_t voxel = raya_voxel_of_node(node.torus, node.grid, number, 0);
-        const raya_place at = raya_place_of(voxel, node.grid.divisions[0], node.grid.divisions[1]);
+std::string node_text(const NodeSizes& sizes, const raya_torus& torus, std::uint32_t number) {
+    const std::uint32_t count = raya_node_voxels(torus, sizes.grid, number);
+    std::string voxels = counted(count, "voxel");
+    if (count == 1) {
+        const std::uint32_t voxel = raya_voxel_of_node(torus, sizes.grid, number, 0);
+        const raya_place at = raya_place_of(voxel, sizes.grid.divisions[0], sizes.grid.divisions[1]);
         voxels = fmt::format("voxel {}, {}, {}", at.at[0], at.at[1], at.at[2]);
     }
-    return fmt::format("node {} ({} with {})", number, voxels, counted(objects, "object"));
+    return fmt::format("node {} ({} with {})", number, voxels, counted(sizes.objects[number], "object"));
 }
 
 // Doubles the first of the shortest sides.
@@ -131,6 +116,7 @@ std::string larger_machine_options(const MemoryDemand& demand, const NodeTrial& 
     // A torus with sides I x J x 1 may be 2-D or 3-D. It is taken as 3-D, because a 3-D torus needs at least as much
     // memory.
     const Links links = demand.torus.sides[2] != present_nodes[2] ? Links::kTorus2d : Links::kTorus3d;
+    const std::uint64_t all_words = std::accumulate(demand.sizes.words.begin(), demand.sizes.words.end(), 0ull);
     std::array<std::uint32_t, 3> nodes = doubled({present_nodes[0], present_nodes[1], present_nodes[2]});
     for (std::uint64_t count = 2 * demand.nodes(); count <= kMaxNodes; count *= 2, nodes = doubled(nodes)) {
         const std::uint32_t node_links = links_of_node(make_torus(nodes, links));
@@ -138,7 +124,7 @@ std::string larger_machine_options(const MemoryDemand& demand, const NodeTrial& 
             return node_bytes(words, demand.buffers, node_links) <= demand.limit;
         };
         // Smaller voxels only add copies of objects, so an even division of the present words is a lower bound.
-        if (!fits(demand.memories.words.size() / count)) continue;
+        if (!fits(all_words / count)) continue;
         const std::optional<NodeTrialResult> result = trial(nodes);
         if (result && fits(result->words))
             return fmt::format("--nodes {}{}", sides_text(nodes),
@@ -161,16 +147,15 @@ std::string remedies(const MemoryDemand& demand, std::uint64_t words, std::uint3
 }
 
 [[noreturn]] void throw_does_not_fit(const MemoryDemand& demand, std::uint32_t min_queue, const NodeTrial& trial) {
-    const std::uint32_t fullest = fullest_node(demand.memories);
+    const std::uint32_t fullest = demand.sizes.fullest();
     std::uint32_t fitting = 0;
-    for (std::uint32_t node = 0; node < demand.nodes(); ++node)
-        fitting += demand.bytes(demand.words(node)) <= demand.limit;
-    const std::uint64_t words = demand.words(fullest);
+    for (const std::uint64_t words : demand.sizes.words) fitting += demand.bytes(words) <= demand.limit;
+    const std::uint64_t words = demand.sizes.words[fullest];
     throw NodesDoNotFit(
         fmt::format("{}: does not fit: {} of {} nodes can hold their voxels, {} cannot; {} needs {} for the "
                     "scene and {} for buffers, a node has {}; {}",
                     demand.scene, fitting, demand.nodes(), demand.nodes() - fitting,
-                    node_text(demand.memories, fullest), required_size_text(4 * words),
+                    node_text(demand.sizes, demand.torus, fullest), required_size_text(4 * words),
                     required_size_text(demand.bytes(0)), available_size_text(demand.limit),
                     remedies(demand, words, min_queue, trial)),
         demand.bytes(words), demand.limit, demand.nodes(), fitting, fullest);
@@ -221,7 +206,7 @@ NodeTrial make_node_trial(const PackedJob& job, const NumberFormat& format, cons
     return PartitionTrial(job, format, voxels);
 }
 
-NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,
+NodeBuffers plan_buffers(const std::string& scene, const NodeSizes& sizes, const raya_torus& torus,
                          std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t min_queue,
                          const NodeTrial& trial) {
     min_queue = std::max(1u, min_queue);
@@ -231,8 +216,8 @@ NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories,
                         queue, min_queue, min_queue));
     const std::uint32_t max_queue = queue > 0 ? queue : std::max(default_queue(raya_nodes(torus)), min_queue);
     if (!memory_bytes) return buffers_for(max_queue);
-    const MemoryDemand demand{scene, memories, torus, *memory_bytes, buffers_for(queue > 0 ? queue : min_queue)};
-    const std::uint64_t words = demand.words(fullest_node(memories));
+    const MemoryDemand demand{scene, sizes, torus, *memory_bytes, buffers_for(queue > 0 ? queue : min_queue)};
+    const std::uint64_t words = sizes.words[sizes.fullest()];
     if (demand.bytes(words) > *memory_bytes) throw_does_not_fit(demand, min_queue, trial);
     return buffers_for(longest_queue(words, links_of_node(torus), *memory_bytes, demand.buffers.queue, max_queue));
 }

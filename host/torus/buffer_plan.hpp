@@ -97,7 +97,7 @@ struct NodesDoNotFit : DoesNotFit {
 /// or a shorter queue. If `trial` is given, the remedy may be more nodes; the search for a sufficient number takes
 /// about a second. `min_queue`: number of packets that the ray tree of a single primary ray may need. Throws
 /// UserError if 0 < `queue` < `min_queue`.
-NodeBuffers plan_buffers(const std::string& scene, const NodeMemories& memories, const raya_torus& torus,
+NodeBuffers plan_buffers(const std::string& scene, const NodeSizes& sizes, const raya_torus& torus,
                          std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t min_queue,
                          const NodeTrial& trial = {});
 

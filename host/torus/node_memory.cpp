@@ -98,8 +98,16 @@ class NodePacker {
         return padded_to_rows(words);
     }
 
-    // Appends the node's words to `words`; returns the number of objects in the node.
-    std::uint64_t append(std::uint32_t node, std::vector<std::uint32_t>& words) {
+    // Returns the number of objects of a node, planes included.
+    std::uint64_t objects(std::uint32_t node) const {
+        std::uint64_t objects = job_.header.objects.planes;
+        for (std::uint32_t local = 0; local < raya_node_voxels(torus_, partition_.grid, node); ++local)
+            objects += voxel_lists(node, local).all.size();
+        return objects;
+    }
+
+    // Appends the node's words to `words`.
+    void append(std::uint32_t node, std::vector<std::uint32_t>& words) {
         words_ = &words;
         start_ = words.size();
         raya_node header{};
@@ -119,10 +127,9 @@ class NodePacker {
         words.resize(words.size() + header.voxels * kWordsOf<raya_voxel_memory>);
         header.job.objects.planes_at = current_offset();
         for (std::uint32_t i = 0; i < header.job.objects.planes; ++i) append_object(job_.plane(i), RAYA_PLANE_WORDS);
-        const std::uint64_t objects = append_voxels(header);
+        append_voxels(header);
         fill_row();
         put_record(words, start_, header);
-        return objects;
     }
 
   private:
@@ -172,15 +179,12 @@ class NodePacker {
         }
     }
 
-    std::uint64_t append_voxels(const raya_node& header) {
-        std::uint64_t objects = header.job.objects.planes;
+    void append_voxels(const raya_node& header) {
         for (std::uint32_t local = 0; local < header.voxels; ++local) {
             const VoxelLists lists = voxel_lists(header.number, local);
             const raya_voxel_memory voxel = append_voxel(lists, header.job.objects);
             put_record(*words_, start_ + header.voxels_at + local * kWordsOf<raya_voxel_memory>, voxel);
-            objects += lists.all.size();
         }
-        return objects;
     }
 
     raya_voxel_memory append_voxel(const VoxelLists& lists, const raya_objects& planes) {
@@ -230,33 +234,40 @@ class NodePacker {
 
 }  // namespace
 
-NodeMemories pack_nodes(const PackedJob& job, const Partition& partition, const raya_torus& torus) {
-    NodePacker packer(job, partition, torus);
-    const std::uint32_t nodes = raya_nodes(torus);
-    std::uint64_t total = 0;
-    for (std::uint32_t node = 0; node < nodes; ++node) total += packer.words(node);
-    if (total > kMaxWords)
-        throw UserError(
-            fmt::format("{} nodes, {} voxels: the memories of all nodes need {} words, more than the limit of {}; use "
-                        "fewer nodes or voxels",
-                        nodes, raya_voxels(partition.grid), total, kMaxWords));
-    NodeMemories memories;
-    memories.words.reserve(total);
-    memories.starts.push_back(0);
-    for (std::uint32_t node = 0; node < nodes; ++node) {
-        const std::uint64_t objects = packer.append(node, memories.words);
-        memories.max_objects = std::max(memories.max_objects, static_cast<std::uint32_t>(objects));
-        memories.starts.push_back(static_cast<std::uint32_t>(memories.words.size()));
-    }
-    memories.copies = partition.copies();
-    return memories;
+std::uint32_t NodeSizes::fullest() const {
+    return static_cast<std::uint32_t>(std::max_element(words.begin(), words.end()) - words.begin());
 }
 
-std::uint64_t fullest_node_words(const PackedJob& job, const Partition& partition, const raya_torus& torus) {
+NodeSizes node_sizes(const PackedJob& job, const Partition& partition, const raya_torus& torus) {
     NodePacker packer(job, partition, torus);
-    std::uint64_t max_words = 0;
-    for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) max_words = std::max(max_words, packer.words(node));
-    return max_words;
+    NodeSizes sizes{.words = {}, .objects = {}, .copies = partition.copies(), .grid = partition.grid};
+    for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
+        sizes.words.push_back(packer.words(node));
+        sizes.objects.push_back(packer.objects(node));
+    }
+    return sizes;
+}
+
+void check_words(const NodeSizes& sizes, std::span<const std::uint32_t> nodes) {
+    std::uint64_t total = 0;
+    for (const std::uint32_t node : nodes) total += sizes.words[node];
+    if (total > kMaxWords)
+        throw UserError(
+            fmt::format("{} nodes, {} voxels: the memories of {} nodes need {} words, more than the limit of {}; use "
+                        "fewer nodes or voxels, or more processes (mpirun)",
+                        sizes.words.size(), raya_voxels(sizes.grid), nodes.size(), total, kMaxWords));
+}
+
+NodeMemories pack_nodes(const PackedJob& job, const Partition& partition, const raya_torus& torus,
+                        std::span<const std::uint32_t> nodes) {
+    NodePacker packer(job, partition, torus);
+    NodeMemories memories;
+    memories.starts.push_back(0);
+    for (const std::uint32_t node : nodes) {
+        packer.append(node, memories.words);
+        memories.starts.push_back(static_cast<std::uint32_t>(memories.words.size()));
+    }
+    return memories;
 }
 
 }  // namespace raya

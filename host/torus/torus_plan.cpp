@@ -28,49 +28,9 @@ PackedJob header_only_job(const raya_job& header, bool has_patches) {
     return job;
 }
 
-std::uint64_t fullest_words(const NodeMemories& memories) {
-    std::uint64_t words = 0;
-    for (std::size_t node = 0; node + 1 < memories.starts.size(); ++node)
-        words = std::max<std::uint64_t>(words, memories.starts[node + 1] - memories.starts[node]);
-    return words;
-}
-
-NodeBuffers buffers_of(const Scene& scene, const NodeMemories& memories, const TorusSettings& s,
-                       const NodeTrial& trial) {
-    return plan_buffers(scene.name, memories, s.torus, s.memory_bytes, s.queue,
+NodeBuffers buffers_of(const Scene& scene, const NodeSizes& sizes, const TorusSettings& s, const NodeTrial& trial) {
+    return plan_buffers(scene.name, sizes, s.torus, s.memory_bytes, s.queue,
                         raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces), trial);
-}
-
-// Packs the scene and divides it among all nodes. Returns the job with the memories of all nodes.
-TorusJob divide_scene(const Session& session, const Scene& scene, const TorusSettings& s,
-                      const NodeDistribution& distribution, const DeviceMemory& device,
-                      const std::function<void()>& packed) {
-    const LengthScale scale = length_scale(scene, s.format);
-    const PackedJob job = packed_job(session, scene, s, scale);
-    if (packed) packed();
-    const SpanLog::Span span = session.span("divide scene");
-    const Partition partition = raya::partition(job, s.format, s.voxels);
-    TorusJob whole_job{
-        header_only_job(job.header(), job.has_patches()), pack_nodes(job, partition, s.torus), scale, {}, 0};
-    whole_job.buffers = buffers_of(scene, whole_job.memories, s, make_node_trial(job, s.format, s.voxels));
-    check_device_memory(scene.name, whole_job.buffers, distribution.max_nodes_of_rank(), session.device().name, device);
-    set_windows(whole_job.memories, s, job, partition);
-    whole_job.fullest_words = fullest_words(whole_job.memories);
-    return whole_job;
-}
-
-// Returns the memories of `nodes`, in this order.
-NodeMemories select_memories(const NodeMemories& all, const std::vector<std::uint32_t>& nodes) {
-    NodeMemories selected;
-    selected.copies = all.copies;
-    selected.max_objects = all.max_objects;
-    selected.starts.push_back(0);
-    for (const std::uint32_t node : nodes) {
-        selected.words.insert(selected.words.end(), all.words.begin() + all.starts[node],
-                              all.words.begin() + all.starts[node + 1]);
-        selected.starts.push_back(static_cast<std::uint32_t>(selected.words.size()));
-    }
-    return selected;
 }
 
 // The part of a TorusJob that is the same in all ranks: all but the nodes' words and their starts.
@@ -80,38 +40,61 @@ struct TorusJobHeader {
     LengthScale scale;
     NodeBuffers buffers;
     std::uint64_t fullest_words, copies;
-    std::uint32_t max_objects;
 };
 
-void send_to_ranks(const TorusJob& whole_job, const NodeDistribution& distribution, Ranks& ranks) {
-    const NodeMemories& m = whole_job.memories;
-    TorusJobHeader header{whole_job.header_only.header(),
-                          whole_job.header_only.has_patches(),
-                          whole_job.scale,
-                          whole_job.buffers,
-                          whole_job.fullest_words,
-                          m.copies,
-                          m.max_objects};
-    ranks.broadcast(header);
+TorusJob with_memories(const TorusJobHeader& h, NodeMemories memories) {
+    return {
+        header_only_job(h.header, h.has_patches), std::move(memories), h.scale, h.buffers, h.fullest_words, h.copies};
+}
+
+// Writes windows of all nodes into the headers of `nodes`.
+void set_windows(NodeMemories& memories, const std::vector<PixelWindow>& windows,
+                 const std::vector<std::uint32_t>& nodes) {
+    for (std::size_t slot = 0; slot < nodes.size(); ++slot)
+        put_record(memories.words, memories.starts[slot] + offsetof(raya_node, window) / sizeof(std::uint32_t),
+                   windows[nodes[slot]]);
+}
+
+// Packs the scene, divides it among all nodes, and sends each rank the words of its nodes. Returns this rank's job. The
+// words of other ranks' nodes are packed rank by rank, so that this rank never holds all of them.
+TorusJob divide_scene(const Session& session, const Scene& scene, const TorusSettings& s,
+                      const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks,
+                      const std::function<void()>& packed) {
+    const LengthScale scale = length_scale(scene, s.format);
+    const PackedJob job = packed_job(session, scene, s, scale);
+    if (packed) packed();
+    const SpanLog::Span span = session.span("divide scene");
+    const Partition partition = raya::partition(job, s.format, s.voxels);
+    const NodeSizes sizes = node_sizes(job, partition, s.torus);
+    for (std::uint32_t rank = 0; rank < ranks.count(); ++rank) check_words(sizes, distribution.nodes_of(rank));
+    const NodeBuffers buffers = buffers_of(scene, sizes, s, make_node_trial(job, s.format, s.voxels));
+    check_device_memory(scene.name, buffers, distribution.max_nodes_of_rank(), session.device().name, device);
+    const std::vector<PixelWindow> windows = pixel_windows(job.header(), partition.grid, s.torus, s.format);
+    TorusJobHeader header{job.header(), job.has_patches(), scale, buffers, sizes.words[sizes.fullest()], sizes.copies};
+    const auto memories_of = [&](std::uint32_t rank) {
+        const std::vector<std::uint32_t>& nodes = distribution.nodes_of(rank);
+        NodeMemories memories = pack_nodes(job, partition, s.torus, nodes);
+        set_windows(memories, windows, nodes);
+        return memories;
+    };
+    if (ranks.has_several()) ranks.broadcast(header);
     for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) {
-        const NodeMemories rank_memories = select_memories(m, distribution.nodes_of(rank));
-        ranks.send(rank, std::span<const std::uint32_t>(rank_memories.starts));
-        ranks.send(rank, std::span<const std::uint32_t>(rank_memories.words));
+        const NodeMemories memories = memories_of(rank);
+        ranks.send(rank, std::span<const std::uint32_t>(memories.starts));
+        ranks.send(rank, std::span<const std::uint32_t>(memories.words));
     }
+    return with_memories(header, memories_of(0));
 }
 
 TorusJob receive_job(const NodeDistribution& distribution, Ranks& ranks) {
     TorusJobHeader header;
     ranks.broadcast(header);
     NodeMemories m;
-    m.copies = header.copies;
-    m.max_objects = header.max_objects;
     m.starts.resize(distribution.nodes() + 1);
     ranks.receive(0, std::span(m.starts));
     m.words.resize(m.starts.back());
     ranks.receive(0, std::span(m.words));
-    return {header_only_job(header.header, header.has_patches), std::move(m), header.scale, header.buffers,
-            header.fullest_words};
+    return with_memories(header, std::move(m));
 }
 
 }  // namespace
@@ -171,20 +154,13 @@ KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job) {
             .tuning = s.kernels.tuning};
 }
 
-void set_windows(NodeMemories& memories, const TorusSettings& s, const PackedJob& job, const Partition& partition) {
-    const std::vector<PixelWindow> windows = pixel_windows(job.header(), partition.grid, s.torus, s.format);
-    for (std::size_t node = 0; node < windows.size(); ++node)
-        put_record(memories.words, memories.starts[node] + offsetof(raya_node, window) / sizeof(std::uint32_t),
-                   windows[node]);
-}
-
 NodeNeeds node_needs(const Scene& scene, const TorusSettings& s) {
     check_packet_fields(s, scene);
     const LengthScale scale = length_scale(scene, s.format);
     const PackedJob job = pack_job(scene, job_settings(s, scale));
-    const NodeMemories memories = pack_nodes(job, partition(job, s.format, s.voxels), s.torus);
-    const std::uint64_t words = fullest_words(memories);
-    const NodeBuffers buffers = buffers_of(scene, memories, s, {});
+    const NodeSizes sizes = node_sizes(job, partition(job, s.format, s.voxels), s.torus);
+    const std::uint64_t words = sizes.words[sizes.fullest()];
+    const NodeBuffers buffers = buffers_of(scene, sizes, s, {});
     return {scale, words, node_bytes(words, buffers, links_of_node(s.torus))};
 }
 
@@ -199,12 +175,7 @@ TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusS
                         const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks,
                         const std::function<void()>& packed) {
     if (!ranks.is_first()) return receive_job(distribution, ranks);
-    TorusJob job = divide_scene(session, scene, settings, distribution, device, packed);
-    if (!ranks.has_several()) return job;
-    const SpanLog::Span span = session.span("send nodes");
-    send_to_ranks(job, distribution, ranks);
-    job.memories = select_memories(job.memories, distribution.own_nodes());
-    return job;
+    return divide_scene(session, scene, settings, distribution, device, ranks, packed);
 }
 
 }  // namespace raya

@@ -55,17 +55,14 @@ std::uint64_t traced_pixels(const TorusSettings& settings);
 
 KernelOptions kernel_options(const TorusSettings& settings, const PackedJob& job);
 
-/// Writes the results of pixel_windows() into the headers of the nodes.
-void set_windows(NodeMemories& memories, const TorusSettings& settings, const PackedJob& job,
-                 const Partition& partition);
-
 /// Job of a rank.
 struct TorusJob {
     PackedJob header_only;  // the job's header, without objects
-    NodeMemories memories;  // words and starts: of this rank's nodes, by slot; other members: of all nodes
+    NodeMemories memories;  // of this rank's nodes
     LengthScale scale;
     NodeBuffers buffers;
     std::uint64_t fullest_words = 0;  // number of words of the fullest node
+    std::uint64_t copies = 0;         // see NodeSizes
 };
 
 /// Length scale of a scene, and memory that the fullest node needs.
@@ -82,8 +79,8 @@ NodeNeeds node_needs(const Scene& scene, const TorusSettings& settings);
 DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks);
 
 /// Collective: returns this rank's job. Rank 0 packs the scene, divides it among the nodes and sends each rank the
-/// words of its nodes; until then the host memory of rank 0 holds the words of all nodes. Other ranks do not read
-/// `scene`; rank 0 calls `packed`, if not empty, when it no longer needs the scene's objects. `device`:
+/// words of its nodes, one rank after another. Then no rank holds the whole scene. Other ranks do not read `scene`;
+/// rank 0 calls `packed`, if not empty, when it no longer needs the scene's objects. `device`:
 /// smallest_device_memory(). Throws UserError if the scene or the buffers exceed the memory of a
 /// node or of the device.
 TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& settings,

@@ -278,7 +278,7 @@ void TorusRenderer::Impl::check(const TorusResult& result) const {
 }
 
 void TorusRenderer::Impl::describe(TorusResult& result) const {
-    result.copies = job.memories.copies;
+    result.copies = job.copies;
     result.scale = job.scale;
     result.buffers = job.buffers;
     result.copied_words = nodes->copies_words_to_local() ? job.memories.words.size() : 0;

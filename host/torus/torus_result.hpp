@@ -82,7 +82,7 @@ struct TorusResult {
     std::uint64_t sent_rays = 0, received_rays = 0;  // of this rank's nodes: numbers of packets over links
     std::uint64_t received_returns = 0;              // of this rank's nodes
     std::uint64_t queue_max = 0;                     // maximum number of packets in a queue
-    std::uint64_t copies = 0;                        // see NodeMemories
+    std::uint64_t copies = 0;                        // see NodeSizes
     LengthScale scale;
     NodeBuffers buffers;
     std::uint64_t node_bytes = 0;     // number of bytes of the fullest node: words and buffers

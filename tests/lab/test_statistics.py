@@ -422,3 +422,20 @@ def test_counted_claims_are_always_decided(holds, verdict):
 def test_exponent_of_a_power(exponent):
     x = np.array([1, 2, 5, 10, 100])
     assert s.fitted_exponent(x, 7 * x**float(exponent)) == pytest.approx(exponent, abs=1e-12)
+
+
+def test_hierarchical_interval_covers_the_mean_of_all_families():
+    covered, draws, families = 0, 400, np.repeat([*"abcdefghijkl"], 5)
+    generator = random()
+    for _ in range(draws):
+        values = np.repeat(generator.normal(3, 1, 12), 5) + generator.normal(0, 0.5, 60)
+        e = s.hierarchical(values, families, samples=300)
+        covered += e.low <= 3 <= e.high
+        assert e.half > s.estimate(values, families).half, f"seed {SEED}"  # which treats the families as all that there are
+    assert abs(covered / draws - 0.95) <= error_of(0.95, draws) + 0.01, f"{covered} of {draws}, seed {SEED}"
+
+
+def test_hierarchical_values_of_equal_families_have_no_error():
+    e = s.hierarchical([1, 1, 1, 1], [*"aabb"])
+    assert (e.mean, e.half, e.count) == (1, 0, 4)
+    assert np.isnan(s.hierarchical([1, 2], [*"aa"]).half)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the documents: targets of links exist, paragraphs are short, and the outputs printed in README.md equal raya's outputs.
+"""Checks the documents: targets of links exist, paragraphs are short, the outputs printed in README.md equal raya's outputs, the paper's numbers equal
+its data, and the version is the same in all files for citation.
 
   test_documents.py RAYA    RAYA: the program, which runs the examples of README.md in the project's folder
 
@@ -12,7 +13,8 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-GENERATED = {"report.md", "gpu_resources.md", "portability.md", "performance.md", "sweep.md", "verdicts.md"}  # tools write these
+GENERATED = {"report.md", "gpu_resources.md", "portability.md", "performance.md", "sweep.md", "verdicts.md", "artifact.md"}  # tools write these
+PAPER = "paper.md"  # its paragraphs are those of a paper; comments behind its numbers name their data
 MAX_WORDS, MAX_CELL_WORDS, MAX_COLUMNS = 80, 30, 120
 # Lines with measured figures, and the parts of these lines that differ between machines and runs: times, rates, lanes, sizes of binaries, the name
 # of the device. All other lines are compared exactly.
@@ -95,14 +97,29 @@ def wrong_examples(raya, text):
             yield from (f"README.md: {command} does not print: {line}" for line in printed if masked(line) not in lines)
 
 
+def wrong_citations():
+    """Yields a fault of the files for citation, or of the paper's numbers."""
+    version = re.search(r"project\(raya VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+    for name, pattern in (("CITATION.cff", r"^version: (\S+)$"), ("codemeta.json", r'"version": "(.*?)"'), (".zenodo.json", r'"version": "(.*?)"')):
+        found = re.search(pattern, (ROOT / name).read_text(), re.M)
+        if not found or found[1] != version:
+            yield f"{name}: version {found and found[1]}, not {version}"
+    checked = subprocess.run([sys.executable, "-B", ROOT / "docs/paper/check_numbers.py"], capture_output=True, text=True)
+    if checked.returncode or int(checked.stdout.split()[0]) < 50:
+        yield checked.stdout + checked.stderr
+    if subprocess.run([ROOT / "tools/artifact", "--appendix"], capture_output=True).stdout != (ROOT / "docs/artifact.md").read_bytes():
+        yield "docs/artifact.md: not what tools/artifact --appendix prints"
+
+
 def main():
     raya = str(Path(sys.argv[1]).resolve())
     faults = []
     for page in documents():
         text = page.read_text()
         faults += broken_links(page, text)
-        if page.name not in GENERATED:
+        if page.name not in GENERATED | {PAPER}:
             faults += long_texts(page, text)
+    faults += wrong_citations()
     readme = (ROOT / "README.md").read_text()
     if not list(broken_links(ROOT / "README.md", "[a](docs/none.md)")) or not list(long_texts(ROOT / "README.md", "word " * 81)):
         faults.append("test_documents.py: does not detect a broken link or a long paragraph")

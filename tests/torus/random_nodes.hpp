@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <set>
 #include <vector>
 
@@ -82,6 +83,13 @@ inline Partition random_partition(SplitMix& random, const PackedJob& job, const 
         for (std::uint32_t i = 0; i < copies; ++i) lists[random_below(random, lists.size())].insert(object);
     }
     return partition_of(divisions, lists);
+}
+
+/// Packs the words of all nodes.
+inline NodeMemories pack_all(const PackedJob& job, const Partition& partition, const raya_torus& torus) {
+    std::vector<std::uint32_t> nodes(raya_nodes(torus));
+    std::iota(nodes.begin(), nodes.end(), 0);
+    return pack_nodes(job, partition, torus, nodes);
 }
 
 /// Reads the words of a node and counts how often each word is read.

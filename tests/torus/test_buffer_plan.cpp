@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::uint32_t kDefaultQueue = 8192;
 
-// Returns the memories of nodes with one voxel each. Node i's voxel contains counts[i] spheres with one surface. There
+// Returns the sizes of nodes with one voxel each. Node i's voxel contains counts[i] spheres with one surface. There
 // are no lights and no planes.
-NodeMemories nodes_with_spheres(const std::vector<std::uint32_t>& counts, const raya_torus& torus) {
+NodeSizes nodes_with_spheres(const std::vector<std::uint32_t>& counts, const raya_torus& torus) {
     Scene scene = empty_scene();
     scene.lights.clear();
     std::vector<std::set<std::uint32_t>> lists(counts.size());
@@ -30,7 +30,7 @@ NodeMemories nodes_with_spheres(const std::vector<std::uint32_t>& counts, const 
             scene.spheres.push_back({{0, 0, 0}, 1, 0});
         }
     const Divisions divisions = {torus.nodes[0], torus.nodes[1], torus.nodes[2]};
-    return pack_nodes(pack(scene), partition_of(divisions, lists), torus);
+    return node_sizes(pack(scene), partition_of(divisions, lists), torus);
 }
 
 constexpr std::uint64_t padded_to_rows(std::uint64_t bytes) { return (bytes + 15) / 16 * 16; }
@@ -79,9 +79,9 @@ TEST_CASE("a node has two links to other nodes for each side of more than one no
 
 TEST_CASE("without a memory limit the queue has the requested or the default length", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
-    const NodeMemories memories = nodes_with_spheres({3, 4}, torus);
+    const NodeSizes sizes = nodes_with_spheres({3, 4}, torus);
     const auto plan = [&](std::uint32_t queue, std::uint32_t min_queue) {
-        const NodeBuffers buffers = plan_buffers("s", memories, torus, {}, queue, min_queue);
+        const NodeBuffers buffers = plan_buffers("s", sizes, torus, {}, queue, min_queue);
         return std::vector<std::uint32_t>{buffers.queue, buffers.box};
     };
     CHECK(plan(0, 5) == std::vector<std::uint32_t>{kDefaultQueue, kDefaultQueue / 4});
@@ -129,15 +129,14 @@ TEST_CASE("the planned queue is the longest that fits, to the byte", "[torus]") 
         for (std::uint32_t& count : counts) count = 1 + random_below(random, 50);
         const std::uint32_t max_count = *std::max_element(counts.begin(), counts.end());
         const std::uint32_t min_queue = 1 + random_below(random, 40), links = links_of_node(torus);
-        const NodeMemories memories = nodes_with_spheres(counts, torus);
+        const NodeSizes sizes = nodes_with_spheres(counts, torus);
         const std::uint32_t queue = min_queue + random_below(random, kDefaultQueue - min_queue);
         const std::uint64_t exact_bytes = node_words_bytes(max_count) + packet_bytes(queue, links);
         CAPTURE(seed, torus_text(torus), max_count, min_queue, queue);
         const auto plan = [&](std::uint64_t bytes, std::uint32_t requested_queue) {
-            return plan_buffers("s", memories, torus, bytes, requested_queue, min_queue);
+            return plan_buffers("s", sizes, torus, bytes, requested_queue, min_queue);
         };
-        REQUIRE(node_bytes(memories.starts.back() - memories.starts[counts.size() - 1], {0, 0}, links) ==
-                node_words_bytes(counts.back()));
+        REQUIRE(node_bytes(sizes.words.back(), {0, 0}, links) == node_words_bytes(counts.back()));
         CHECK(plan(exact_bytes, 0).queue == queue);
         CHECK(plan(exact_bytes, 0).box == (queue < 8 ? 1 : queue / 4));
         CHECK(plan(exact_bytes + 63, 0).queue == queue);
@@ -151,15 +150,15 @@ TEST_CASE("the planned queue is the longest that fits, to the byte", "[torus]") 
 
 TEST_CASE("a queue that is too short for the tree of one ray is refused, with the required length", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
-    const NodeMemories memories = nodes_with_spheres({3, 4}, torus);
-    CHECK(user_error_message([&] { plan_buffers("balls.nff", memories, torus, {}, 6, 7); }) ==
+    const NodeSizes sizes = nodes_with_spheres({3, 4}, torus);
+    CHECK(user_error_message([&] { plan_buffers("balls.nff", sizes, torus, {}, 6, 7); }) ==
           "balls.nff: --queue 6: the tree of a single ray may need 7 packets; use --queue 7 or more");
-    CHECK(plan_buffers("balls.nff", memories, torus, {}, 7, 7).queue == 7);
+    CHECK(plan_buffers("balls.nff", sizes, torus, {}, 7, 7).queue == 7);
 }
 
 TEST_CASE("a scene that does not fit is refused with figures, the fullest node and the remedy", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus3d);
-    const NodeMemories memories = nodes_with_spheres({100, 300, 20, 200}, torus);
+    const NodeSizes sizes = nodes_with_spheres({100, 300, 20, 200}, torus);
     const std::uint64_t limit = node_words_bytes(200) + packet_bytes(9, 4);
     const std::string figures = fmt::format(
         "s.nff: does not fit: 3 of 4 nodes can hold their voxels, 1 cannot; node 1 (voxel 1, 0, 0 with 300 objects) "
@@ -168,13 +167,13 @@ TEST_CASE("a scene that does not fit is refused with figures, the fullest node a
     REQUIRE(packet_bytes(9, 4) == 1920);  // 1.875 KB
     const std::uint64_t sufficient_bytes = (node_words_bytes(300) + 1920 + 1023) / 1024 * 1024;
     const auto refusal = [&](std::uint32_t queue, const NodeTrial& trial = {}) {
-        return user_error_message([&] { plan_buffers("s.nff", memories, torus, limit, queue, 9, trial); });
+        return user_error_message([&] { plan_buffers("s.nff", sizes, torus, limit, queue, 9, trial); });
     };
     CHECK(refusal(0) == figures + fmt::format("use --pe-memory {}", sufficient_bytes));
-    CHECK(plan_buffers("s.nff", memories, torus, sufficient_bytes, 0, 9).queue >= 9);
+    CHECK(plan_buffers("s.nff", sizes, torus, sufficient_bytes, 0, 9).queue >= 9);
 
     try {
-        plan_buffers("s.nff", memories, torus, limit, 0, 9);
+        plan_buffers("s.nff", sizes, torus, limit, 0, 9);
         FAIL("plan_buffers() has accepted a scene that does not fit");
     } catch (const NodesDoNotFit& error) {
         CHECK(error.nodes == 4);
@@ -210,28 +209,28 @@ TEST_CASE("a scene that does not fit is refused with figures, the fullest node a
 
 TEST_CASE("machines that are too small even for evenly divided words are not tried", "[torus]") {
     const raya_torus torus = make_torus({2, 2, 2}, Links::kTorus3d);
-    const NodeMemories memories = nodes_with_spheres(std::vector<std::uint32_t>(8, 1000), torus);
-    EvenTrial trial{memories.words.size(), 0};
+    const NodeSizes sizes = nodes_with_spheres(std::vector<std::uint32_t>(8, 1000), torus);
+    EvenTrial trial{std::accumulate(sizes.words.begin(), sizes.words.end(), std::uint64_t{0}), 0};
     const std::uint64_t limit =
         node_words_bytes(1000) / 32 + packet_bytes(1, 6);  // enough for words divided evenly among 2^8 nodes
-    CHECK_THAT(user_error_message([&] { plan_buffers("s", memories, torus, limit, 0, 1, std::ref(trial)); }),
+    CHECK_THAT(user_error_message([&] { plan_buffers("s", sizes, torus, limit, 0, 1, std::ref(trial)); }),
                Contains("use --nodes 8x8x4 or"));
     CHECK(trial.calls == 1);
 }
 
 TEST_CASE("if a shorter queue fits, the refusal names it", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus3d);
-    const NodeMemories memories = nodes_with_spheres({100, 300, 20, 200}, torus);
+    const NodeSizes sizes = nodes_with_spheres({100, 300, 20, 200}, torus);
     const std::uint64_t limit = node_words_bytes(300) + packet_bytes(100, 4);
     EvenTrial trial;
     const std::string message =
-        user_error_message([&] { plan_buffers("s", memories, torus, limit, 1000, 9, std::ref(trial)); });
+        user_error_message([&] { plan_buffers("s", sizes, torus, limit, 1000, 9, std::ref(trial)); });
     const std::uint64_t sufficient_bytes = (node_words_bytes(300) + packet_bytes(1000, 4) + 1023) / 1024 * 1024;
     CHECK_THAT(message, Contains("0 of 4 nodes can hold") && Contains("and 226.6 KB for buffers") &&
                             Contains(fmt::format("; use --queue 100 or --pe-memory {}", sufficient_bytes)));
     CHECK(trial.calls == 0);
-    CHECK(plan_buffers("s", memories, torus, limit, 100, 9).queue == 100);
-    CHECK(plan_buffers("s", memories, torus, sufficient_bytes, 1000, 9).queue == 1000);
+    CHECK(plan_buffers("s", sizes, torus, limit, 100, 9).queue == 100);
+    CHECK(plan_buffers("s", sizes, torus, sufficient_bytes, 1000, 9).queue == 1000);
 }
 
 TEST_CASE("a refusal gives the fullest node's number of voxels, or the position of its only voxel", "[torus]") {
@@ -249,8 +248,8 @@ TEST_CASE("a refusal gives the fullest node's number of voxels, or the position 
     const Partition partition = partition_of({4, 3, 2}, lists);
     const auto refusal = [&](const std::array<std::uint32_t, 3>& nodes) {
         const raya_torus torus = make_torus(nodes, Links::kTorus3d);
-        const NodeMemories memories = pack_nodes(job, partition, torus);
-        return user_error_message([&] { plan_buffers("s", memories, torus, 100, 0, 1); });
+        const NodeSizes sizes = node_sizes(job, partition, torus);
+        return user_error_message([&] { plan_buffers("s", sizes, torus, 100, 0, 1); });
     };
     CHECK_THAT(refusal({4, 3, 2}), Contains("0 of 24 nodes") && Contains("node 3 (voxel 3, 0, 0 with 7 objects)"));
     CHECK_THAT(refusal({2, 3, 2}), Contains("0 of 12 nodes") && Contains("node 1 (2 voxels with 7 objects)"));
@@ -263,7 +262,7 @@ TEST_CASE("each larger machine that is tried doubles the shortest side, up to 65
         const raya_torus torus = random_torus(random, 8);
         std::vector<std::uint32_t> counts(raya_nodes(torus), 0);
         counts[0] = 2000;
-        const NodeMemories memories = nodes_with_spheres(counts, torus);
+        const NodeSizes sizes = nodes_with_spheres(counts, torus);
         std::vector<std::array<std::uint32_t, 3>> tried = {{torus.nodes[0], torus.nodes[1], torus.nodes[2]}};
         const NodeTrial trial = [&](const std::array<std::uint32_t, 3>& nodes) {
             tried.push_back(nodes);
@@ -273,7 +272,7 @@ TEST_CASE("each larger machine that is tried doubles the shortest side, up to 65
         // The limit is one byte too small for the fullest node, but large enough for words divided evenly among more
         // nodes.
         const std::uint64_t limit = node_words_bytes(2000) + packet_bytes(1, links_of_node(torus)) - 1;
-        CHECK_THROWS_AS(plan_buffers("s", memories, torus, limit, 0, 1, trial), UserError);
+        CHECK_THROWS_AS(plan_buffers("s", sizes, torus, limit, 0, 1, trial), UserError);
         for (std::size_t i = 1; i < tried.size(); ++i) {
             const auto &before = tried[i - 1], &after = tried[i];
             std::size_t doubled = 0;

@@ -112,7 +112,7 @@ TEST_CASE("rays have the same hits in a node's voxel as in a job of the voxel's 
             const PackedJob job = pack(scene);
             const raya_torus torus = random_torus(random, 3);
             const Partition partition = random_partition(random, job, random_sides(random, 3), 6);
-            const NodeMemories memories = pack_nodes(job, partition, torus);
+            const NodeMemories memories = pack_all(job, partition, torus);
             const std::vector<float> rays = ray_words(random_rays(seed, kRays));
             const std::uint32_t voxel = random_below(random, raya_voxels(partition.grid));
             const std::uint32_t number = raya_node_of_voxel(torus, partition.grid, voxel);
@@ -127,7 +127,7 @@ TEST_CASE("rays have the same hits in a node's voxel as in a job of the voxel's 
             const VoxelHits planes = job_hits(job_runner, pack(only_listed(scene, {})), rays);
             CHECK(differences(voxel_hits(node_runner, memories, number, node.header().voxels, rays), planes) == 0);
             struck += kRays - std::count(expected.objects.begin(), expected.objects.end(), kNoObject);
-            copies += memories.copies;
+            copies += partition.copies();
         }
     }
     CHECK(struck > 2 * 12 * kRays / 10);
@@ -142,7 +142,7 @@ TEST_CASE("rays have the same hits in a voxel that lists all objects as in the j
         const std::vector<std::uint32_t> finite = finite_objects(job);
         const std::vector<std::set<std::uint32_t>> lists(12, {finite.begin(), finite.end()});
         const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus2d);
-        const NodeMemories memories = pack_nodes(job, partition_of({2, 2, 3}, lists), torus);
+        const NodeMemories memories = pack_all(job, partition_of({2, 2, 3}, lists), torus);
         const std::vector<float> rays = ray_words(random_rays(50 + seed, kRays));
         const VoxelHits expected = job_hits(job_runner, job, rays);
         for (std::uint32_t number = 0; number < 4; ++number) {

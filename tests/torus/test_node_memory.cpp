@@ -149,12 +149,12 @@ void check_node(const PackedJob& job, const Partition& partition, const raya_tor
     CHECK(node.words_read(0) <= 3 * (node.header().voxels + 1));
 }
 
-// Returns the number of objects in the node with the most objects, counted from the lists.
-std::uint64_t max_objects(const PackedJob& job, const Partition& p, const raya_torus& torus) {
-    std::vector<std::uint64_t> objects_of_nodes(raya_nodes(torus), job.header().objects.planes);
+// Returns the number of objects of each node, counted from the lists.
+std::vector<std::uint64_t> objects_of_nodes(const PackedJob& job, const Partition& p, const raya_torus& torus) {
+    std::vector<std::uint64_t> objects(raya_nodes(torus), job.header().objects.planes);
     for (std::uint32_t voxel = 0; voxel < raya_voxels(p.grid); ++voxel)
-        objects_of_nodes[raya_node_of_voxel(torus, p.grid, voxel)] += p.starts[voxel + 1] - p.starts[voxel];
-    return *std::max_element(objects_of_nodes.begin(), objects_of_nodes.end());
+        objects[raya_node_of_voxel(torus, p.grid, voxel)] += p.starts[voxel + 1] - p.starts[voxel];
+    return objects;
 }
 
 }  // namespace
@@ -167,23 +167,25 @@ TEST_CASE("nodes hold copies of the job's objects in their voxels, and nothing e
         const raya_torus torus = random_torus(random, 4);
         const Divisions divisions = random_sides(random, 6);
         const Partition partition = random_partition(random, job, divisions, 8);
-        const NodeMemories memories = pack_nodes(job, partition, torus);
+        const NodeMemories memories = pack_all(job, partition, torus);
         CAPTURE(seed, torus_text(torus), sides_text(divisions));
         REQUIRE(memories.starts.size() == raya_nodes(torus) + 1);
         REQUIRE(memories.starts.back() == memories.words.size());
-        std::uint64_t max_words = 0;
+        std::vector<std::uint64_t> words;
         for (std::uint32_t number = 0; number < raya_nodes(torus); ++number) {
             CAPTURE(number);
             NodeReader node(memories, number);
             REQUIRE(node.header().number == number);
             check_node(job, partition, torus, node);
-            max_words = std::max<std::uint64_t>(max_words, node.size());
+            words.push_back(node.size());
             empty_nodes += node.header().voxels == 0;
             multi_voxel_nodes += node.header().voxels > 1;
         }
-        CHECK(fullest_node_words(job, partition, torus) == max_words);
-        CHECK(memories.copies == partition.objects.size() - finite_objects(job).size());
-        CHECK(memories.max_objects == max_objects(job, partition, torus));
+        const NodeSizes sizes = node_sizes(job, partition, torus);
+        CHECK(sizes.words == words);
+        CHECK(sizes.words[sizes.fullest()] == *std::max_element(words.begin(), words.end()));
+        CHECK(sizes.copies == partition.objects.size() - finite_objects(job).size());
+        CHECK(sizes.objects == objects_of_nodes(job, partition, torus));
         objects += partition.objects.size();
     }
     CHECK(objects > 5000);
@@ -199,7 +201,7 @@ TEST_CASE("a node holds only the surfaces of its own objects and of the planes",
     const auto words_of = [](const Scene& s) {
         const PackedJob job = pack(s);
         const NodeMemories memories =
-            pack_nodes(job, partition_of({2, 1, 1}, {{0, 1, 2}, {3}}), make_torus({2, 1, 1}, Links::kTorus3d));
+            pack_all(job, partition_of({2, 1, 1}, {{0, 1, 2}, {3}}), make_torus({2, 1, 1}, Links::kTorus3d));
         return std::vector<std::size_t>{memories.starts[1], memories.words.size() - memories.starts[1]};
     };
     const auto whole_rows = [](std::size_t words) { return (words + 3) / 4 * 4; };
@@ -223,8 +225,8 @@ TEST_CASE("nodes hold the same words on a 2-D torus as on a 3-D torus", "[torus]
         const auto nodes = random_sides(random, 4);
         const Partition partition = random_partition(random, job, random_sides(random, 6), 4);
         const raya_torus flat = make_torus(nodes, Links::kTorus2d), deep = make_torus(nodes, Links::kTorus3d);
-        const NodeMemories flat_memories = pack_nodes(job, partition, flat),
-                           deep_memories = pack_nodes(job, partition, deep);
+        const NodeMemories flat_memories = pack_all(job, partition, flat),
+                           deep_memories = pack_all(job, partition, deep);
         CAPTURE(seed, torus_text(flat));
         for (std::uint32_t number = 0; number < raya_nodes(flat); ++number) {
             const raya_place place = raya_node_place(flat, number);
@@ -245,14 +247,18 @@ TEST_CASE("nodes with more than 2^30 words in total are refused before they are 
     const PackedJob job = pack(scene);
     const Partition everywhere = partition_of({16, 16, 16}, std::vector<std::set<std::uint32_t>>(4096, {0}));
     const raya_torus torus = make_torus({4, 4, 4}, Links::kTorus3d);
-    CHECK(fullest_node_words(job, everywhere, torus) > 64 * 400'000);
-    CHECK_THAT(user_error_message([&] { pack_nodes(job, everywhere, torus); }),
-               Contains("64 nodes, 4096 voxels") && Contains("fewer"));
+    const NodeSizes sizes = node_sizes(job, everywhere, torus);
+    CHECK(sizes.words[sizes.fullest()] > 64 * 400'000);
+    std::vector<std::uint32_t> nodes(64);
+    std::iota(nodes.begin(), nodes.end(), 0);
+    CHECK_THAT(user_error_message([&] { check_words(sizes, nodes); }),
+               Contains("64 nodes, 4096 voxels") && Contains("of 64 nodes") && Contains("fewer"));
+    CHECK_NOTHROW(check_words(sizes, std::span(nodes).first(32)));  // a rank's part
 }
 
 TEST_CASE("a partition whose number of voxels differs from its grid's is an error", "[torus]") {
     const PackedJob job = pack(empty_scene());
     Partition partition = empty_partition({2, 2, 2});
     partition.starts.pop_back();
-    CHECK_THROWS_AS(pack_nodes(job, partition, make_torus({2, 2, 2}, Links::kTorus3d)), std::logic_error);
+    CHECK_THROWS_AS(pack_all(job, partition, make_torus({2, 2, 2}, Links::kTorus3d)), std::logic_error);
 }

@@ -18,8 +18,8 @@ struct PartitionedJob {
 
     NodeBuffers plan(const std::array<std::uint32_t, 3>& nodes, const Divisions& voxels, std::uint64_t memory) const {
         const raya_torus torus = make_torus(nodes, Links::kTorus3d);
-        const NodeMemories memories = pack_nodes(job, partition(job, format, voxels), torus);
-        return plan_buffers("s", memories, torus, memory, 0, 4, make_node_trial(job, format, voxels));
+        const NodeSizes sizes = node_sizes(job, partition(job, format, voxels), torus);
+        return plan_buffers("s", sizes, torus, memory, 0, 4, make_node_trial(job, format, voxels));
     }
 };
 

@@ -34,4 +34,7 @@ FAMILIES = {"cluster": cluster,
             **{f"{name}, scattered": _scattered(lambda name=name: raya.example(name)) for name in ("centre", "spheres", "mirrors", "glass")},
             "balls-1, scattered": _scattered(lambda: raya.generate.balls(1).renamed("balls-1")),
             "random, 6 to 13": _random(6, 13), "random, 14 to 21": _random(14, 21), "random, 22 to 30": _random(22, 30)}
+# Also scenes of many objects, evenly spread (uniform) or not, as in Haines's Standard Procedural Databases.
+WIDE_FAMILIES = {**FAMILIES, "balls-2": view_of(raya.generate.balls(2).renamed("balls-2")), "lattice-2": view_of(raya.generate.lattice(2).renamed("lattice-2")),
+                 "uniform-64": view_of(raya.generate.uniform(64, (4, 4, 4)).renamed("uniform-64"))}
 CROWDED = {"cluster": cluster}  # families whose scenes have their objects in the middle of the image

@@ -56,6 +56,19 @@ def estimate(values, families=None, confidence=0.95):
     return Estimate(mean, half, len(values))
 
 
+def hierarchical(values, families, samples=2000, seed=1):
+    """Returns mean and 95 % interval of values in families that are themselves a sample of all families, unlike in estimate(). The standard error is
+    that of `samples` bootstrap samples: families drawn with replacement, and values within each drawn family. Degrees of freedom: families - 1.
+    Every family must have equally many values."""
+    strata = np.array([np.asarray(values, float)[np.asarray(families) == name] for name in dict.fromkeys(families)])  # [family, value]
+    count, each = strata.shape
+    random = np.random.default_rng(seed)
+    chosen = random.integers(count, size=(samples, count, 1))
+    error = strata[chosen, random.integers(each, size=(samples, count, each))].mean((1, 2)).std(ddof=1)
+    half = float(stats.t.ppf(0.975, count - 1) * error) if count > 1 else np.nan
+    return Estimate(float(strata.mean()), half, strata.size)
+
+
 def estimates(columns, families=None):
     """Returns a list with the estimate of each column of an array [value, column]."""
     return [estimate(column, families) for column in np.asarray(columns).T]

@@ -1,0 +1,115 @@
+"""Predicting the best offset from the autocorrelation of the costs
+
+Why does an offset p balance the load, and does the autocorrelation of a picture's costs predict the best one?
+
+- The load of a PE is the sum of the costs (modelled cycles) of its pixels. Slot s of row y holds column (s + p y) mod W, so the load is a sum over a
+  lattice of pixels. Its discrete Fourier transform over the PEs equals the Fourier transform of the cost image at the P points of the dual lattice:
+  (j / P, -j p / P), j = 0..P - 1, in cycles per pixel; for P = k W PEs (j / W, m / k - j p / W), m = 0..k - 1. So the variance of the loads is the sum
+  of the image's power spectrum at these points without (0, 0). The spectrum is the Fourier transform of the autocorrelation (Wiener & Khinchin).
+- Prediction: the spectrum is taken as equal in all directions (its mean on rings around 0), and u = (expected maximum of P normal values) x
+  (standard deviation of the loads) / (mean load). "own": spectrum of the picture itself. "others": mean spectrum of the other families.
+- Ensemble: {ensemble}, {size} x {size} pixels; first pass. Offsets 0..min(P, W) - 1. All mappings are applied to the same pictures.
+- P > W: the rows are dealt to P / W PEs of each slot in turn, so a PE's rows are k = P / W apart and their shift is k p mod W.
+- The random mapping gives each pixel to a random PE, with equally many pixels for every PE (one permutation for each picture).
+- Intervals (+-): 95 %, hierarchical: families are drawn at random, and pictures within each family (bootstrap).
+- Output: predictor.csv has, for each number of PEs P, the mean u of each way to choose the offset. predictor-accuracy.csv compares predictions with
+  the measured u of all offsets of the same picture.
+"""
+import numpy as np
+import pandas as pd
+import raya
+from raya.lab import Page, Plot, Series, Table, range_text, study
+from raya.lab.families import WIDE_FAMILIES
+from raya.lab.statistics import hierarchical
+from scipy.stats import norm, spearmanr
+
+PES = [4**k for k in range(2, 9)]  # 16 to 65,536
+GOLDEN = (5**0.5 - 1) / 2
+
+
+def dual_points(pes, offset, width):
+    """Returns the points (fx, fy), in cycles per pixel, at which the spectrum of the cost image determines the loads' variance. `pes` must divide
+    the width, or be a multiple of it."""
+    steps = max(1, pes // width)
+    slots = pes // steps
+    j, m = (part.ravel()[1:] for part in np.meshgrid(np.arange(slots), np.arange(steps), indexing="ij"))
+    return j / slots, m / steps - j * offset / slots
+
+
+def ring_spectrum(cost):
+    """Returns the mean power of the relative costs on rings of radius 0, 1, 2 ... cycles per image, for images of equal sides."""
+    size = len(cost)
+    power = np.abs(np.fft.fft2(cost / cost.mean() - 1))**2 / cost.size**2
+    cycles = np.fft.fftfreq(size) * size
+    ring = np.rint(np.hypot(*np.meshgrid(cycles, cycles))).astype(int).ravel()
+    return np.bincount(ring, power.ravel()) / np.bincount(ring)
+
+
+def expected_maximum(count):
+    """Returns the approximate expected maximum of `count` standard normal values (Blom 1958)."""
+    return norm.ppf((count - 0.375) / (count + 0.25))
+
+
+def predicted_u(spectrum, pes, offset, size):
+    """Returns the predicted load imbalance of the cyclic mapping for images of size x size pixels with a ring_spectrum()."""
+    distance = np.hypot(*((part + 0.5) % 1 - 0.5 for part in dual_points(pes, offset, size))) * size
+    return expected_maximum(pes) * np.interp(distance, np.arange(len(spectrum)), spectrum).sum()**0.5
+
+
+def random_u(cost, pes, seed):
+    loads = np.bincount(np.random.default_rng(seed).permutation(cost.size) % pes, cost.ravel(), pes)
+    return loads.max() / loads.mean() - 1
+
+
+def measure(ensemble, pes, size):
+    """Returns ({mapping: u of each picture}, measured u [picture, offset], predicted u [picture, offset])."""
+    offsets = range(min(pes, size))
+    families = np.array(ensemble.families)
+    u = ensemble.map(lambda costs: raya.imbalances(costs.trace, pes, offsets))
+    spectra = ensemble.map(lambda costs: ring_spectrum(costs.trace.astype(float)))
+    predict = lambda spectrum: np.array([predicted_u(spectrum, pes, p, size) for p in offsets])
+    own = np.array([predict(spectrum) for spectrum in spectra])
+    others = {name: predict(spectra[families != name].mean(0)) for name in dict.fromkeys(ensemble.families)}
+    at = lambda best: u[np.arange(len(u)), best]
+    root, golden = round(pes**0.5) % len(offsets), round(len(offsets) * GOLDEN)
+    return {"column split (p = 0)": u[:, 0], "p = sqrt(P)": u[:, root], "golden ratio": u[:, golden], "predicted, own": at(own.argmin(1)),
+            "predicted, others": at([others[name].argmin() for name in ensemble.families]), "best of all offsets": u.min(1),
+            "random": np.array([random_u(costs.trace, pes, seed) for seed, costs in enumerate(ensemble.pictures)])}, u, own
+
+
+@study("predictor", prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(256), families=WIDE_FAMILIES))
+def predictor(lab, scenes):
+    size = lab.size(256)
+    ensemble = lab.ensemble(scenes, size, families=WIDE_FAMILIES)
+    families, rows, accuracy = ensemble.families, [], []
+    for pes in [pes for pes in PES if 16 * pes <= size * size and (size % pes == 0 or pes % size == 0)]:
+        mappings, u, own = measure(ensemble, pes, size)
+        root = mappings["p = sqrt(P)"]
+        for name, values in mappings.items():
+            mean, loss = hierarchical(values, families), hierarchical(values - root, families)
+            rows.append({"P": pes, "mapping": name, "mean u": mean.mean, "+-": mean.half, "mean u - u(sqrt(P))": loss.mean,
+                         "+-, difference": loss.half, "better than sqrt(P) (pictures)": int((values < root).sum())})
+        ranks = np.array([spearmanr(*pair)[0] for pair in zip(own, u) if min(map(np.ptp, pair)) > 0])  # undefined for a constant
+        ratio = np.median(own / np.maximum(u, 1e-12), axis=1)
+        accuracy.append({"P": pes, "median rank correlation": np.median(ranks), "rank correlations": range_text(ranks, 2),
+                         "median predicted / measured u": np.median(ratio), "10 % of pictures below": np.quantile(ratio, 0.1),
+                         "10 % of pictures above": np.quantile(ratio, 0.9)})
+    rows, accuracy = pd.DataFrame(rows), pd.DataFrame(accuracy)
+    series = [Series(name, group["P"], group["mean u"], "line", group["+-"]) for name, group in rows.groupby("mapping", sort=False)]
+    return Page({"size": size, "pictures": len(families), "families": len(set(families))}, findings_of(rows, accuracy),
+                tables=[Table("predictor", "Mean u of each choice of the offset", rows),
+                        Table("predictor-accuracy", "Predictions and measured u over all offsets of a picture", accuracy)],
+                plots=[Plot("predictor", "Load imbalance of each choice of the offset", "PEs", "load imbalance u", series, "xy")],
+                placeholders={"ensemble": ensemble.description})
+
+
+def findings_of(rows, accuracy):
+    def differences(name):
+        chosen = rows[rows["mapping"] == name]
+        low, high = chosen["mean u - u(sqrt(P))"] + chosen["+-, difference"], chosen["mean u - u(sqrt(P))"] - chosen["+-, difference"]
+        return (f"{name}: u is lower than with p = sqrt(P) for P = {', '.join(map(str, chosen['P'][low < 0])) or 'none'}, and higher for P = "
+                f"{', '.join(map(str, chosen['P'][high > 0])) or 'none'} (95 % intervals of the difference).")
+
+    return [differences(name) for name in ("predicted, own", "predicted, others", "golden ratio", "random", "column split (p = 0)")] + [
+        f"The median of predicted / measured u is {range_text(accuracy['median predicted / measured u'], 2)} over the numbers of PEs; the median rank "
+        f"correlation over the offsets of a picture is {range_text(accuracy['median rank correlation'], 2)}."]
