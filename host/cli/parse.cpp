@@ -40,6 +40,20 @@ std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const 
     return {sides[0], sides[1], sides[2]};
 }
 
+Shard parse_shard(const std::string& text) {
+    const char *const end = text.data() + text.size(), *at = text.data();
+    const auto reads = [&](std::uint32_t& number) {
+        const auto [stop, error] = std::from_chars(at, end, number);
+        at = stop;
+        return error == std::errc{};
+    };
+    Shard shard;
+    const bool is_valid = reads(shard.number) && at != end && *at++ == '/' && reads(shard.count) && at == end;
+    if (!is_valid || shard.number < 1 || shard.number > shard.count)
+        throw UserError(fmt::format("--shard {}: must be I/N with I 1..N, such as 2/4", text));
+    return shard;
+}
+
 Accel parse_accel(const std::string& text) {
     if (text == "none") return {};
     if (text == "bvh") return {.kind = AccelKind::kBvh};

@@ -30,6 +30,14 @@ ImageSize parse_image_size(const std::string& text);
 std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
                                                const std::string& legal_values);
 
+/// A part of a command's work: the I-th of N shards.
+struct Shard {
+    std::uint32_t number = 1, count = 1;
+};
+
+/// Parses --shard: "I/N" with I 1..N. Throws UserError.
+Shard parse_shard(const std::string& text);
+
 /// Parses --accel: "none", "bvh", "grid" or "grid:AxBxC". Throws UserError with the option and its legal values.
 Accel parse_accel(const std::string& text);
 

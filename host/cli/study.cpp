@@ -1,4 +1,5 @@
-// raya study STUDY [SCENE...] -o DIR: starts the Python module raya.lab (tools/lab), which runs studies.
+// raya study STUDY [SCENE...] -o DIR: starts the Python module raya.lab (tools/lab), which runs studies, divides them
+// into shards, merges shards and checks manifests.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <sys/stat.h>
@@ -35,7 +36,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct StudyCommand {
-    std::string study, folder, device;
+    std::string study, folder, device, shard, manifest;
+    std::vector<std::string> merged, searched;  // folders of shards: to merge, and to search for missing ones
     std::optional<std::uint32_t> size, views;
     std::uint32_t seed = 1;
     std::vector<std::string> scenes;
@@ -69,6 +71,17 @@ std::string studies_text() {
 }
 
 void check_study(const StudyCommand& command) {
+    // The shards and the manifest contain the study and its settings.
+    const bool repeats = !command.merged.empty() || !command.searched.empty() || !command.manifest.empty();
+    if (!repeats && command.study.empty())
+        throw UserError("STUDY is required; raya help study lists the studies; remedy: raya study NAME -o DIR");
+    if (command.folder.empty() && command.searched.empty() && command.manifest.empty())
+        throw UserError("--output is required; remedy: raya study NAME -o DIR");
+    if (!command.folder.empty() && !command.searched.empty())
+        throw UserError("--output with --missing: no effect; leave it out");
+    if (!command.shard.empty()) parse_shard(command.shard);
+    if (command.folder == "-") throw UserError("-o -: a study writes several files, not stdout; name a folder");
+    if (repeats && command.study.empty()) return;
     const std::vector<std::string> names = study_names();
     const auto is_study = [&](const std::string& name) { return std::ranges::find(names, name) != names.end(); };
     if (!is_study(command.study) && !command.study.ends_with(".py"))
@@ -100,7 +113,6 @@ void check_study(const StudyCommand& command) {
     if (!times.empty() && command.study != "ranks" && command.study != "all")
         throw UserError(
             fmt::format("--network applies to study ranks only, not to study {}; leave it out", command.study));
-    if (command.folder == "-") throw UserError("-o -: a study writes several files, not stdout; name a folder");
 }
 
 // Returns the settings that tools/lab/__main__.py reads.
@@ -108,26 +120,51 @@ Json settings_of(const StudyCommand& command) {
     Json settings = {
         {"study", command.study},   {"scenes", command.scenes},     {"output", command.folder}, {"size", nullptr},
         {"network", nullptr},       {"device", command.device},     {"views", nullptr},         {"seed", command.seed},
-        {"strict", command.strict}, {"no_tuned", command.no_tuned}, {"verbosity", verbosity()}};
+        {"strict", command.strict}, {"no_tuned", command.no_tuned}, {"verbosity", verbosity()}, {"shard", nullptr},
+        {"merge", command.merged},  {"missing", command.searched},  {"check", command.manifest}};
+    if (!command.shard.empty()) {
+        const Shard shard = parse_shard(command.shard);
+        settings["shard"] = std::vector{shard.number, shard.count};
+    }
     if (command.size) settings["size"] = *command.size;
     if (command.views) settings["views"] = *command.views;
     if (!command.network.empty()) settings["network"] = command.network;
     return settings;
 }
 
+void add_shard_options(CLI::App& command, StudyCommand& options) {
+    add_value(command, "--shard", options.shard,
+              "Compute the I-th of N parts of the study's cost images, and write them to the folder of -o; the same "
+              "command continues after a stop")
+        ->type_name("I/N");
+    CLI::Option* const merge = add_file(command, FileUse::kRead, "--merge", options.merged, "DIR...",
+                                        "Folders of all N shards: write the results of the study");
+    CLI::Option* const missing =
+        add_file(command, FileUse::kRead, "--missing", options.searched, "DIR...",
+                 "Folders of shards: list the shards that are absent, incomplete or damaged (exit code 4)");
+    CLI::Option* const check =
+        add_file(command, FileUse::kRead, "--check", options.manifest, "FILE",
+                 "Repeat the study of a manifest.json and compare the results (exit code 4: they differ)");
+    for (CLI::Option* const option : {merge, missing, check}) option->excludes("--shard");
+    merge->excludes(missing)->excludes(check);
+    missing->excludes(check);
+}
+
 void add_study_options(CLI::App& command, StudyCommand& options) {
     OptionGroup group(command, kFiles);
     CLI::Option* const study =
         add_file(command, FileUse::kRead, "STUDY", options.study, "STUDY|all|FILE.py",
-                 "Name of a study in the list below, all for all studies, or a file with your own study");
-    offer_choices(study->required(), study_names());
+                 "Name of a study in the list below, all for all studies, or a file with your own study; may be left "
+                 "out with --merge, --missing and --check");
+    offer_choices(study, study_names());
     add_file(command, FileUse::kRead, "SCENE", options.scenes, "SCENE",
              "Scenes in NFF, or meshes (.obj, .ply, .gltf, .glb, .stl); one of them may be -: stdin; with `all`, "
              "studies of a single scene take the first scene; "
              "default: the study's own scenes");
     add_file(command, FileUse::kWrittenFolder, "-o,--output", options.folder, "DIR",
-             "Folder for index.html, Markdown, CSV, JSON and plots; created if missing")
-        ->required();
+             "Folder for index.html, Markdown, CSV, JSON, plots and manifest.json; with --shard, for the shard's "
+             "results; created if missing");
+    add_shard_options(command, options);
     group.next(kImageGroup);
     add_value(command, "--size", options.size,
               "Image size in pixels a side, 17..4096; default: the study's size, 256 in most studies")
@@ -150,6 +187,10 @@ void add_study_options(CLI::App& command, StudyCommand& options) {
     add_strict_option(command, options.strict);
     add_device_option(command, options.device);
     add_tuned_option(command, options.no_tuned);
+    for (const char* const repeating :
+         {"--merge", "--missing", "--check"})  // their settings are in shards and manifest
+        for (const char* const option : {"--size", "--views", "--seed", "--network", "--strict", "--no-tuned"})
+            command.get_option(repeating)->excludes(option);
 }
 
 // Returns the folder that contains the Python package raya, in the build folder or in the installation of `program`.

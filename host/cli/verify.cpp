@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <functional>
 #include <future>
@@ -47,20 +46,6 @@ struct VerifyCommand {
     Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
 };
 
-// Sets shard and shards from the text "I/N". Throws UserError if it is not valid.
-void set_shard(VerifySettings& settings, const std::string& text) {
-    if (text.empty()) return;
-    const char *const end = text.data() + text.size(), *at = text.data();
-    const auto reads = [&](std::uint32_t& number) {
-        const auto [stop, error] = std::from_chars(at, end, number);
-        at = stop;
-        return error == std::errc{};
-    };
-    const bool is_valid = reads(settings.shard) && at != end && *at++ == '/' && reads(settings.shards) && at == end;
-    if (!is_valid || settings.shard < 1 || settings.shard > settings.shards)
-        throw UserError(fmt::format("--shard {}: must be I/N with I 1..N, such as 2/4", text));
-}
-
 // Sets the options that the render of --as has, too.
 void take_render(VerifyCommand& command) {
     if (command.as.empty()) return;
@@ -82,7 +67,10 @@ VerifySettings settings_of(const VerifyCommand& command) {
                             .seed = command.seed,
                             .lanes = command.lanes,
                             .as = command.as};
-    set_shard(settings, command.shard);
+    if (!command.shard.empty()) {
+        const Shard shard = parse_shard(command.shard);
+        settings.shard = shard.number, settings.shards = shard.count;
+    }
     settings.expected_failures = read_expected_failures(command.expect);
     return settings;
 }

@@ -96,7 +96,7 @@ TEST_CASE("help: the parser refuses wrong examples (control)", "[cli][help]") {
     for (const Arguments& call :
          {Arguments{"rendr", "x.nff"}, Arguments{"render", "x.nff", "-o", "x.png", "--no-such-option"},
           Arguments{"render", "x.nff", "-o"}, Arguments{"render", "x.nff"},
-          Arguments{"generate", "random", "many", "-o", "x.nff"}, Arguments{"study", "fig7"}})
+          Arguments{"generate", "random", "many", "-o", "x.nff"}, Arguments{"study", "fig7", "-o"}})
         CHECK(refusal_of(call) != "");
 }
 

@@ -56,7 +56,8 @@ Arguments arguments_for(CLI::App& command, const Path& path, const Arguments& tw
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         const auto at = std::find(two_options.begin(), two_options.end(), name);
-        if (at == two_options.end() && !option->get_required()) continue;
+        const bool precedes_others = name == "STUDY";  // without it, the first scene would be the study
+        if (at == two_options.end() && !option->get_required() && !precedes_others) continue;
         if (!option->get_positional()) arguments.push_back(name);
         if (at != two_options.end())
             arguments.push_back(two_values[static_cast<std::size_t>(at - two_options.begin())]);

@@ -54,7 +54,7 @@ TEST_CASE("help COMMAND: prints the same as COMMAND --help", "[cli][help]") {
     CHECK(help_of({"help", "study"}) == help_of({"study", "fig7", "--help"}));
     CHECK(help_of({"help", "help"}) == help_of({"help", "--help"}));
     CHECK_THAT(help_of({"help", "study"}),
-               Catch::StartsWith("Usage: raya study STUDY") && Catch::Contains("Load of each PE, column split"));
+               Catch::StartsWith("Usage: raya study [STUDY]") && Catch::Contains("Load of each PE, column split"));
     CHECK_THAT(help_of({"help", "page"}), !Catch::Contains("script"));  // scripts are an implementation detail
 }
 

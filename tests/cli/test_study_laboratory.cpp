@@ -39,7 +39,7 @@ TEST_CASE("study: writes figures, tables, JSON and a document", "[cli]") {
         CHECK_THAT(run.out, Catch::Contains(part));
     const std::filesystem::path folder = outputs / "made/x";
     CHECK(files_in(folder) == Files{"fig8-all.png", "fig8-all.svg", "fig8-families.csv", "fig8-near.csv", "fig8.csv",
-                                    "fig8.json", "fig8.md", "fig8.png", "fig8.svg", "index.html"});
+                                    "fig8.json", "fig8.md", "fig8.png", "fig8.svg", "index.html", "manifest.json"});
     const auto json = Document::parse(file_contents(folder / "fig8.json"));
     CHECK(json["study"] == "fig8");
     for (const auto& [key, value] :
@@ -90,8 +90,34 @@ TEST_CASE("study FILE.py: runs a user's study", "[cli]") {
     const RunOutcome run = run_raya(study_arguments(RAYA_SOURCE_DIR "/docs/my_study.py", outputs, {"--size", "32"}));
     INFO(run.describe());
     REQUIRE(run.code == 0);
-    CHECK(files_in(outputs / "made/x") ==
-          Files{"index.html", "my-study.csv", "my-study.json", "my-study.md", "my-study.png", "my-study.svg"});
+    CHECK(files_in(outputs / "made/x") == Files{"index.html", "manifest.json", "my-study.csv", "my-study.json",
+                                                "my-study.md", "my-study.png", "my-study.svg"});
+}
+
+TEST_CASE("study: shards merge to the results of one process, and a manifest repeats them", "[cli]") {
+    const ScratchFolder outputs;
+    const Arguments fig8 = {"study", "fig8", "--size", "32", "--views", "20"};
+    const auto run_with = [&](Arguments arguments, const Arguments& more, int code) {
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const RunOutcome run = run_raya(arguments);
+        INFO(run.describe());
+        REQUIRE(run.code == code);
+        return run.out;
+    };
+    run_with(fig8, {"-o", outputs / "out"}, 0);
+    run_with(fig8, {"--shard", "2/2", "-o", outputs / "s2"}, 0);
+    CHECK(run_with({"study", "--missing", outputs / "s2"}, {}, 4) == "1/2 absent\n");
+    const ScratchFolder empty;
+    check_refused(empty, {"study", "--merge", outputs / "s2", "-o", empty / "merged"}, 2, {"shard 1/2 is absent"});
+    const std::string computed = run_with(fig8, {"--shard", "1/2", "-o", outputs / "s1"}, 0);
+    CHECK_THAT(computed, Catch::Contains("s1: shard 1/2 of study fig8: 14 of 14 results computed now"));
+    run_with({"study", "fig8", "--merge", outputs / "s1", outputs / "s2", "-o", outputs / "merged"}, {}, 0);
+    const Files files = files_in(outputs / "out");
+    REQUIRE(files == files_in(outputs / "merged"));
+    for (const std::string& file : files)
+        CHECK(file_contents(outputs.path() / "out" / file) == file_contents(outputs.path() / "merged" / file));
+    const std::string checked = run_with({"study", "--check", outputs / "out/manifest.json"}, {}, 0);
+    CHECK_THAT(checked, Catch::Contains("the same results: of the data files, 4 equal, 0 different"));
 }
 
 TEST_CASE("study: refuses wrong names, sizes, scenes and devices, and leaves no folder", "[cli]") {
@@ -112,6 +138,15 @@ TEST_CASE("study: refuses wrong names, sizes, scenes and devices, and leaves no 
     check_refused(outputs, study_arguments("fig8", outputs, {scene_file("glass"), scene_file("cones")}), 2,
                   {"fig8 takes one scene", "2 were given"});
     check_refused(outputs, {"study", "fig8"}, 2, {"--output is required"});
+    check_refused(outputs, {"study", "-o", outputs / "x"}, 2, {"STUDY is required"});
+    for (const char* shard : quick(1, {"0/3", "4/3", "1", "a/b"}))
+        check_refused(outputs, study_arguments("fig8", outputs, {"--shard", shard}), 2, {"--shard", "must be I/N"});
+    check_refused(outputs, study_arguments("table2", outputs, {"--shard", "1/2"}), 2, {"has no ensembles to divide"});
+    for (const char* option : quick(1, {"--merge", "--missing", "--check"}))
+        check_refused(outputs, {"study", option, outputs / "none", "--seed", "2"}, 2, {option, "excludes --seed"});
+    check_refused(outputs, {"study", "--merge", outputs / "none", "-o", outputs / "x"}, 2, {"none: contains no shard"});
+    check_refused(outputs, {"study", "--missing", outputs / "none"}, 2, {"none: contains no shard"});
+    check_refused(outputs, {"study", "--check", outputs / "none"}, 2, {"none: is not a manifest", "No such file"});
     check_refused(outputs, {"study", "fig8", "-o", ""}, 2, {"--output", "must not be empty"});
     check_refused(outputs, study_arguments("fig8", outputs, {"--device", "no such device"}), 3, {"no such device"});
     check_refused(outputs, study_arguments("fig8", outputs, {"--size", "17"}), 3, {"CL_OUT_OF_RESOURCES"},

@@ -35,7 +35,7 @@ def families(count):
 
 def ensemble_of(traces):
     """Returns an ensemble with these cost images. Each is used both for the first pass and for the supersampling of its picture."""
-    pictures = [Costs(f"picture {i}", image, image, {}, 0) for i, image in enumerate(traces)]
+    pictures = [Costs(f"picture {i}", image, image, 0, 0) for i, image in enumerate(traces)]
     return Ensemble(pictures, families(len(pictures)), f"{len(pictures)} pictures")
 
 
@@ -621,7 +621,7 @@ class SeenLaboratory(Laboratory):
 
     def costs(self, scene, size, antialias="none"):
         self.seen.append(scene)
-        return Costs(scene.name, None, None, {}, 0)
+        return Costs(scene.name, None, None, 0, 0)
 
 
 def ensemble_and_scenes(part=0, scenes=(), size=256, views=None, **options):

@@ -13,7 +13,7 @@ raya = pytest.importorskip("raya", reason="the module is not built; configure wi
 from raya.lab import Comparison, Page, Plot, Series, Table, document, plots, worker  # noqa: E402
 from raya.lab.document import write_page  # noqa: E402
 
-OPTIONS = SimpleNamespace(size=None, network=None, views=None, seed=1, device=None, no_tuned=True, verbosity=0)
+OPTIONS = SimpleNamespace(size=None, network=None, views=None, seed=1, device=None, no_tuned=True, verbosity=0, shard=None, merge=[], version="")
 STUDY = '''"""Damaged rows
 
 What becomes of them?
@@ -69,13 +69,14 @@ def test_error_names_the_damage(folder, damage):
 
 
 def test_rows_without_damage_give_a_page(folder):
-    page, _ = worker.run_study(study_with(folder, "pass"), [], folder, OPTIONS)
+    page = worker.run_study(study_with(folder, "pass"), [], folder, OPTIONS)
     assert (page.title, page.question, page.method) == ("Damaged rows", "What becomes of them?", ["Of 3 rows."])
 
 
 def test_program_with_damaged_rows_writes_no_files(folder):
     settings = {"study": study_with(folder, next(iter(DAMAGES))), "scenes": [], "output": str(folder / "made/x"),
-                "size": None, "network": None, "views": None, "seed": 1, "device": "", "strict": False, "no_tuned": True, "verbosity": 0}
+                "size": None, "network": None, "views": None, "seed": 1, "device": "", "strict": False, "no_tuned": True, "verbosity": 0,
+                "shard": None, "merge": [], "missing": [], "check": ""}
     path = os.pathsep.join([str(Path(raya.__file__).absolute().parents[1]), os.environ.get("PYTHONPATH", "")])
     run = subprocess.run([sys.executable, "-m", "raya.lab", "--settings", json.dumps(settings)], text=True,
                          capture_output=True, env={**os.environ, "PYTHONPATH": path}, timeout=120)

@@ -5,7 +5,7 @@ import pytest
 import raya
 from raya.lab.worker import Worker
 
-OPTIONS = SimpleNamespace(verbosity=0, no_tuned=True, size=32, network=None, views=None, seed=1, device=None)
+OPTIONS = SimpleNamespace(verbosity=0, no_tuned=True, size=32, network=None, views=None, seed=1, device=None, shard=None, merge=[], version="")
 STUDY = '''"""Title
 
 Question?
@@ -30,8 +30,8 @@ def test_a_crash_ends_only_its_study(tmp_path):
     try:
         with pytest.raises(raya.DeviceError, match="crashed"):
             worker.run(str(crash), [], str(tmp_path), OPTIONS)
-        page, device = worker.run(str(valid), [], str(tmp_path), OPTIONS)
-        assert page.title == "Title" and device["name"]
+        page = worker.run(str(valid), [], str(tmp_path), OPTIONS)
+        assert page.title == "Title" and page.run["device"]
         with pytest.raises(ValueError, match=r"run\(\) returns Laboratory"):
             worker.run(str(invalid), [], str(tmp_path), OPTIONS)
     finally:

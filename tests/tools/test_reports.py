@@ -183,6 +183,7 @@ class Reports:
             self.add_report("explore", "raya explore", json.dumps(report_of((self.folder / "e.html").read_text())))
         for study in ("table2", "table4", "fig8"):
             self.make("study", "study", study, "--size", "32", "--views", "20", "-o", "study", file=f"study/{study}.json")
+        self.make("manifest", "study", "fig8", scene, "--size", "32", "--views", "20", "-o", "manifest", file="manifest/manifest.json")
 
     def tune(self, scene):
         """Repeats tune with increasing time limits until at least one candidate has finished, because the machine may be slow."""

@@ -2,9 +2,10 @@
 
     python3 -m raya.lab NAME|all|FILE.py [SCENE.nff...] -o DIR     options as for `raya study`: see `raya study --help`
 
-Writes for each study DIR/NAME.json, NAME.md, its tables (.csv), plots (.svg, .png) and pictures (.png); for all studies DIR/index.html, and
-index.md if there are several. Exit codes: 0 done; 2 bad option, scene or study; 3 no usable OpenCL device, or its driver crashed. A signal ends the
-program with that signal's status.
+Writes for each study DIR/NAME.json, NAME.md, its tables (.csv), plots (.svg, .png) and pictures (.png); for all studies DIR/index.html and
+manifest.json, and index.md if there are several. With --shard writes a part of the cost images (shards.py). Exit codes: 0 done; 2 bad option, scene or
+study; 3 no usable OpenCL device, or its driver crashed; 4 other results than those of the manifest, or a shard is missing. A signal ends the program
+with that signal's status.
 """
 import json
 import os
@@ -17,14 +18,15 @@ from types import SimpleNamespace
 
 import raya
 from raya import _engine
+from raya.lab import manifest, shards
 from raya.lab.claims import decide
-from raya.lab.document import write_document, write_page
+from raya.lab.document import names_of, write_document, write_page
 from raya.lab.page import format_value
 from raya.lab.study import studies, study_of_file
 from raya.lab.worker import Worker, warn_as_raya
 from tqdm import tqdm
 
-EXIT_USER, EXIT_DEVICE = 2, 3
+EXIT_USER, EXIT_DEVICE, EXIT_DIFFERENT = 2, 3, 4
 
 
 def settings_of(arguments):
@@ -36,6 +38,17 @@ def settings_of(arguments):
     if options.network:
         options.network = 1e-6 * options.network[0], 1e-9 * options.network[1]  # seconds per message, seconds per byte
     return options
+
+
+def repeating_options(options, recorded):
+    """Returns the options that repeat the study of a manifest. Raises ValueError if the manifest has an invalid option."""
+    try:
+        arguments = manifest.arguments_of(recorded, options.study, options.scenes)
+        repeated = settings_of([*arguments, "-o", options.output or os.devnull])
+    except (ValueError, TypeError) as error:
+        raise ValueError(f"{options.check}: {error}") from None
+    kept = {name: getattr(options, name) for name in ("output", "device", "verbosity", "check", "version")}
+    return SimpleNamespace(**{**vars(repeated), **kept})
 
 
 def selected_studies(name):
@@ -87,11 +100,63 @@ def make_folder(path):
     return missing
 
 
+def divisible(chosen):
+    """Returns the studies whose cost images shards can compute. Raises ValueError if there is none."""
+    studies_with_ensembles = [study for study in chosen if study.prepare]
+    if not studies_with_ensembles:
+        raise ValueError(f"study {chosen[0].name}: has no ensembles to divide; remedy: run it without --shard")
+    return studies_with_ensembles
+
+
+def run_shard(options, chosen, scenes):
+    """Computes a shard of the studies' cost images."""
+    folder, (number, count), worker = Path(options.output), options.shard, Worker()
+    make_folder(folder)
+    header = shards.header_of(options, scenes)
+    shards.start(folder, header)
+    try:
+        for study in chosen:
+            names, computed = worker.run(options.study if options.study.endswith(".py") else study.name, scenes, folder, options)
+    finally:
+        worker.close()
+    shards.write_header(folder, {**header, "results": names})
+    if options.verbosity >= 0:
+        print(f"{folder}: shard {number}/{count} of study {options.study}: {computed} of {len(names)} results computed now")
+
+
+def print_missing(options):
+    """Prints a line for each shard that is absent, incomplete or damaged. Returns the exit code."""
+    headers, problems, notes = shards.find(options.missing)
+    for line in notes:
+        print(f"raya: {line}", file=sys.stderr)
+    for number, problem in problems.items():
+        print(f"{number}/{next(iter(headers.values()))[1]['shards']} {problem}")
+    return EXIT_DIFFERENT if problems else 0
+
+
+def check_manifest(options, recorded, chosen, skip_notes, scenes):
+    """Runs the study of a manifest again and prints the differences. Returns the exit code."""
+    with tempfile.TemporaryDirectory(prefix="raya-check-") as temporary:
+        folder = Path(options.output or temporary)
+        code = run_all(SimpleNamespace(**{**vars(options), "output": str(folder), "verbosity": min(-1, options.verbosity)}), chosen, skip_notes,
+                       scenes)
+        if not (folder / manifest.NAME).exists():
+            return code
+        lines, counts = manifest.compare(recorded, manifest.read_manifest(folder / manifest.NAME), Path(options.check).parent, folder)
+    for line in lines:
+        print(line)
+    measured = f", {counts['measured']} with measured times not compared" if counts["measured"] else ""
+    print(f"{options.check}: {'other' if counts['different'] else 'the same'} results: of the data files, {counts['equal']} equal, "
+          f"{counts['different']} different{measured}")
+    return EXIT_DIFFERENT if counts["different"] else code
+
+
 def run_all(options, chosen, skip_notes, scenes):
     """Runs the chosen studies and writes their results. Appends a sentence to skip_notes for each study that fails on the device.
     Returns the exit code."""
     folder, worker, pages, drawings, code = Path(options.output), Worker(), [], {}, 0
     created_folders = make_folder(folder)
+    (folder / manifest.NAME).unlink(missing_ok=True)  # a manifest describes the files of one complete run
     with tempfile.TemporaryDirectory(prefix="raya-lab-") as cache:
         try:
             bar = tqdm(chosen, disable=options.verbosity < 0 or not sys.stderr.isatty(), unit="study", leave=False)
@@ -99,7 +164,7 @@ def run_all(options, chosen, skip_notes, scenes):
                 bar.set_description(f"study {study.name}")
                 try:
                     name = options.study if options.study.endswith(".py") else study.name
-                    page, device = worker.run(name, scenes, cache, options)
+                    page = worker.run(name, scenes, cache, options)
                 except raya.DeviceError as error:
                     if len(chosen) == 1:
                         raise
@@ -107,8 +172,7 @@ def run_all(options, chosen, skip_notes, scenes):
                     print(f"raya: {skip_notes[-1]}", file=sys.stderr)
                     code = EXIT_DEVICE
                     continue
-                page.run = {"command": command_of(study, options), "version": f"raya {raya.__version__}",
-                            "device": f"{device['name']} ({device['platform']}, driver {device['driver']})"}
+                page.run = {"command": command_of(study, options), "version": f"raya {raya.__version__}", **page.run}
                 decide(page.claims)  # write_document() decides again, with the claims of all pages
                 drawings[page.name] = write_page(folder, page)
                 pages.append(page)
@@ -122,6 +186,9 @@ def run_all(options, chosen, skip_notes, scenes):
                     created.rmdir()
     if pages:
         write_document(folder, pages, drawings, skip_notes)
+        measured = {study.name for study in chosen if study.measures}
+        files = {name: not owners & measured for name, owners in names_of(pages).items()}
+        manifest.write_manifest(folder, options, files, {device for page in pages for device in page.run["device"].split("; ")}, manifest.inputs_of(options.study, scenes))
         if options.verbosity >= 0:
             print(folder / "index.html")
     return code
@@ -129,14 +196,31 @@ def run_all(options, chosen, skip_notes, scenes):
 
 def main(arguments):
     options = settings_of(arguments)
+    options.version, recorded = manifest.program_version(), None
     warn_as_raya(options)
+    if options.missing:
+        return print_missing(options)
+    if options.merge:
+        options, recorded = shards.merged(options)
+    elif options.check:
+        recorded = manifest.read_manifest(options.check)
+        options = repeating_options(options, recorded)
     chosen, skip_notes = selected_studies(options.study)
     for line in skip_notes:
         print(f"raya: {line}", file=sys.stderr)
     if len(chosen) == 1 and chosen[0].one_scene and len(options.scenes) > 1:
         raise ValueError(f"study {chosen[0].name} takes one scene, {len(options.scenes)} were given: run it for each, "
                          "into a folder of its own")
-    scenes = [raya.load(file, strict=options.strict).renamed(file) for file in options.scenes]
+    try:
+        scenes = [raya.load(file, strict=options.strict).renamed(file) for file in options.scenes]
+    except ValueError as error:
+        raise ValueError(f"{error}; remedy: name the study and its scenes: raya study {options.study} SCENE..." if recorded else error) from None
+    if recorded:
+        manifest.check_inputs(manifest.inputs_of(options.study, scenes), recorded["inputs"], options.check or options.merge[0])
+    if options.check:
+        return check_manifest(options, recorded, chosen, skip_notes, scenes)
+    if options.shard:
+        return run_shard(options, divisible(chosen), scenes)
     return run_all(options, chosen, skip_notes, scenes)
 
 

@@ -3,9 +3,7 @@ import base64
 import dataclasses
 import json
 import math
-import os
 import re
-import tempfile
 from collections import Counter
 from pathlib import Path
 
@@ -19,6 +17,7 @@ from raya.lab.families import FAMILIES
 from raya.lab.page import format_value
 from raya.lab.papers import REFERENCES
 from raya.lab.statistics import COMPATIBLE, NOT_REPRODUCED, REPRODUCED, UNTESTABLE
+from raya.lab.store import write_atomically
 
 OPEN_ROWS, MAX_ROWS = 24, 400  # a table of at most OPEN_ROWS rows is unfolded; HTML shows at most MAX_ROWS rows
 
@@ -59,22 +58,6 @@ ABOUT = {
         "No curve of a figure was digitised: only numbers in the texts and tables are compared.",
     ],
 }
-
-
-def write_atomically(path, content):
-    """Writes a file atomically: to a temporary file, which is then renamed."""
-    data = content if isinstance(content, bytes) else content.encode()
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".raya-", suffix=".tmp")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-        umask = os.umask(0)
-        os.umask(umask)
-        os.chmod(temporary, 0o666 & ~umask)
-        os.replace(temporary, path)
-    except BaseException:
-        os.unlink(temporary)
-        raise
 
 
 def json_value(value):
@@ -275,6 +258,17 @@ def write_page(folder, page):
     for name, content in files.items():  # only after all content has been made, so that an error leaves no files
         write_atomically(folder / name, content)
     return drawings
+
+
+def names_of(pages):
+    """Returns the names of all files of a document, as {name: names of the studies whose results the file contains}."""
+    names = {}
+    for page in pages:
+        names.update(dict.fromkeys([f"{table.name}.csv" for table in page.tables] + [f"{picture.name}.png" for picture in page.pictures]
+                                   + [f"{plot.name}.{kind}" for plot in page.plots for kind in ("svg", "png")]
+                                   + [f"{page.name}.json", f"{page.name}.md"], {page.name}))
+    shared = ["index.html"] + ["claims.csv", "index.md", "claims.md"] * (len(pages) > 1)
+    return {**names, **dict.fromkeys(shared, {page.name for page in pages})}
 
 
 def texts_of(page):

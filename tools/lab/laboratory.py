@@ -1,10 +1,7 @@
 """Renders scenes for studies, and caches cost images. A cost image has the modelled cycles of each pixel."""
-import hashlib
-import pickle
 from collections import namedtuple
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 import raya
@@ -35,13 +32,8 @@ class Costs:
     label: str
     trace: np.ndarray  # uint64 [H, W]: modelled cycles of each pixel in the first pass
     supersample: np.ndarray  # modelled cycles of each pixel in the supersampling pass; None without supersampling
-    report: dict
+    recomputed: int  # number of supersampled pixels
     job_words: int  # number of 32-bit words that the scene takes in each PE
-
-    @property
-    def recomputed(self):
-        """Number of supersampled pixels."""
-        return self.report["antialias"].get("recomputed_pixels", 0)
 
 
 @dataclass
@@ -63,19 +55,26 @@ def format_for(scene):
 
 
 class Laboratory:
-    """Renders scenes. Cost images are cached in `folder`, by scene and settings, so that the studies of one run share them.
+    """Renders scenes. `store` (Store) keeps cost images by scene and settings, so that the studies of one run share them.
 
     size: pixels per side; None: each study's default. views: pictures per ensemble. seed: seed of the first picture. network: (seconds per message,
     seconds per byte) or None. options: `device`, and options of raya.render() for every render.
+    devices: descriptions of the devices that computed the results used so far.
     """
 
-    def __init__(self, folder, size=None, network=None, views=None, seed=1, **options):
-        self._folder, self._size, self.network, self._options = Path(folder), size, network, options
-        self.views, self.seed = views or VIEWS, seed
+    def __init__(self, store, size=None, network=None, views=None, seed=1, **options):
+        self.store, self._size, self.network, self._options = store, size, network, options
+        self.views, self.seed, self.devices = views or VIEWS, seed, set()
 
     @cached_property
     def session(self):
         return raya.Session(self._options.get("device") or "")
+
+    @cached_property
+    def device(self):
+        """Description of the laboratory's device: name, platform and driver."""
+        device = self.session.device
+        return f"{device['name']} ({device['platform']}, driver {device['driver']})"
 
     def size(self, default):
         return self._size or default
@@ -83,23 +82,31 @@ class Laboratory:
     def render(self, scene, **options):
         """Calls raya.render() on the laboratory's device."""
         common = {k: v for k, v in self._options.items() if k != "device"}
+        self.devices.add(self.device)
         return raya.render(scene, session=self.session, **common, **options)
 
+    def stored(self, request, compute):
+        """Returns the stored result of the request, or else stores and returns compute(): a dictionary of numpy arrays and JSON values without
+        measured times. `request` must identify the result. A shard of a study (`raya study --shard`) computes only its part of the results, and
+        stored() returns None."""
+        result = self.store.get(request, lambda: {**compute(), "device": self.device})
+        if result:
+            self.devices.add(result.pop("device"))
+        return result
+
     def costs(self, scene, size, antialias="none"):
-        """Returns the cost images (`Costs`) of a render of size x size pixels on PEs of the SPA, without their memory limit."""
+        """Returns the cost images (`Costs`) of a render of size x size pixels on PEs of the SPA, without their memory limit. Returns None in a
+        shard."""
         options = dict(machine="grande", format=format_for(scene), bounces=SPA["bounces"], size=size, pes=size,
                        offset=16 % size, accel="none", antialias=antialias)
-        key = hashlib.sha256(repr((scene.nff, sorted(options.items()))).encode()).hexdigest()
-        file = self._folder / f"{key}.costs"
-        if file.exists():
-            costs = pickle.loads(file.read_bytes())
-            costs.label = scene.name
-            return costs
-        result = self.render(scene, cost=True, **options)
-        images = {name: image.copy() for name, image in result.costs.items()}
-        costs = Costs(scene.name, images["trace"], images.get("supersample"), result.report, result.job_words)
-        file.write_bytes(pickle.dumps(costs))
-        return costs
+
+        def compute():
+            result = self.render(scene, cost=True, **options)
+            images = {name: image.copy() for name, image in result.costs.items()}  # views would keep the whole result in memory
+            return {**images, "recomputed": result.report["antialias"].get("recomputed_pixels", 0), "job_words": result.job_words}
+
+        result = self.stored((scene.nff, sorted(options.items())), compute)
+        return result and Costs(scene.name, result["trace"], result.get("supersample"), result["recomputed"], result["job_words"])
 
     def ensemble(self, scenes, size, antialias="none", views=None, families=FAMILIES, part=0):
         """Returns an Ensemble of `views` pictures, equally many of each family. If there are scenes, each is a family of random views. A family has

@@ -16,6 +16,8 @@ class Study:
     prose: str  # a line with the title, a paragraph with the question, a list with the method
     one_scene: bool = False  # the study takes only one scene of the command line
     missing: Callable = lambda: ""  # returns a message with a remedy if the study cannot run on this machine, else ""
+    prepare: Callable = None  # (laboratory, scenes): requests the cost images of the study's ensembles; shards compute these; None: no shards
+    measures: bool = False  # the study's results contain measured times
 
 
 def study(name, *, prose=None, **options):
@@ -53,4 +55,4 @@ def study_of_file(path):
     if not callable(getattr(module, "run", None)) or not module.__doc__:
         raise ValueError(f"{path}: not a study: it needs a docstring (title, question, method) and run(lab, scenes)")
     name = path.stem.replace("_", "-")
-    return Study(name, module.run, module.__doc__)
+    return Study(name, module.run, module.__doc__, prepare=getattr(module, "prepare", None), measures=getattr(module, "MEASURES", False))

@@ -9,6 +9,7 @@ from multiprocessing import get_context
 import raya
 from raya.lab.laboratory import Laboratory
 from raya.lab.page import Page
+from raya.lab.store import Store
 from raya.lab.study import studies, study_of_file
 
 laboratory = None  # the Laboratory of this process; all studies use its device session
@@ -20,14 +21,20 @@ def warn_as_raya(options):
 
 
 def run_study(study, scenes, folder, options):
-    """Runs one study. Returns (page, device description); raises ValueError for an error in the study's code."""
+    """Runs one study with a store in `folder`. Returns its page; in a shard, (names of the shard's results so far, number of them that were
+    computed now). Raises ValueError for an error in the study's code."""
     global laboratory
     warn_as_raya(options)
     chosen_study = study_of_file(study) if study.endswith(".py") else studies()[study]
     if laboratory is None:
         tuning_options = {"no_tuned": True} if options.no_tuned else {}
-        laboratory = Laboratory(folder, options.size, options.network, options.views, options.seed, device=options.device, **tuning_options)
+        store = Store(folder, options.merge, options.version, options.shard)
+        laboratory = Laboratory(store, options.size, options.network, options.views, options.seed, device=options.device, **tuning_options)
+    laboratory.devices.clear()
     try:
+        if options.shard:
+            chosen_study.prepare(laboratory, scenes)
+            return laboratory.store.names, laboratory.store.computed
         page = chosen_study.run(laboratory, scenes)
     except (raya.InputError, raya.DeviceError, OSError):
         raise
@@ -35,7 +42,8 @@ def run_study(study, scenes, folder, options):
         raise ValueError(f"study {chosen_study.name}: {error_location(error, chosen_study.run)}{type(error).__name__}: {error}") from error
     if not isinstance(page, Page):
         raise ValueError(f"study {chosen_study.name}: run() returns {type(page).__name__}, not a Page")
-    return page.describe(chosen_study.name, chosen_study.prose), laboratory.session.device
+    page.run = {"device": "; ".join(sorted(laboratory.devices)) or laboratory.device}
+    return page.describe(chosen_study.name, chosen_study.prose)
 
 
 def error_location(error, run):

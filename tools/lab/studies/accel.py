@@ -160,7 +160,7 @@ def ratios_text(ratio_list):
     return ", ".join(f"{text_of(ratio['times'])} ({ratio['group']})" for ratio in ratio_list)
 
 
-@study("accel")
+@study("accel", measures=True)
 def accel(lab, scenes):
     size = lab.size(256)
     measured_scenes = [(USER_SCENES, s.name, 0, lambda s=s: s) for s in scenes] if scenes else own_scenes()

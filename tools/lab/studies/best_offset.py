@@ -58,10 +58,14 @@ class Choice:
         return 100 * (ms / self.best["total_ms"] - 1) if self.best["total_ms"] > 0 else 0
 
 
+def ensembles_of(lab, scene):
+    return [lab.ensemble([scene], lab.size(default_size(scene)), "supersample", VIEWS, part=part) for part in (0, 2)]
+
+
 def choices_of(lab, scene):
     size = lab.size(default_size(scene))
     picture = lab.costs(scene, size, "supersample")
-    search, evaluation = (lab.ensemble([scene], size, "supersample", VIEWS, part=part) for part in (0, 2))
+    search, evaluation = ensembles_of(lab, scene)
     return [Choice(scene, size, pes, method, picture, search, evaluation) for pes in numbers_of_pes(size) for method in METHODS]
 
 
@@ -73,9 +77,20 @@ def seeds_text(lab, part):
     return f"from {lab.seed + part * SEEDS}"
 
 
-@study("best-offset")
+def scenes_of(scenes):
+    return scenes or [raya.example("centre")]
+
+
+def prepare(lab, scenes):
+    for scene in scenes_of(scenes):
+        ensembles_of(lab, scene)
+    if not scenes:
+        ensembles_of_claim(lab)
+
+
+@study("best-offset", prepare=prepare)
 def best_offset(lab, scenes):
-    chosen_scenes = scenes or [raya.example("centre")]
+    chosen_scenes = scenes_of(scenes)
     by_scene = [choices_of(lab, scene) for scene in chosen_scenes]
     all_choices = [choice for choices in by_scene for choice in choices]
     first = by_scene[0]
@@ -125,8 +140,12 @@ def finding_of_choice(c):
             f"With clock factors of 1 to 8 the best offsets are p = {c.factors}.")
 
 
+def ensembles_of_claim(lab):
+    return [lab.ensemble([], papers.SIZE, "supersample", part=part) for part in (0, 2)]
+
+
 def claim_of_enough(lab):
-    search, evaluation = (lab.ensemble([], papers.SIZE, "supersample", part=part) for part in (0, 2))
+    search, evaluation = ensembles_of_claim(lab)
     families, tests, texts = evaluation.families, [], []
     for pes in numbers_of_pes(papers.SIZE):
         for method in METHODS:

@@ -70,10 +70,14 @@ def series_of_matched(label, times, columns):
     return Series(label, range(17), [e.mean for e in of_offset], half_widths=[e.half for e in of_offset])
 
 
-@study("cluster")
+def ensemble_of(lab, scenes):
+    return lab.ensemble(scenes, lab.size(256), "supersample", views=2 * lab.views, families=CROWDED, part=1)
+
+
+@study("cluster", prepare=ensemble_of)
 def cluster(lab, scenes):
     size, uses_default_scenes = lab.size(256), not scenes
-    ensemble = lab.ensemble(scenes, size, "supersample", views=2 * lab.views, families=CROWDED, part=1)
+    ensemble = ensemble_of(lab, scenes)
     rows = pd.DataFrame([row_of(costs, size) for costs in ensemble.pictures])
     rows["matched"] = np.where(matched_scenes(ensemble, size), "yes", "no")
     matched, in_paper = rows[rows["matched"] == "yes"], uses_default_scenes and size == papers.SIZE

@@ -28,7 +28,7 @@ SUBJECTS = {"modelled": ("Modelled time against divisions", "modelled time of a 
                          "minimum of the measured time")}
 
 
-@study("divisions")
+@study("divisions", measures=True)
 def divisions(lab, scenes):
     size, from_paper = lab.size(96), not scenes
     even = [raya.generate.uniform(n, near_cube(n)).renamed(f"{n} objects") for n in OBJECTS]

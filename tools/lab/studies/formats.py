@@ -56,7 +56,7 @@ def rows_of(lab, scene, size):
     return rows, result.report["device"]["lanes"]
 
 
-@study("formats")
+@study("formats", measures=True)
 def formats(lab, scenes):
     size = lab.size(256)
     own = [raya.example(name) for name in ("centre", "spheres", "glass", "polygons", "cones")]

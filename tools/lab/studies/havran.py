@@ -30,7 +30,7 @@ def grids_for(name):
     return known or [(20, 20, 20), (44, 44, 44)]
 
 
-@study("havran")
+@study("havran", measures=True)
 def havran(lab, scenes):
     size = lab.size(257)  # every second of SPD's 513 pixel corners along a side
     own = [raya.generate.balls(4).renamed("balls"), raya.generate.lattice(12).renamed("lattice")]

@@ -62,14 +62,19 @@ def correlation(image):
     return float(np.corrcoef(left, right)[0, 1]) if left.std() and right.std() else 1.0
 
 
-@study("images")
+def ensembles_of(lab, scenes):
+    pes = lab.size(256)
+    return lab.ensemble(scenes, pes), lab.ensemble(scenes, 2 * pes, views=FINER_VIEWS)
+
+
+@study("images", prepare=ensembles_of)
 def images(lab, scenes):
     pes, shown_scenes = lab.size(256), scenes or paper_like_scenes()
     p = round(pes**0.5)
     pictures = [lab.costs(scene, side) for side in (pes, 2 * pes) for scene in shown_scenes]
     rows = rows_of(pictures, [scene.objects for scene in shown_scenes] * 2, pes, p)
     split_column, cyclic_column = "efficiency, p = 0", f"efficiency, p = {p}"
-    ensemble, finer = lab.ensemble(scenes, pes), lab.ensemble(scenes, 2 * pes, views=FINER_VIEWS)
+    ensemble, finer = ensembles_of(lab, scenes)
     windows = np.array([raya.imbalances(mandelbrot(pes, lab.seed + i), pes, [0, p]) for i in range(WINDOWS)])  # [window, offset]
     groups = {f"scenes at {side} x {side}": group for side, group in rows.groupby("side (pixels)", sort=False)}
     groups.update({f"ensemble at {len(one.pictures[0].trace)} x {len(one.pictures[0].trace)}": rows_of(one.pictures, 0, pes, p)

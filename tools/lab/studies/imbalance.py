@@ -147,11 +147,11 @@ def plots_of(name, scene, phase, rows, near, pictures, in_paper):
                   Series(f"{scene}, one picture", rows["p"], rows["u"])] + paper, log="y")]
 
 
-@study("fig8", prose=PROSE_8, one_scene=True)
+@study("fig8", prose=PROSE_8, one_scene=True, prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(256)))
 def fig8(lab, scenes):
     return page_of("fig8", lab, scenes, first_pass=True)
 
 
-@study("fig13", prose=PROSE_13, one_scene=True)
+@study("fig13", prose=PROSE_13, one_scene=True, prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(256), "supersample"))
 def fig13(lab, scenes):
     return page_of("fig13", lab, scenes, first_pass=False)

@@ -95,11 +95,12 @@ def plots_of(name, scene, phase, rows, scene_loads, pictures):
                   for label, p in zip(labels, ("p = 0", "p = 16"))] + [mean_line])]
 
 
-@study("fig7", prose=PROSE, one_scene=True)
+@study("fig7", prose=PROSE, one_scene=True, prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(256), families=CROWDED))
 def fig7(lab, scenes):
     return page_of("fig7", lab, scenes, first_pass=True)
 
 
-@study("fig12", prose=PROSE, one_scene=True)
+@study("fig12", prose=PROSE, one_scene=True,
+       prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(256), "supersample", families=CROWDED))
 def fig12(lab, scenes):
     return page_of("fig12", lab, scenes, first_pass=False)

@@ -22,7 +22,7 @@ from scipy.stats import rankdata, spearmanr
 MAX_CORRELATION = -0.5  # the shortest vector "predicts" u if their rank correlation is at most this
 
 
-@study("lattice")
+@study("lattice", prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(256)))
 def lattice(lab, scenes):
     size = lab.size(256)
     ensemble = lab.ensemble(scenes, size)

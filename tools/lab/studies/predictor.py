@@ -77,7 +77,7 @@ def measure(ensemble, pes, size):
             "random": np.array([random_u(costs.trace, pes, seed) for seed, costs in enumerate(ensemble.pictures)])}, u, own
 
 
-@study("predictor")
+@study("predictor", prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(256), families=WIDE_FAMILIES))
 def predictor(lab, scenes):
     size = lab.size(256)
     ensemble = lab.ensemble(scenes, size, families=WIDE_FAMILIES)

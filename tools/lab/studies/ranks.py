@@ -111,7 +111,7 @@ def processor_time():
     return sum(ticks) - ticks[3] - ticks[4], sum(ticks), own
 
 
-@study("ranks", one_scene=True, missing=missing_mpirun)
+@study("ranks", one_scene=True, measures=True, missing=missing_mpirun)
 def ranks(lab, scenes):
     on_ring, on_torus = first_scene(scenes), scenes[0] if scenes else even_scene(8320)
     size = lab.size(512)

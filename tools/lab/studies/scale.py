@@ -51,7 +51,7 @@ def efficiencies(image):
     return pd.DataFrame(rows)
 
 
-@study("scale", one_scene=True)
+@study("scale", one_scene=True, prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(1024), views=VIEWS))
 def scale(lab, scenes):
     scene, side = first_scene(scenes), lab.size(1024)
     ensemble, image = lab.ensemble(scenes, side, views=VIEWS), lab.costs(scene, side).trace

@@ -45,7 +45,17 @@ def tabulate_speedups(image):
     return rows, {a: image.sum() / raya.loads(image, mapping=f"grid:{a}x{a}").max() for a in sides}
 
 
-@study("fig9", one_scene=True)
+def ensembles_of_sizes(lab):
+    return [lab.ensemble([], side, views=None if side == 256 else FINER_VIEWS) for side in (256, 512, 1024)]
+
+
+def prepare(lab, scenes):
+    lab.ensemble(scenes, lab.size(256))
+    if lab.size(256) == 256 and not scenes:
+        ensembles_of_sizes(lab)
+
+
+@study("fig9", one_scene=True, prepare=prepare)
 def fig9(lab, scenes):
     scene, size = first_scene(scenes), lab.size(256)
     ensemble, picture = lab.ensemble(scenes, size), lab.costs(scene, size).trace
@@ -137,7 +147,7 @@ def claims_of(lab, tables, ensemble):
     low_count = (efficiency.mean(0) < HIGH).sum()
     over_64, on_64 = cyclic[:, 255] / cyclic[:, 63], cyclic[:, 63]
     on_16 = speedups_on("p = 0")[:, 15] / 16
-    ensembles = [lab.ensemble([], side, views=None if side == 256 else FINER_VIEWS) for side in (256, 512, 1024)]
+    ensembles = ensembles_of_sizes(lab)
     efficiencies_by_size = [one.map(lambda costs: 1 / (1 + raya.imbalances(costs.trace, costs.trace.shape[1], [round(costs.trace.shape[1]**0.5)])[0]))
                             for one in ensembles]
     return [judged("like-2d", within(like_2d, 1 - CLOSE, 1 + CLOSE, families), about,

@@ -48,7 +48,7 @@ def device_seconds(lab, scene, size, number_format):
     return time_calls(lambda: lab.render(scene, **options).device_s, 5, SAMPLING_S)
 
 
-@study("table2", one_scene=True)
+@study("table2", one_scene=True, measures=True)
 def table2(lab, scenes):
     scene, size = first_scene(scenes), lab.size(256)
     array, one = run_on_spa(lab, scene, size, size, 16 % size), run_on_spa(lab, scene, size, 1, 0)
