@@ -188,7 +188,8 @@ def run_all(options, chosen, skip_notes, scenes):
         write_document(folder, pages, drawings, skip_notes)
         measured = {study.name for study in chosen if study.measures}
         files = {name: not owners & measured for name, owners in names_of(pages).items()}
-        manifest.write_manifest(folder, options, files, {device for page in pages for device in page.run["device"].split("; ")}, manifest.inputs_of(options.study, scenes))
+        devices = {device for page in pages for device in page.run["device"].split("; ")}
+        manifest.write_manifest(folder, options, files, devices, manifest.inputs_of(options.study, scenes))
         if options.verbosity >= 0:
             print(folder / "index.html")
     return code

@@ -61,12 +61,11 @@ def random_u(cost, pes, seed):
     return loads.max() / loads.mean() - 1
 
 
-def measure(ensemble, pes, size):
-    """Returns ({mapping: u of each picture}, measured u [picture, offset], predicted u [picture, offset])."""
+def measure(ensemble, spectra, pes, size):
+    """spectra: ring_spectrum() of each picture. Returns ({mapping: u of each picture}, measured u [picture, offset], predicted u [picture, offset])."""
     offsets = range(min(pes, size))
     families = np.array(ensemble.families)
     u = ensemble.map(lambda costs: raya.imbalances(costs.trace, pes, offsets))
-    spectra = ensemble.map(lambda costs: ring_spectrum(costs.trace.astype(float)))
     predict = lambda spectrum: np.array([predicted_u(spectrum, pes, p, size) for p in offsets])
     own = np.array([predict(spectrum) for spectrum in spectra])
     others = {name: predict(spectra[families != name].mean(0)) for name in dict.fromkeys(ensemble.families)}
@@ -82,8 +81,9 @@ def predictor(lab, scenes):
     size = lab.size(256)
     ensemble = lab.ensemble(scenes, size, families=WIDE_FAMILIES)
     families, rows, accuracy = ensemble.families, [], []
+    spectra = ensemble.map(lambda costs: ring_spectrum(costs.trace.astype(float)))
     for pes in [pes for pes in PES if 16 * pes <= size * size and (size % pes == 0 or pes % size == 0)]:
-        mappings, u, own = measure(ensemble, pes, size)
+        mappings, u, own = measure(ensemble, spectra, pes, size)
         root = mappings["p = sqrt(P)"]
         for name, values in mappings.items():
             mean, loss = hierarchical(values, families), hierarchical(values - root, families)
