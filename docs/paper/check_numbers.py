@@ -2,7 +2,7 @@
 
     python3 docs/paper/check_numbers.py [--against DIR]
 
-In paper.md a comment follows each number of a result: 0.088<!--[predictor-256|P=256 & mapping=p = sqrt(P)|mean u]-->. It is an expression of cells
+In paper.md a comment follows each number of a result: 0.088<!--[offsets-256|P=256 & mapping=p = sqrt(P)|mean u]-->. It is an expression of cells
 [FILE|COLUMN=VALUE & ...|COLUMN] of data/FILE.csv; FILE is STUDY-SIZE of a study with --size, or the table of a study with its default size. The text
 must equal the value, rounded to the digits of the text (a percentage: 100 times the value).
 --against DIR: also prints each value from the tables in DIR, the output folder of `raya study`, such as that of a short run.

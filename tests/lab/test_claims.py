@@ -21,8 +21,8 @@ from raya.lab.page import Page  # noqa: E402
 from raya.lab.statistics import COMPATIBLE, NOT_REPRODUCED, REPRODUCED, UNTESTABLE, counted, estimate, proportion  # noqa: E402
 from raya.lab.statistics import Test as Result  # noqa: E402
 from raya.lab.study import ORDER, studies  # noqa: E402
-from raya.lab.studies import (best_offset, cluster, divisions, images, imbalance, loads, objects,  # noqa: E402
-                              offsets_beyond, scale, speedup, static_vs_dynamic, table2, table3, table4)
+from raya.lab.studies import (best_offset, cluster, divisions, images, imbalance, lattice, loads,  # noqa: E402
+                              objects, scale, speedup, static_vs_dynamic, table2, table3, table4)
 
 SEED, SIDE, COUNT = 32, 64, 12  # COUNT: number of pictures in an ensemble of two families of equal size
 VERDICTS = {"yes": REPRODUCED, "?": COMPATIBLE, "no": NOT_REPRODUCED}
@@ -151,7 +151,7 @@ def judge_lattice(difference, spread, shared="yes", side=SIDE):
     u = 0.2 + np.zeros((COUNT, side))
     u[:, beyond] += values_of(difference, spread)[:, None]
     rows = pd.DataFrame({"p": range(side), "n x n blocks shared": [shared if p == n else "no" for p in range(side)]})
-    return offsets_beyond.claims_of(u, ensemble_of([None] * COUNT), rows, n, beyond)
+    return lattice.claims_of(u, ensemble_of([None] * COUNT), rows, n, beyond)
 
 
 def judge_table2(pes=256):
@@ -215,7 +215,7 @@ def judge_scale(fixed, root, adapted, spread=0.02):
 
 
 def judge_static_vs_dynamic(*kinds, count=COUNT):
-    return static_vs_dynamic.claims_of(FakeLaboratory(in_turn(*kinds, count=count)))
+    return static_vs_dynamic.claims_of(ensemble_of(in_turn(*kinds, count=count)))
 
 
 def random_pixels(fraction, ratio, side=128):
@@ -676,5 +676,5 @@ def test_ensemble_of_scenes_has_their_views():
 
 def test_expensive_scenes_have_fewer_views():
     scene = raya.generate.uniform(1024, (8, 8, 16))
-    for size, count in ((64, 20), (256, 8), (1024, 4)):
+    for size, count in ((64, 20), (512, 8), (1024, 4)):
         assert len(ensemble_and_scenes(scenes=[scene], size=size, views=20)[0].pictures) == count

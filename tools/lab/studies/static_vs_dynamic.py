@@ -19,8 +19,10 @@ Are static strategies inadequate from 128 PEs on, and static plus dynamic ones n
 - A case is a scene on one number of PEs. The clock's factor is the number of the SPA's cycles for one budget cycle. It changes the cost of a
   request in budget cycles, so one table counts cases for three factors from 1 to 8.
 - The claims use {ensemble}, at {claim_size} x {claim_size} pixels on {claim_pes} PEs.
+- Classes of scenes: {classes}, {claim_size} x {claim_size} pixels. Of each picture: the first P at which the best static strategy has an efficiency
+  below 90 %, and the first P from which on the best dynamic or hybrid strategy, requests included, is faster than the best static one by 10 %.
 - Output: static-vs-dynamic.csv has a row for each scene, strategy and P. static-vs-dynamic-limits.csv has the first P with an efficiency below
-  90 % and 50 %, static-vs-dynamic-factors.csv the numbers of cases, static-vs-dynamic-root.csv LINKS-1.
+  90 % and 50 %, static-vs-dynamic-classes.csv the classes, static-vs-dynamic-factors.csv the numbers of cases, static-vs-dynamic-root.csv LINKS-1.
 """
 import math
 
@@ -28,6 +30,7 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Page, Plot, Series, Table, above, below, counted, estimate, every, judged, papers, study
+from raya.lab.families import WIDE_FAMILIES
 from raya.lab.laboratory import MACHINES
 from raya.lab.mappings import squarest_grid
 from raya.lab.spa import CLOCK, FACTOR, FACTORS
@@ -36,6 +39,8 @@ from raya.lab.voxels import powers_of_two
 NAME, MIN_PES, MAX_PES = "static-vs-dynamic", 128, 16_384
 NEAR_OPTIMAL = 1.1  # maximum makespan / lower bound of a nearly optimal strategy: our choice
 SQUARE_ROOT = "cyclic, p = sqrt(P)"
+CLASS_PES = tuple(2**k for k in range(6, 13))  # 1024 to 16 pixels a PE
+CLASS_LIMITS = "P, static under 90 %", "P, dynamic faster by 10 %"
 ROOT_CHUNKS, ROOT_PES = tuple(4**i for i in range(7)), (64, 256, 1024)  # pixels a request and numbers of PEs in the table of LINKS-1
 
 
@@ -85,6 +90,52 @@ def outcomes_of(label, image, sizes, overhead):
                                           ignore_index=True)
 
 
+def makespans(image, overhead):
+    """Returns (makespans of the best static strategy, of the best dynamic or hybrid strategy with requests), arrays over CLASS_PES."""
+    static, dynamic = [], []
+    for pes in CLASS_PES:
+        mappings = static_mappings(len(image), pes)
+        static.append(min(int(raya.loads(image, pes=pes, **options).max()) for options in mappings.values()))
+        start = {"dynamic": {"mapping": "column"}, "hybrid": mappings["grid"]}
+        dynamic.append(min(raya.schedule(image, plan, pes=pes, **start[kind])["makespan"] for _, kind, pays, plan in plans(overhead) if pays))
+    return np.array(static), np.array(dynamic)
+
+
+def first_from(holds):
+    """Returns the first P of CLASS_PES from which on `holds`, a boolean for each P, is true; infinity if it is false for the last P."""
+    return (*CLASS_PES, np.inf)[len(CLASS_PES) - int(np.cumprod(holds[::-1]).sum())]
+
+
+def class_rows(ensemble):
+    """Returns a table of scene families: from which P on static strategies stop being enough. Median and 10 % .. 90 % quantiles of the pictures."""
+    rows = []
+    for family in dict.fromkeys(ensemble.families):
+        images = [costs.trace for name, costs in zip(ensemble.families, ensemble.pictures) if name == family]
+        first_below_90, first_faster = [], []
+        for image in images:
+            static, dynamic = makespans(image, request_cycles(FACTOR))
+            first_below_90.append(first_from(image.sum() / (np.array(CLASS_PES) * static) < 0.9))
+            first_faster.append(first_from(dynamic * NEAR_OPTIMAL < static))
+        row = {"class": family, "pictures": len(images)}
+        for what, values in zip(CLASS_LIMITS, (first_below_90, first_faster)):
+            low, median, high = (str(int(pes)) if pes < np.inf else "never" for pes in np.quantile(values, [0.1, 0.5, 0.9], method="inverted_cdf"))
+            row |= {f"{what}, median": median, f"{what}, 10 % .. 90 %": f"{low} .. {high}"}
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def finding_of_classes(rows):
+    def summary(what):
+        medians = rows[f"{what}, median"]
+        reached = [int(pes) for pes in medians if pes != "never"]
+        never = len(medians) - len(reached)
+        return (f"from P = {min(reached)} .. {max(reached)} on, depending on the class" if reached else "in no class") + (
+            f" (in {never} of {len(rows)} classes not up to P = {CLASS_PES[-1]})" if never and reached else "")
+
+    return (f"Classes of scenes, median picture: the efficiency of the best static strategy is below 90 % {summary(CLASS_LIMITS[0])}. Dynamic or hybrid "
+            f"distribution is faster by 10 % {summary(CLASS_LIMITS[1])}.")
+
+
 def root_rows(images):
     """Returns a table of dynamic distribution: efficiency if requests are free, and if a root answers one at a time, as in LINKS-1."""
     rows = []
@@ -130,13 +181,20 @@ def counts_of(scenes):
                                              static["makespan (cycles)"].values).sum()}
 
 
-@study(NAME)
+def ensembles_of(lab, scenes):
+    """Returns the ensemble of the classes, and that of the claims; None instead of the latter if the command names scenes."""
+    return lab.ensemble(scenes, CLAIM_SIZE, families=WIDE_FAMILIES), None if scenes else lab.ensemble([], CLAIM_SIZE, views=CLAIM_VIEWS)
+
+
+@study(NAME, prepare=ensembles_of)
 def static_vs_dynamic(lab, scenes):
     size = lab.size(512)
     default_scenes = [raya.example("centre"), raya.generate.random(200, 200).renamed("random-200"),
                       raya.generate.balls(3).renamed("balls-3")]
     sizes = [p for p in powers_of_two(min(MAX_PES, size * size)) if p >= MIN_PES]
     images = {scene.name: lab.costs(scene, size).trace for scene in scenes or default_scenes}
+    of_classes, of_claims = ensembles_of(lab, scenes)
+    classes = class_rows(of_classes)
     by_factor = {f: [outcomes_of(name, image, sizes, request_cycles(f)) for name, image in images.items()]
                  for f in (FACTORS[0], FACTOR, FACTORS[-1])}
     tables_by_scene = by_factor[FACTOR]
@@ -159,17 +217,19 @@ def static_vs_dynamic(lab, scenes):
                        for pes, group in of_root[of_root["scene"] == outcomes["scene"][0]].groupby("P")], "x"))
     return Page({"size": size, "pes": sizes, "factor": FACTOR, "request_cycles": request_cycles(FACTOR),
                  "random_seed": 1, "scenes": list(images)},
-                [*findings_of(tables_by_scene, counts_of(tables_by_scene), size), finding_of_root(of_root)],
-                claims=claims_of(lab) if not scenes else [],
+                [*findings_of(tables_by_scene, counts_of(tables_by_scene), size), finding_of_root(of_root),
+                 finding_of_classes(classes)],
+                claims=claims_of(of_claims) if of_claims else [],
                 tables=tables + [Table(f"{NAME}-limits", "The first P at which the efficiency is below 90 % and below "
                                        "50 %", limits),
+                                 Table(f"{NAME}-classes", "The first P at which static distribution is not enough, in each class of scenes", classes),
                                  Table(f"{NAME}-root", "LINKS-1: efficiency for each number of pixels a request", of_root),
                                  Table(NAME, "Every strategy, scene and number of PEs", shown, on_page=False),
                                  Table(f"{NAME}-factors", "Numbers of cases (a scene on one number of PEs) for each factor of the clock",
                                        factors)],
                 plots=plots, news=[news_of_root(of_root)],
                 clock=CLOCK, compared_with=papers.DYNAMIC,
-                placeholders={"ensemble": lab.ensemble([], CLAIM_SIZE, views=CLAIM_VIEWS).description if not scenes else "no ensemble",
+                placeholders={"ensemble": of_claims.description if of_claims else "no ensemble", "classes": of_classes.description,
                               "claim_size": CLAIM_SIZE, "claim_pes": ", ".join(map(str, CLAIM_PES))})
 
 
@@ -186,9 +246,8 @@ def from_text(pes):
 CLAIM_SIZE, CLAIM_PES, CLAIM_VIEWS = 256, (128, 256, 1024, 4096), 36
 
 
-def claims_of(lab):
-    """Judges the claims of Heirich & Arvo, and the claim of Kohata & Ito on dynamic distribution, over an ensemble."""
-    ensemble = lab.ensemble([], CLAIM_SIZE, views=CLAIM_VIEWS)
+def claims_of(ensemble):
+    """Judges the claims of Heirich & Arvo, and the claim of Kohata & Ito on dynamic distribution."""
     families, about, requests = ensemble.families, ensemble.description, request_cycles(FACTOR)
     tables = [outcomes_of(costs.label, costs.trace, CLAIM_PES, requests) for costs in ensemble.pictures]
     bound_ratios = {kind: np.array([best_of(rows, kind)["makespan / lower bound"] for rows in tables])  # [picture, P]

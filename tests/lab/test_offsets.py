@@ -1,9 +1,9 @@
-"""The predictor study: the loads' variance is that of the cost image's spectrum at the points of the dual lattice."""
+"""The study offsets: the loads' variance is that of the cost image's spectrum at the points of the dual lattice."""
 import numpy as np
 import pytest
 
 raya = pytest.importorskip("raya", reason="the module is not built; configure with -DRAYA_PYTHON=ON")
-from raya.lab.studies import predictor as study  # noqa: E402
+from raya.lab.studies import offsets as study  # noqa: E402
 
 SIZE, SEED = 32, 20261126
 

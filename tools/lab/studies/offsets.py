@@ -12,7 +12,7 @@ Why does an offset p balance the load, and does the autocorrelation of a picture
 - P > W: the rows are dealt to P / W PEs of each slot in turn, so a PE's rows are k = P / W apart and their shift is k p mod W.
 - The random mapping gives each pixel to a random PE, with equally many pixels for every PE (one permutation for each picture).
 - Intervals (+-): 95 %, hierarchical: families are drawn at random, and pictures within each family (bootstrap).
-- Output: predictor.csv has, for each number of PEs P, the mean u of each way to choose the offset. predictor-accuracy.csv compares predictions with
+- Output: offsets.csv has, for each number of PEs P, the mean u of each way to choose the offset. offsets-accuracy.csv compares predictions with
   the measured u of all offsets of the same picture.
 """
 import numpy as np
@@ -76,8 +76,8 @@ def measure(ensemble, spectra, pes, size):
             "random": np.array([random_u(costs.trace, pes, seed) for seed, costs in enumerate(ensemble.pictures)])}, u, own
 
 
-@study("predictor", prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(256), families=WIDE_FAMILIES))
-def predictor(lab, scenes):
+@study("offsets", prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(256), families=WIDE_FAMILIES))
+def offsets(lab, scenes):
     size = lab.size(256)
     ensemble = lab.ensemble(scenes, size, families=WIDE_FAMILIES)
     families, rows, accuracy = ensemble.families, [], []
@@ -97,9 +97,9 @@ def predictor(lab, scenes):
     rows, accuracy = pd.DataFrame(rows), pd.DataFrame(accuracy)
     series = [Series(name, group["P"], group["mean u"], "line", group["+-"]) for name, group in rows.groupby("mapping", sort=False)]
     return Page({"size": size, "pictures": len(families), "families": len(set(families))}, findings_of(rows, accuracy),
-                tables=[Table("predictor", "Mean u of each choice of the offset", rows),
-                        Table("predictor-accuracy", "Predictions and measured u over all offsets of a picture", accuracy)],
-                plots=[Plot("predictor", "Load imbalance of each choice of the offset", "PEs", "load imbalance u", series, "xy")],
+                tables=[Table("offsets", "Mean u of each choice of the offset", rows),
+                        Table("offsets-accuracy", "Predictions and measured u over all offsets of a picture", accuracy)],
+                plots=[Plot("offsets", "Load imbalance of each choice of the offset", "PEs", "load imbalance u", series, "xy")],
                 placeholders={"ensemble": ensemble.description})
 
 
