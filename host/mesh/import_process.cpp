@@ -77,8 +77,10 @@ class ImportProcess : public RecordSource {
             pollfd in{pipe_, POLLIN, 0};
             const int ready = left.count() > 0 ? ::poll(&in, 1, static_cast<int>(left.count())) : 0;
             if (ready == 0)
-                scene_.refuse(fmt::format("reading the mesh takes more than {} s; remedy: set RAYA_MESH_TIMEOUT",
-                                          limit_.count()));
+                scene_.refuse(fmt::format(
+                    "reading the mesh takes more than {} s; the file may be damaged; remedy for a large file: set "
+                    "RAYA_MESH_TIMEOUT",
+                    limit_.count()));
             const ssize_t read_bytes = ready > 0 ? ::read(pipe_, bytes, count) : -1;
             if (read_bytes < 0 && errno == EINTR) continue;
             if (read_bytes <= 0) refuse_end();

@@ -15,12 +15,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <new>
 #include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "host/mesh/import_checks.hpp"
 #include "host/mesh/import_records.hpp"
 
 namespace raya {
@@ -81,21 +83,21 @@ class Records {
     std::FILE* file_;
 };
 
-/// Opens files for assimp, and reports those that cannot be opened: an OBJ file may name a missing material file.
+/// Opens files for assimp, and reports the first that cannot be opened. After a missing material file of an OBJ file,
+/// assimp tries another name and the same names again.
 class ReportingFiles : public Assimp::DefaultIOSystem {
   public:
     explicit ReportingFiles(Records& records) : records_(records) {}
     Assimp::IOStream* Open(const char* file, const char* mode) override {
         Assimp::IOStream* const stream = Assimp::DefaultIOSystem::Open(file, mode);
-        // assimp opens a file several times.
-        if (stream == nullptr && missing_.insert(file).second)
+        if (stream == nullptr && !std::exchange(is_missing_, true))
             records_.ignore("file that cannot be opened", std::string("file '") + file + "'");
         return stream;
     }
 
   private:
     Records& records_;
-    std::set<std::string> missing_;
+    bool is_missing_ = false;
 };
 
 /// Removes all importers of assimp but that of the extension, because assimp would choose one by the file's contents.
@@ -153,21 +155,25 @@ void map_transparency(const aiMaterial& material, ImportedSurface& s) {
 }
 
 void count_textures(const aiMaterial& material, Records& records, const std::string& place) {
-    unsigned textures = 0;
+    std::set<std::string> textures;  // assimp lists some of them in two types
     for (int type = aiTextureType_NONE + 1; type <= AI_TEXTURE_TYPE_MAX; ++type)
-        textures += material.GetTextureCount(static_cast<aiTextureType>(type));
-    for (; textures > 0; --textures) records.ignore("texture", place);
+        for (unsigned i = 0; i < material.GetTextureCount(static_cast<aiTextureType>(type)); ++i) {
+            aiString name;
+            material.GetTexture(static_cast<aiTextureType>(type), i, &name);
+            textures.insert(name.C_Str());
+        }
+    for (std::size_t i = 0; i < textures.size(); ++i) records.ignore("texture", place);
 }
 
-void put_material(const aiMaterial& material, Records& records) {
+void put_material(const aiMaterial& material, bool is_gltf, Records& records) {
     ImportedSurface s;
     const std::string name = property(material, AI_MATKEY_NAME, aiString()).C_Str();
     const std::string place = "material '" + name + "'";
     if (name != AI_DEFAULT_MATERIAL_NAME) {  // assimp's own, for a mesh without a material, is grey
         const auto colour = property(material, AI_MATKEY_COLOR_DIFFUSE, aiColor3D(1, 1, 1));
         s.colour[0] = colour.r, s.colour[1] = colour.g, s.colour[2] = colour.b;
-        const bool is_gltf = property(material, AI_MATKEY_METALLIC_FACTOR, -1.0f) >= 0;
-        (is_gltf ? map_gltf_reflection : map_obj_reflection)(material, s, records, place);
+        const bool is_metallic = is_gltf && property(material, AI_MATKEY_METALLIC_FACTOR, -1.0f) >= 0;
+        (is_metallic ? map_gltf_reflection : map_obj_reflection)(material, s, records, place);
         map_transparency(material, s);
         if (!is_black(property(material, AI_MATKEY_COLOR_EMISSIVE, aiColor3D(0, 0, 0))))
             records.ignore("emission", place);
@@ -180,7 +186,7 @@ void put_material(const aiMaterial& material, Records& records) {
 
 /// What of assimp's data raya uses in a format.
 struct Format {
-    bool has_materials, has_normals;
+    bool has_materials, has_normals, is_gltf;
 };
 
 /// Puts the mesh of a node. `to_scene` transforms its points; a mirroring transformation turns the faces around.
@@ -234,7 +240,7 @@ void put_scene(const aiScene& scene, const Format& format, Records& records) {
         ignore(scene.mMeshes[i]->mNumAnimMeshes, "morph target");
     }
     for (unsigned i = 0; format.has_materials && i < scene.mNumMaterials; ++i)
-        put_material(*scene.mMaterials[i], records);
+        put_material(*scene.mMaterials[i], format.is_gltf, records);
     put_nodes(scene, format, records);
 }
 
@@ -245,12 +251,15 @@ void put_scene(const aiScene& scene, const Format& format, Records& records) {
         importer.SetIOHandler(new ReportingFiles(records));  // the importer deletes it
         std::string extension = file.substr(file.rfind('.') + 1);
         for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
+        if (const std::string fault = fault_of_file(file, extension); !fault.empty()) records.end(fault);
         keep_one_format(importer, extension);
         const aiScene* const scene = importer.ReadFile(file, 0);
         if (scene == nullptr) records.end(std::string("assimp: ") + importer.GetErrorString());
         // assimp invents grey materials for STL and PLY. STL's normals are those of the facets, which raya computes.
-        put_scene(*scene, {extension != "stl" && extension != "ply", extension != "stl"}, records);
+        put_scene(*scene, {extension != "stl" && extension != "ply", extension != "stl", extension != "obj"}, records);
         records.end();
+    } catch (const std::bad_alloc&) {
+        records.end("it needs more than half of this computer's memory; the file may be damaged");
     } catch (const std::exception& error) {
         records.end(std::string("assimp: ") + error.what());
     }

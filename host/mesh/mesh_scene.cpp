@@ -75,8 +75,8 @@ Polygon MeshScene::polygon_of(const Mesh& mesh, std::uint64_t face, std::size_t 
     for (std::size_t i = first_corner; i < first_corner + size; ++i) {
         const std::uint32_t corner = mesh.corners[i];
         if (corner >= mesh.vertices.size())
-            refuse(fmt::format("{}: there is no vertex {}; the mesh has {}, numbered from 0", place_of(mesh, face),
-                               corner, mesh.vertices.size()));
+            refuse(fmt::format("{}: there is no vertex {}; the mesh has {}, numbered from 0; the file may be damaged",
+                               place_of(mesh, face), corner, mesh.vertices.size()));
         polygon.vertices.emplace_back(mesh.vertices[corner]);
         if (!mesh.normals.empty()) polygon.normals.emplace_back(mesh.normals[corner]);
     }
@@ -86,8 +86,8 @@ Polygon MeshScene::polygon_of(const Mesh& mesh, std::uint64_t face, std::size_t 
         return {};
     }
     if (!std::ranges::all_of(polygon.normals, is_direction)) {
-        remark_or_refuse(place_of(mesh, face), "a normal is zero or not finite",
-                         "face with a normal of 0, taken as flat");
+        remark_or_refuse(place_of(mesh, face), "a normal is missing, zero or not finite",
+                         "face in which a normal is missing or 0, taken as flat");
         polygon.normals.clear();
     }
     // Equal normals are those of flat shading. A flat polygon needs fewer words in a PE than a patch.
@@ -103,11 +103,14 @@ void MeshScene::add_face(const Mesh& mesh, std::uint64_t face, std::size_t first
     if (size < 3) return report("it is a point or a line", "point or line, left out");
     Polygon polygon = polygon_of(mesh, face, first_corner, size);
     if (polygon.vertices.empty()) return;
+    if (size > 3) {
+        const OutlineFault fault = clean_outline(polygon).fault;
+        if (fault == OutlineFault::kNone || fault == OutlineFault::kNotFlat) {
+            for (Polygon& triangle : triangles_of(polygon)) add_polygon(scene_, std::move(triangle), std::cref(report));
+            return;
+        }
+    }
     add_polygon(scene_, std::move(polygon), std::cref(report));  // a copy would need memory for each face
-    if (scene_.polygons.empty() || scene_.polygons.back().vertices.size() == 3) return;
-    const Polygon whole = std::move(scene_.polygons.back());
-    scene_.polygons.pop_back();
-    for (Polygon& triangle : triangles_of(whole)) add_polygon(scene_, std::move(triangle), std::cref(report));
 }
 
 void MeshScene::add(const Mesh& mesh) {
@@ -125,7 +128,15 @@ void MeshScene::add(const Mesh& mesh) {
 }
 
 Scene MeshScene::finish(UpAxis up) {
+    constexpr double kFar = 100;  // at which the margin of secondary rays in e6m15 is 2 % of the mesh
     if (scene_.polygons.empty()) refuse("it has no triangle: the image would be empty");
+    const Imath::Box3d box = scene_box(scene_);
+    const double distance = box.center().length(), size = box.size().length();
+    if (distance > kFar * size)
+        remark_or_refuse("", "it is too far from the origin for its size; move it to the origin",
+                         fmt::format("its distance from the origin is {:.2g} times its size, so that rounding errors "
+                                     "deform it: move it to the origin",
+                                     distance / size));
     merge_equal_surfaces(scene_);
     set_default_view(scene_, up);
     return std::move(scene_);

@@ -60,7 +60,7 @@ TEST_CASE("meshes: faces with equal normals are flat, others become patches with
     CHECK(patch.remarks.empty());
     CHECK(patch.scene.polygons[0].normals == std::vector<Vec3>{{0, 0, 1}, {0.6, 0, 0.8}, {0, 0, 1}});
     const ReadMesh zero = normals_of({{0, 0, 0, 0, 0, 0}, {1, 0, 0, 3, 0, 4}, {0, 1, 0, 0, 0, 1}});
-    CHECK(zero.remarks == Remarks{"n.ply: face 1: face with a normal of 0, taken as flat"});
+    CHECK(zero.remarks == Remarks{"n.ply: face 1: face in which a normal is missing or 0, taken as flat"});
     CHECK(zero.scene.polygons[0].normals.empty());
 }
 
@@ -70,10 +70,9 @@ TEST_CASE("meshes: polygons are cut into triangles", "[mesh]") {
     CHECK(square.scene.polygons.size() == 2);
     const auto bent = std::vector<std::vector<float>>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5f}, {0, 1, 0}};
     const ReadMesh bent_mesh = read_mesh("s.ply", ply(bent, {{0, 1, 2}, {0, 1, 2, 3}}));
-    CHECK(bent_mesh.remarks == Remarks{"s.ply: face 2: polygon that is not flat, cut into triangles"});
+    CHECK(bent_mesh.remarks.empty());
     CHECK(bent_mesh.scene.polygons.size() == 3);
-    CHECK_THROWS_WITH(read_mesh("s.ply", ply(bent, {{0, 1, 2, 3}}), true),
-                      Contains("s.ply: face 1: the polygon is not flat"));
+    CHECK(read_mesh("s.ply", ply(bent, {{0, 1, 2, 3}}), true).scene.polygons.size() == 2);
 }
 
 TEST_CASE("meshes: faces that cannot be traced are left out and counted; --strict refuses them", "[mesh]") {
@@ -92,6 +91,52 @@ TEST_CASE("meshes: faces that cannot be traced are left out and counted; --stric
     CHECK_THROWS_WITH(read_mesh("f.ply", ply(vertices, {{0, 0, 1}}), true),
                       "f.ply: face 1: the polygon has fewer than three different vertices");
     CHECK_THROWS_WITH(read_mesh("f.ply", ply(vertices, {{0, 1}}), true), "f.ply: face 1: it is a point or a line");
+}
+
+TEST_CASE("meshes: a mesh far from the origin gets a remark; --strict refuses it", "[mesh]") {
+    const auto moved = [](float x, bool strict = false) {
+        return read_mesh("f.ply", ply({{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}}, {{0, 1, 2}}), strict).remarks;
+    };
+    CHECK(moved(100).empty());
+    CHECK(moved(1000) ==
+          Remarks{"f.ply: its distance from the origin is 7.1e+02 times its size, so that rounding errors "
+                  "deform it: move it to the origin"});
+    CHECK_THROWS_WITH(moved(1000, true), "f.ply: it is too far from the origin for its size; move it to the origin");
+}
+
+TEST_CASE("meshes: damaged files that assimp accepts or never ends on are refused", "[mesh]") {
+    const auto check = [](const std::string& name, const std::string& bytes, const std::string& message) {
+        CAPTURE(bytes);
+        CHECK_THROWS_WITH(read_mesh(name, bytes), name + ": cannot read the mesh: " + message);
+    };
+    const std::string ascii = tetrahedron_ascii_ply(), binary = tetrahedron_ply();
+    const std::string no_end = "PLY: the header has no end_header";
+    const std::string missing = "PLY: numbers are missing; the file may be truncated";
+    for (const std::string& bytes : {ascii, binary})
+        for (const std::size_t size : {0, 1, 3, 20, 60}) check("d.ply", bytes.substr(0, size), no_end);
+    const std::size_t body = ascii.find("end_header\n") + 11, last_line = ascii.find_last_of('\n', ascii.size() - 2);
+    for (const std::size_t size : {body, (body + ascii.size()) / 2, last_line})
+        check("d.ply", ascii.substr(0, size), missing);
+    std::string shorter = ascii;
+    check("d.ply", shorter.erase(ascii.find(' ', body), 2), missing);  // a vertex without its last number
+    check("d.ply", replaced(binary, "element vertex 4", "element vertex  "),
+          "PLY: the header has an element without a number");
+    check("d.ply", replaced(binary, "property double y", "property double w"), "PLY: the vertices have no property y");
+    check("d.ply", replaced(binary, "element edge 1", "element tristrips 1"),
+          "PLY: raya does not read triangle strips; store the faces instead");
+    check("d.stl",
+          "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n",
+          "STL: there is no endsolid; the file may be truncated");
+    check("d.gltf", "{\"asset\":", "glTF: the JSON is broken or no object");
+    check("d.glb", "glTF", "glTF: the file is not a .glb");
+    const auto requiring = [](const std::string& extension) {
+        return tetrahedron_gltf(embedded_buffer(), "", "", ",\"extensionsRequired\":[\"" + extension + "\"]");
+    };
+    check("d.gltf", requiring("KHR_mesh_quantization"),
+          "glTF: raya cannot read the required extension KHR_mesh_quantization; export the file without it");
+    CHECK(read_mesh("d.gltf", requiring("KHR_materials_unlit")).scene.polygons.size() == 4);
+    CHECK_THROWS_WITH(read_mesh("d.fbx", "Kaydara"),
+                      "d.fbx: raya does not read .fbx files; convert it to OBJ, PLY, glTF or STL");
 }
 
 TEST_CASE("meshes: errors name the file and the face", "[mesh]") {

@@ -106,8 +106,7 @@ TEST_CASE("OBJ: a missing material file is counted, and its materials are grey",
     const ReadMesh mesh = read_mesh("m.obj", tetrahedron_obj("mtllib none.mtl\nusemtl wood\n"));
     REQUIRE(mesh.remarks.size() == 1);
     CHECK_THAT(mesh.remarks[0],
-               Contains("m.obj: file '") &&
-                   Contains("none.mtl': file that cannot be opened, ignored (2 in all)"));  // m.mtl, too
+               Contains("m.obj: file '") && Catch::EndsWith("none.mtl': file that cannot be opened, ignored"));
     Surface grey;
     grey.colour = Colour(0.6f);
     CHECK(mesh.scene.surfaces == std::vector{grey});
@@ -157,7 +156,8 @@ TEST_CASE("mutated meshes are either read or refused with the file's name", "[me
     const int count = variable != nullptr ? std::atoi(variable) / 10 : 100;  // a process for each
     const std::vector<std::pair<std::string, std::string>> files = {
         {"m.obj", tetrahedron_obj("g a\nvn 0 0 1\nvt 0 0\n")},
-        {"m.ply", tetrahedron_ply()},  // not ascii: assimp 5.2 does not end if a number is missing
+        {"m.ply", tetrahedron_ply()},
+        {"m.ply", tetrahedron_ascii_ply()},
         {"m.stl", tetrahedron_binary_stl()},
         {"m.gltf", tetrahedron_gltf(embedded_buffer())},
         {"m.glb", tetrahedron_glb()}};

@@ -97,7 +97,9 @@ TEST_CASE("a crash or an early end of the import process is a user error", "[mes
 TEST_CASE("an import process that hangs is ended after RAYA_MESH_TIMEOUT seconds", "[mesh]") {
     ::setenv("RAYA_MESH_TIMEOUT", "1", 1);
     const FakeImport fake("echo $$ >\"$0.pid\"; exec sleep 1000");
-    CHECK(fake.error() == "t.obj: reading the mesh takes more than 1 s; remedy: set RAYA_MESH_TIMEOUT");
+    CHECK(fake.error() ==
+          "t.obj: reading the mesh takes more than 1 s; the file may be damaged; remedy for a large file: set "
+          "RAYA_MESH_TIMEOUT");
     const std::string pid = read_file(fake.folder_ / "raya_import.pid");
     CHECK_FALSE(std::filesystem::exists("/proc/" + pid.substr(0, pid.find('\n'))));
     for (const char* text : {"0", "x", "-1", "1e9", "9999999999"}) {
@@ -130,7 +132,8 @@ TEST_CASE("records of the import process are checked", "[mesh]") {
     CHECK(error_of_records(kStart + mesh_record(kTwoFaces, {3, 4}, corners)) ==
           "t.obj: a mesh has faces with more corners than it lists");
     CHECK(error_of_records(kStart + mesh_record(kTwoFaces, sizes, {0, 1, 2, 0, 1, 4})) ==
-          "t.obj: mesh 'tetra', face 2: there is no vertex 4; the mesh has 4, numbered from 0");
+          "t.obj: mesh 'tetra', face 2: there is no vertex 4; the mesh has 4, numbered from 0; the file may be "
+          "damaged");
 }
 
 TEST_CASE("numbers of materials are checked", "[mesh]") {
