@@ -34,6 +34,11 @@ health RAYA="$raya" OCL_ICD_VENDORS=/nowhere
 touch "$scratch/hangs"
 health RAYA="$scratch/faulty" RAYA_HEALTH_SECONDS=1
 [[ $code == 1 ]] && drained "no result after 1 s" || fail "hanging device"
+# Slurm's slurmd starts the program without variables.
+code=0
+out=$(env -i RAYA="$raya" POCL_CACHE_DIR="$scratch/pocl" ${OCL_ICD_VENDORS:+OCL_ICD_VENDORS="$OCL_ICD_VENDORS"} "$health" --only "number fp32, * lanes" 2>&1) ||
+    code=$?
+[[ $code == 0 && -z $out ]] || fail "no variables"
 rm "$scratch/bin/scontrol"
 health RAYA="$scratch/faulty" RAYA_HEALTH_SECONDS=1
 [[ $code == 1 ]] || fail "no scontrol"

@@ -8,7 +8,7 @@ How much does an image in a reduced format differ from the exact one, and how mu
 - Formats: `eXmY` has X exponent bits and Y fraction bits and rounds to nearest; `eXmYt` truncates. `e6m15` is `spa22`.
 - Times are measured on {device}, {lanes} rays per work-item: the minimum over {samples} renders with each format, in turn.
 - Output: formats-overview.csv has a row for each format, formats.csv one for each scene and format. psnr_db: PSNR in dB, peak 1; largest_error:
-  over all colour channels; pixels_over, share_over: number and fraction of pixels with a channel whose error exceeds 1/255.
+  over all colour channels; pixels_over, share_over: number and fraction of pixels with a channel whose error exceeds 1/255; u: load imbalance.
 """
 import re
 
@@ -48,7 +48,7 @@ def rows_of(lab, scene, size):
             if sample == 0:
                 exponent, fraction, rounding = bits_of(form)
                 rows[form] = {"scene": scene.name, "format": form, "exponent_bits": exponent, "fraction_bits": fraction,
-                              "rounding": rounding, **difference(expected, result.image), "image_hash": result.hash,
+                              "rounding": rounding, **difference(expected, result.image), "image_hash": result.hash, "u": result.imbalance,
                               "measured_kernel_s": np.inf}
             rows[form]["measured_kernel_s"] = min(rows[form]["measured_kernel_s"], result.device_s)
     rows = pd.DataFrame(rows.values())
@@ -82,6 +82,9 @@ def findings_of(rows):
     spa, fp32 = (rows[rows["format"] == form] for form in ("e6m15", "fp32"))
     psnr = rows.pivot(index="scene", columns="format", values="psnr_db").reindex(rows["scene"].unique())
 
+    u = rows.pivot(index="scene", columns="format", values="u")
+    load_changes = u.div(u["fp32"], axis=0).sub(1).abs().max()
+
     def spread(gains):
         return f"{gains.mean():+.1f} dB on average ({gains.min():+.1f} to {gains.max():+.1f})"
 
@@ -95,5 +98,7 @@ def findings_of(rows):
             f"{text(spa, 'share_over', 100, 2)} % of spa22's pixels and {text(fp32, 'share_over', 100, 2)} % of fp32's have an error above "
             f"1/255; spa22 takes {text(spa, 'measured_ratio_to_fp32', 1, 2)} "
             "times fp32's kernel time (measured).",
+            f"The load imbalance u in a reduced format differs from that in fp32 by at most {100 * load_changes.max():.1f} % (spa22: "
+            f"{100 * load_changes['e6m15'].max():.1f} %).",
             f"Rounding to nearest has a higher PSNR than truncation in {(gains > 0).sum()} of {len(gains)} pairs of the same "
             f"format and scene: {spread(gains)}.", *changes]
