@@ -47,7 +47,9 @@ ImageAttributes tone_attributes(const Tone& tone) {
 }
 
 ToneCodes::ToneCodes(const Tone& tone)
-    : curve_(tone.curve), factor_(std::exp2(tone.exposure)), borders_(borders_of(tone)) {}
+    : curve_(tone.curve), factor_(std::exp2(tone.exposure)), borders_(borders_of(tone)) {
+    for (std::size_t k = 0; k < codes_.size(); ++k) codes_[k] = nearest_code(borders_, static_cast<double>(k) / kCells);
+}
 
 std::array<std::uint8_t, 3> ToneCodes::operator()(const float* rgb) const {
     constexpr double kMaxFloat = std::numeric_limits<float>::max();
@@ -57,7 +59,12 @@ std::array<std::uint8_t, 3> ToneCodes::operator()(const float* rgb) const {
     const double pixel_luminance = luminance(linear);
     const double scale = curve_ == ToneCurve::kReinhard && pixel_luminance > 0 ? 1 / (1 + pixel_luminance) : 1;
     std::array<std::uint8_t, 3> codes{};
-    for (std::size_t i = 0; i < 3; ++i) codes[i] = nearest_code(borders_, linear[i] * scale);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double value = linear[i] * scale;
+        std::size_t code = codes_[static_cast<std::size_t>(std::clamp(value, 0.0, 1.0) * kCells)];
+        while (code < borders_.size() && borders_[code] < value) ++code;
+        codes[i] = static_cast<std::uint8_t>(code);
+    }
     return codes;
 }
 

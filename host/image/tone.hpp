@@ -75,6 +75,8 @@ class ToneCodes {
     ToneCurve curve_;
     double factor_;
     CodeBorders borders_;
+    static constexpr int kCells = 4096;
+    std::array<std::uint8_t, kCells + 1> codes_;  // [k]: the code of k / kCells; a search from there takes few steps
 };
 
 }  // namespace raya
