@@ -24,13 +24,24 @@ def test_variance_of_loads(pes):
         assert np.var(loads) == pytest.approx(spectrum / pes**2, rel=1e-9), f"offset {offset}, seed {SEED}"
 
 
+@pytest.mark.parametrize("pes", [16, 32, 128])
+def test_rings_are_interpolated(pes):
+    spectrum = study.ring_spectrum(np.random.default_rng(SEED).random((SIZE, SIZE)))
+    offsets = range(min(pes, SIZE))
+    nearest_zero = [[(part + 0.5) % 1 - 0.5 for part in study.dual_points(pes, p, SIZE)] for p in offsets]
+    sums = [np.interp(SIZE * np.hypot(*points), np.arange(len(spectrum)), spectrum).sum() for points in nearest_zero]
+    predicted = study.predicted_u(spectrum[None], pes, offsets, SIZE)[0]
+    assert predicted == pytest.approx(study.expected_maximum(pes) * np.sqrt(sums), abs=1e-11), f"seed {SEED}"
+    assert predicted[1:].tolist() == predicted[:0:-1].tolist()  # p and its mirror image
+
+
 def test_prediction_of_a_picture_with_equal_rings():
     """For a picture of independent pixels the spectrum is flat, so the prediction is that of a random mapping."""
     cost = np.random.default_rng(SEED).integers(0, 1000, (64, 64)).astype(np.uint64)
     spectrum = study.ring_spectrum(cost.astype(float))
     pes = 64
     u = np.mean([study.random_u(cost, pes, seed) for seed in range(200)])
-    assert study.predicted_u(spectrum, pes, 8, 64) == pytest.approx(u, rel=0.1), f"seed {SEED}"
+    assert study.predicted_u(spectrum[None], pes, [8], 64)[0, 0] == pytest.approx(u, rel=0.1), f"seed {SEED}"
 
 
 def test_an_edge_costs_most_along_its_direction():
@@ -38,4 +49,5 @@ def test_an_edge_costs_most_along_its_direction():
     cost = np.full((64, 64), 100, np.uint64)
     cost[:, :20] = 1000
     spectrum = study.ring_spectrum(cost.astype(float))
-    assert study.predicted_u(spectrum, 64, 0, 64) > 2 * study.predicted_u(spectrum, 64, 8, 64)
+    with_offset_0, with_offset_8 = study.predicted_u(spectrum[None], 64, [0, 8], 64)[0]
+    assert with_offset_0 > 2 * with_offset_8

@@ -50,10 +50,20 @@ def expected_maximum(count):
     return norm.ppf((count - 0.375) / (count + 0.25))
 
 
-def predicted_u(spectrum, pes, offset, size):
-    """Returns the predicted load imbalance of the cyclic mapping for images of size x size pixels with a ring_spectrum()."""
+def ring_weights(pes, offset, size):
+    """Returns how often the P points of dual_points() lie on each ring of ring_spectrum(); points between two rings count for both, linearly."""
+    rings = round(size * 0.5**0.5) + 1
     distance = np.hypot(*((part + 0.5) % 1 - 0.5 for part in dual_points(pes, offset, size))) * size
-    return expected_maximum(pes) * np.interp(distance, np.arange(len(spectrum)), spectrum).sum()**0.5
+    inner = np.minimum(distance.astype(int), rings - 2)
+    share = np.minimum(distance - inner, 1)
+    return np.bincount(inner, 1 - share, rings) + np.bincount(inner + 1, share, rings)
+
+
+def predicted_u(spectra, pes, offsets, size):
+    """Returns the predicted load imbalance of the cyclic mapping for images of size x size pixels: an array [spectrum, offset]. Rounded, so that two
+    offsets with the same prediction, such as p and W - p, are equal on every computer."""
+    weights = np.array([ring_weights(pes, p, size) for p in offsets])
+    return np.round(expected_maximum(pes) * (spectra @ weights.T)**0.5, 12)
 
 
 def random_u(cost, pes, seed):
@@ -66,13 +76,13 @@ def measure(ensemble, spectra, pes, size):
     offsets = range(min(pes, size))
     families = np.array(ensemble.families)
     u = ensemble.map(lambda costs: raya.imbalances(costs.trace, pes, offsets))
-    predict = lambda spectrum: np.array([predicted_u(spectrum, pes, p, size) for p in offsets])
-    own = np.array([predict(spectrum) for spectrum in spectra])
-    others = {name: predict(spectra[families != name].mean(0)) for name in dict.fromkeys(ensemble.families)}
+    names = list(dict.fromkeys(ensemble.families))
+    own = predicted_u(spectra, pes, offsets, size)
+    others = predicted_u(np.array([spectra[families != name].mean(0) for name in names]), pes, offsets, size)
     at = lambda best: u[np.arange(len(u)), best]
     root, golden = round(pes**0.5) % len(offsets), round(len(offsets) * GOLDEN)
     return {"column split (p = 0)": u[:, 0], "p = sqrt(P)": u[:, root], "golden ratio": u[:, golden], "predicted, own": at(own.argmin(1)),
-            "predicted, others": at([others[name].argmin() for name in ensemble.families]), "best of all offsets": u.min(1),
+            "predicted, others": at([others[names.index(name)].argmin() for name in ensemble.families]), "best of all offsets": u.min(1),
             "random": np.array([random_u(costs.trace, pes, seed) for seed, costs in enumerate(ensemble.pictures)])}, u, own
 
 
