@@ -10,6 +10,9 @@ Why does an offset p balance the load, and does the autocorrelation of a picture
   (standard deviation of the loads) / (mean load). "own": spectrum of the picture itself. "others": mean spectrum of the other families.
 - Ensemble: {ensemble}, {size} x {size} pixels; first pass. Offsets 0..min(P, W) - 1. All mappings are applied to the same pictures.
 - P > W: the rows are dealt to P / W PEs of each slot in turn, so a PE's rows are k = P / W apart and their shift is k p mod W.
+- "sqrt(P) / k": for P = k W its lattice is nearly square again. "Longest dual vector": the offset whose dual lattice has the longest shortest vector.
+  "2-D grid": a PE has every sqrt(P)-th pixel of every sqrt(P)-th row, as on CAP and the Pixel Machine.
+- Rotations each way: of the ring, to exchange neighbouring rows: min(p, P - p) + 1, for P <= W.
 - The random mapping gives each pixel to a random PE, with equally many pixels for every PE (one permutation for each picture).
 - Intervals (+-): 95 %, hierarchical: families are drawn at random, and pictures within each family (bootstrap).
 - Output: offsets.csv has, for each number of PEs P, the mean u of each way to choose the offset. offsets-accuracy.csv compares predictions with
@@ -50,10 +53,15 @@ def expected_maximum(count):
     return norm.ppf((count - 0.375) / (count + 0.25))
 
 
+def dual_lengths(pes, offset, size):
+    """Returns the lengths, in cycles per image, of the shortest vectors to the points of dual_points(), which repeat with period 1."""
+    return size * np.hypot(*((part + 0.5) % 1 - 0.5 for part in dual_points(pes, offset, size)))
+
+
 def ring_weights(pes, offset, size):
     """Returns how often the P points of dual_points() lie on each ring of ring_spectrum(); points between two rings count for both, linearly."""
     rings = round(size * 0.5**0.5) + 1
-    distance = np.hypot(*((part + 0.5) % 1 - 0.5 for part in dual_points(pes, offset, size))) * size
+    distance = dual_lengths(pes, offset, size)
     inner = np.minimum(distance.astype(int), rings - 2)
     share = np.minimum(distance - inner, 1)
     return np.bincount(inner, 1 - share, rings) + np.bincount(inner + 1, share, rings)
@@ -66,24 +74,33 @@ def predicted_u(spectra, pes, offsets, size):
     return np.round(expected_maximum(pes) * (spectra @ weights.T)**0.5, 12)
 
 
-def random_u(cost, pes, seed):
-    loads = np.bincount(np.random.default_rng(seed).permutation(cost.size) % pes, cost.ravel(), pes)
+def imbalance(loads):
     return loads.max() / loads.mean() - 1
 
 
+def random_u(cost, pes, seed):
+    return imbalance(np.bincount(np.random.default_rng(seed).permutation(cost.size) % pes, cost.ravel(), pes))
+
+
 def measure(ensemble, spectra, pes, size):
-    """spectra: ring_spectrum() of each picture. Returns ({mapping: u of each picture}, measured u [picture, offset], predicted u [picture, offset])."""
-    offsets = range(min(pes, size))
+    """spectra: ring_spectrum() of each picture. Returns ({mapping: u of each picture}, {mapping: offset of each picture, for mappings with an offset},
+    measured u [picture, offset], predicted u [picture, offset])."""
+    count = min(pes, size)
+    offsets, sharing, root = range(count), max(1, pes // size), round(pes**0.5)  # sharing: PEs that share a column
     families = np.array(ensemble.families)
-    u = ensemble.map(lambda costs: raya.imbalances(costs.trace, pes, offsets))
     names = list(dict.fromkeys(ensemble.families))
     own = predicted_u(spectra, pes, offsets, size)
     others = predicted_u(np.array([spectra[families != name].mean(0) for name in names]), pes, offsets, size)
-    at = lambda best: u[np.arange(len(u)), best]
-    root, golden = round(pes**0.5) % len(offsets), round(len(offsets) * GOLDEN)
-    return {"column split (p = 0)": u[:, 0], "p = sqrt(P)": u[:, root], "golden ratio": u[:, golden], "predicted, own": at(own.argmin(1)),
-            "predicted, others": at([others[names.index(name)].argmin() for name in ensemble.families]), "best of all offsets": u.min(1),
-            "random": np.array([random_u(costs.trace, pes, seed) for seed, costs in enumerate(ensemble.pictures)])}, u, own
+    shortest = np.round([dual_lengths(pes, p, size).min() for p in offsets], 9)
+    u = ensemble.map(lambda costs: raya.imbalances(costs.trace, pes, offsets))
+    chosen = {"column split (p = 0)": 0, "p = sqrt(P)": root % count, "p = sqrt(P) / k": root // sharing, "longest dual vector": shortest.argmax(),
+              "golden ratio": round(count * GOLDEN), "predicted, own": own.argmin(1),
+              "predicted, others": [others[names.index(name)].argmin() for name in ensemble.families], "best of all offsets": u.argmin(1)}
+    chosen = {name: np.broadcast_to(p, len(u)) for name, p in chosen.items()}
+    values = {name: u[np.arange(len(u)), p] for name, p in chosen.items()}
+    values["2-D grid"] = ensemble.map(lambda costs: imbalance(raya.loads(costs.trace, pes=pes, mapping=f"grid:{root}x{root}")))
+    values["random"] = np.array([random_u(costs.trace, pes, seed) for seed, costs in enumerate(ensemble.pictures)])
+    return values, chosen, u, own
 
 
 @study("offsets", prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(256), families=WIDE_FAMILIES))
@@ -93,24 +110,31 @@ def offsets(lab, scenes):
     families, rows, accuracy = ensemble.families, [], []
     spectra = ensemble.map(lambda costs: ring_spectrum(costs.trace.astype(float)))
     for pes in [pes for pes in PES if 16 * pes <= size * size and (size % pes == 0 or pes % size == 0)]:
-        mappings, u, own = measure(ensemble, spectra, pes, size)
+        mappings, chosen, u, own = measure(ensemble, spectra, pes, size)
         root = mappings["p = sqrt(P)"]
         for name, values in mappings.items():
             mean, loss = hierarchical(values, families), hierarchical(values - root, families)
             rows.append({"P": pes, "mapping": name, "mean u": mean.mean, "+-": mean.half, "mean u - u(sqrt(P))": loss.mean,
-                         "+-, difference": loss.half, "better than sqrt(P) (pictures)": int((values < root).sum())})
+                         "+-, difference": loss.half, "better than sqrt(P) (pictures)": int((values < root).sum()),
+                         "rotations each way": rotations(chosen[name], pes) if name in chosen and pes <= size else np.nan})
         ranks = np.array([spearmanr(*pair)[0] for pair in zip(own, u) if min(map(np.ptp, pair)) > 0])  # undefined for a constant
         ratio = np.median(own / np.maximum(u, 1e-12), axis=1)
         accuracy.append({"P": pes, "median rank correlation": np.median(ranks), "rank correlations": range_text(ranks, 2),
                          "median predicted / measured u": np.median(ratio), "10 % of pictures below": np.quantile(ratio, 0.1),
                          "10 % of pictures above": np.quantile(ratio, 0.9)})
     rows, accuracy = pd.DataFrame(rows), pd.DataFrame(accuracy)
-    series = [Series(name, group["P"], group["mean u"], "line", group["+-"]) for name, group in rows.groupby("mapping", sort=False)]
+    reference = rows[rows["mapping"] == "p = sqrt(P) / k"].set_index("P")["mean u"]
+    series = [Series(name, group["P"], group["mean u"] / group["P"].map(reference)) for name, group in rows.groupby("mapping", sort=False)]
     return Page({"size": size, "pictures": len(families), "families": len(set(families))}, findings_of(rows, accuracy),
                 tables=[Table("offsets", "Mean u of each choice of the offset", rows),
                         Table("offsets-accuracy", "Predictions and measured u over all offsets of a picture", accuracy)],
-                plots=[Plot("offsets", "Load imbalance of each choice of the offset", "PEs", "load imbalance u", series, "xy")],
+                plots=[Plot("offsets", "Mean load imbalance relative to that of p = sqrt(P) / k", "PEs", "mean u / mean u(sqrt(P) / k)", series, "xy")],
                 placeholders={"ensemble": ensemble.description})
+
+
+def rotations(offsets, pes):
+    """Returns the mean number of the ring's rotations, in each of its two directions, that exchange the pixels of neighbouring rows."""
+    return np.minimum(offsets, pes - offsets).mean() + 1
 
 
 def findings_of(rows, accuracy):
@@ -120,6 +144,7 @@ def findings_of(rows, accuracy):
         return (f"{name}: u is lower than with p = sqrt(P) for P = {', '.join(map(str, chosen['P'][low < 0])) or 'none'}, and higher for P = "
                 f"{', '.join(map(str, chosen['P'][high > 0])) or 'none'} (95 % intervals of the difference).")
 
-    return [differences(name) for name in ("predicted, own", "predicted, others", "golden ratio", "random", "column split (p = 0)")] + [
+    return [differences(name) for name in ("predicted, own", "predicted, others", "golden ratio", "p = sqrt(P) / k", "longest dual vector", "2-D grid",
+                                              "random", "column split (p = 0)")] + [
         f"The median of predicted / measured u is {range_text(accuracy['median predicted / measured u'], 2)} over the numbers of PEs; the median rank "
         f"correlation over the offsets of a picture is {range_text(accuracy['median rank correlation'], 2)}."]
