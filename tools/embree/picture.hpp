@@ -156,6 +156,7 @@ class Picture {
         alignas(64) RayHit16 q;
         long traced_rays = 0;
         for (int i = 0; i < kPacketRays; ++i) {
+            set_no_ray(q.ray, i);
             if (lanes[i].stack.empty()) continue;
             const PendingRay& r = lanes[i].ray = lanes[i].stack.pop();
             valid[i] = -1;
@@ -195,6 +196,7 @@ class Picture {
         bool has_unblocked = false;
         for (int i = 0; i < kPacketRays; ++i) {
             const ShadingPoint& m = lanes[i].point;
+            set_no_ray(s, i);
             if (valid[i] == 0) continue;
             const V3 light_offset = light.position - m.outer;
             if (!(dot(m.normal, light_offset) > 0)) continue;
@@ -214,6 +216,10 @@ class Picture {
                     lanes[i].ray.weight * whitted_.light_contribution(lanes[i].ray, lanes[i].point, light, to_light[i]);
         return rays;
     }
+
+    /// Sets a lane that has no ray. Without AVX-512, Embree 3 reads such lanes, too, and ends the program if they are not
+    /// rays.
+    static void set_no_ray(RTCRay16& rays, int i) { set_ray(rays, i, {0, 0, 0}, {0, 0, 1}, -1); }
 
     static void set_ray(RTCRay16& rays, int i, V3 origin, V3 direction, float far) {
         rays.org_x[i] = origin.x;
