@@ -217,8 +217,8 @@ class Picture {
         return rays;
     }
 
-    /// Sets a lane that has no ray. Without AVX-512, Embree 3 reads such lanes, too, and ends the program if they are not
-    /// rays.
+    /// Sets a lane that has no ray. Without AVX-512, Embree 3 reads such lanes, too, and ends the program if they are
+    /// not rays.
     static void set_no_ray(RTCRay16& rays, int i) { set_ray(rays, i, {0, 0, 0}, {0, 0, 1}, -1); }
 
     static void set_ray(RTCRay16& rays, int i, V3 origin, V3 direction, float far) {
