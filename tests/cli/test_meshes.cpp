@@ -25,13 +25,15 @@ std::vector<std::string> example_lines() {
     return lines;
 }
 
+const std::string kExample = "oct.obj";  // the mesh of docs/meshes.md
+
 /// Writes the mesh of docs/meshes.md into the folder and returns its path.
 std::string write_example(const ScratchFolder& folder, const std::string& before = "") {
     std::string text = before;
     for (const std::string& line : example_lines())
         if (line.starts_with("v ") || line.starts_with("f ")) text += line + "\n";
-    write_whole_file(folder / "tetrahedron.obj", text);
-    return folder / "tetrahedron.obj";
+    write_whole_file(folder / kExample, text);
+    return folder / kExample;
 }
 
 TEST_CASE("the example of docs/meshes.md prints what the page shows", "[cli][mesh]") {
@@ -43,7 +45,7 @@ TEST_CASE("the example of docs/meshes.md prints what the page shows", "[cli][mes
     CHECK(run.err.empty());
     int shown_lines = 0;
     for (const std::string& line : example_lines())
-        if (line.starts_with("tetrahedron.obj: ")) {
+        if (line.starts_with(kExample + ": ")) {
             ++shown_lines;
             CHECK_THAT(run.out, Contains(line + "\n"));
         }
@@ -76,7 +78,14 @@ TEST_CASE("a mesh renders as the same scene in NFF does; the report lists what w
     std::string nff = fmt::format("b 0 0 0\nv\nfrom {}\nat {}\nup {}\nangle 45\nhither 0\nresolution 256 256\n",
                                   text_of(view["from"]), text_of(view["at"]), text_of(view["up"]));
     for (const Document& light : view["lights"]) nff += "l " + text_of(light["position"]) + "\n";
-    nff += "p 3 0 0 0 0 1 0 1 0 0\np 3 0 0 0 1 0 0 0 0 1\np 3 0 0 0 0 0 1 0 1 0\np 3 1 0 0 0 1 0 0 0 1\n";
+    std::vector<std::string> vertices;
+    for (const std::string& line : example_lines()) {
+        if (line.starts_with("v ")) vertices.push_back(line.substr(1));
+        if (!line.starts_with("f ")) continue;
+        nff += "p 3";
+        for (const std::size_t digit : {2, 4, 6}) nff += vertices.at(static_cast<std::size_t>(line.at(digit) - '1'));
+        nff += "\n";
+    }
     write_whole_file(folder / "t.nff", nff);
     CHECK(hash_of(folder / "t.nff", {}) == hash);
     CHECK(hash_of(mesh, {"--from", "1,1,1", "--at", "0,0,0", "--up", "0,0,1", "--angle", "70", "--light", "3,3,3"}) !=
@@ -89,7 +98,7 @@ TEST_CASE("meshes: refusals name the file and leave no output", "[cli][mesh]") {
     write_whole_file(folder / "bad.ply", "ply\n");
     write_whole_file(folder / "bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\n");
     check_refused(outputs, render_into(outputs, folder / "empty.stl"), 2, {"raya: ", "empty.stl: "});
-    check_refused(outputs, render_into(outputs, folder / "bad.ply"), 2, {"bad.ply: cannot read the mesh: assimp: "});
+    check_refused(outputs, render_into(outputs, folder / "bad.ply"), 2, {"bad.ply: cannot read the mesh: PLY: "});
     check_refused(outputs, render_into(outputs, folder / "bad.obj"), 2,
                   {"bad.obj: mesh 'defaultobject', face 1: polygon without area, left out",
                    "bad.obj: it has no triangle: the image would be empty"});
@@ -97,7 +106,7 @@ TEST_CASE("meshes: refusals name the file and leave no output", "[cli][mesh]") {
                   {"none.glb: cannot read the mesh: No such file or directory"});
     const std::string mesh = write_example(folder, "mtllib none.mtl\n");
     check_refused(outputs, render_into(outputs, mesh, {"--strict"}), 2,
-                  {"tetrahedron.obj: file '", "none.mtl': file that cannot be opened has no counterpart in raya"});
+                  {kExample + ": file '", "none.mtl': file that cannot be opened has no counterpart in raya"});
 }
 
 TEST_CASE("meshes: a crash of the import program ends raya with exit code 2", "[cli][mesh]") {
