@@ -9,6 +9,7 @@ must equal the value, rounded to the digits of the text (a percentage: 100 times
 Exit codes: 0 all numbers are equal; 1 a number differs, or has no comment; 2 bad comment.
 """
 import csv
+import math
 import re
 import sys
 from functools import cache
@@ -27,17 +28,17 @@ def table(file):
 
 
 def cell(file, condition, column):
-    """Returns the number in a column of the one row that fulfils the condition."""
+    """Returns the number in a column of the one row that fulfils the condition; infinity for "never"."""
     wanted = dict(part.strip().split("=", 1) for part in condition.split("&"))
     rows = [row for row in table(file) if all(row[key.strip()] == value.strip() for key, value in wanted.items())]
     if len(rows) != 1:
         raise ValueError(f"{file.name}: {len(rows)} rows with {condition}, not one")
-    return float(rows[0][column])
+    return math.inf if rows[0][column] == "never" else float(rows[0][column])
 
 
 def value_of(expression, file_of):
     """Returns the value of an expression of cells, + - * / ( ) and numbers. file_of: function(name of a table) -> path."""
-    text = CELL.sub(lambda match: f"({cell(file_of(match[1]), match[2], match[3])!r})", expression)
+    text = CELL.sub(lambda match: f"({cell(file_of(match[1]), match[2], match[3])!r})".replace("inf", "1e999"), expression)
     if not re.fullmatch(r"[\d\s.()+\-*/e]*", text):
         raise ValueError(f"not an expression of cells: {expression}")
     return eval(text, {"__builtins__": {}})
