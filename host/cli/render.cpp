@@ -101,7 +101,8 @@ void add_render_command_options(CLI::App& command, RenderCommand& options) {
 }
 
 CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<RenderCommand>& options) {
-    CLI::App* command = program.add_subcommand("render", "Render a scene (NFF, OBJ, PLY, glTF or STL) on a ring machine or the torus machine");
+    CLI::App* command = program.add_subcommand(
+        "render", "Render a scene (NFF, OBJ, PLY, glTF or STL) on a ring machine or the torus machine");
     add_examples(*command, {{"raya render scenes/centre.nff -o centre.png",
                              "Render on a ring of 256 PEs, in the scene's resolution"},
                             {"raya render scenes/glass.nff --machine torus --size 64 --report glass.json -o glass.png",
