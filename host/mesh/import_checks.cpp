@@ -77,12 +77,17 @@ std::string fault_of_ply(std::istream& in) {
 
 std::string fault_of_stl(std::istream& in) {
     constexpr std::size_t kHeader = 84, kFacet = 50;  // bytes of a binary file
-    const std::string bytes(std::istreambuf_iterator<char>(in), {});
+    std::string header(kHeader, '\0');
+    in.read(header.data(), kHeader);
+    if (!header.starts_with("solid")) return "";
     std::uint32_t facets = 0;
-    if (bytes.size() >= kHeader) std::memcpy(&facets, bytes.data() + kHeader - sizeof facets, sizeof facets);
-    const bool is_binary = bytes.size() == kHeader + std::size_t{facets} * kFacet;
-    const bool is_cut = !is_binary && bytes.starts_with("solid") && bytes.find("endsolid") == std::string::npos;
-    return is_cut ? "STL: there is no endsolid; the file may be truncated" : "";
+    std::memcpy(&facets, header.data() + kHeader - sizeof facets, sizeof facets);
+    in.clear();
+    const auto size = static_cast<std::size_t>(in.seekg(0, std::ios::end).tellg());
+    if (size == kHeader + std::size_t{facets} * kFacet) return "";  // a binary file may begin with "solid", too
+    in.seekg(static_cast<std::streamoff>(size - std::min<std::size_t>(size, 1000)));  // the name follows endsolid
+    const std::string tail(std::istreambuf_iterator<char>(in), {});
+    return tail.find("endsolid") == std::string::npos ? "STL: there is no endsolid; the file may be truncated" : "";
 }
 
 std::string fault_of_gltf(std::istream& in, bool is_binary) {

@@ -256,7 +256,8 @@ void put_scene(const aiScene& scene, const Format& format, Records& records) {
         const aiScene* const scene = importer.ReadFile(file, 0);
         if (scene == nullptr) records.end(std::string("assimp: ") + importer.GetErrorString());
         // assimp invents grey materials for STL and PLY. STL's normals are those of the facets, which raya computes.
-        put_scene(*scene, {extension != "stl" && extension != "ply", extension != "stl", extension != "obj"}, records);
+        put_scene(*scene, {extension != "stl" && extension != "ply", extension != "stl", extension.starts_with("gl")},
+                  records);
         records.end();
     } catch (const std::bad_alloc&) {
         records.end("it needs more than half of this computer's memory; the file may be damaged");

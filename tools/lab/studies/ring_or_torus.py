@@ -16,6 +16,7 @@ import raya
 from raya.lab import Page, Plot, Series, Table, series_by, study
 from raya.lab.spa import CLOCK as RING_CLOCK
 from raya.lab.spa import run_on_spa
+from raya.lab.statistics import tail_where
 from raya.lab.voxels import BOUNCES, CLOCK, even_scene, near_cube, run_on_torus
 
 PROCESSORS = (8, 64, 512)
@@ -37,7 +38,7 @@ def row_of(lab, pes, scene, size):
 
 def break_even(rows, column):
     """Returns the least N from which on the ratio is above 1; None if there is none."""
-    above = rows[(rows[column] > 1)[::-1].cummin()[::-1]]["N"]
+    above = tail_where(rows["N"], rows[column] > 1)
     return int(above.iloc[0]) if len(above) else None
 
 

@@ -34,6 +34,7 @@ from raya.lab.families import WIDE_FAMILIES
 from raya.lab.laboratory import MACHINES
 from raya.lab.mappings import squarest_grid
 from raya.lab.spa import CLOCK, FACTOR, FACTORS
+from raya.lab.statistics import tail_where
 from raya.lab.voxels import powers_of_two
 
 NAME, MIN_PES, MAX_PES = "static-vs-dynamic", 128, 16_384
@@ -103,7 +104,8 @@ def makespans(image, overhead):
 
 def first_from(holds):
     """Returns the first P of CLASS_PES from which on `holds`, a boolean for each P, is true; infinity if it is false for the last P."""
-    return (*CLASS_PES, np.inf)[len(CLASS_PES) - int(np.cumprod(holds[::-1]).sum())]
+    tail = tail_where(pd.Series(CLASS_PES), pd.Series(holds))
+    return tail.iloc[0] if len(tail) else np.inf
 
 
 def class_rows(ensemble):
