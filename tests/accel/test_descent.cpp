@@ -120,6 +120,8 @@ TEST_CASE("injected faults are detected: boxes without a margin, a missing edge,
         {"fp32",
          {"bvh/leaves.clh", "edge < edges; edge += RAYA_LANES)\n        crossed",
           "edge + 1 < edges; ++edge)\n        crossed"}},
+        {"spa22", {"geometry/sphere_filter.clh", "1.0f + 0x1p-9f + 64.0f * RAYA_ERROR", "1.0f - 0x1p-9f"}},
+        {"spa22", {"geometry/sphere_filter.clh", "(as_lanes_int(outside) | ~as_lanes_int(b))", "~as_lanes_int(b)"}},
         {"spa22",
          {"geometry/outline_filter.clh", "(fabs(rising - falling) > error)", "(fabs(rising - falling) > 0.0f)"}},
         {"fp32", {"bvh/boxes.clh", "near <= far;", "near < far * (1.0f - 0x1p-12f);"}}};
