@@ -11,18 +11,20 @@ export WORD RUN
 TIMEOUT="timeout 20"
 CHECK="clang -x cl -cl-std=CL1.2 -target spir64 -fsyntax-only -Werror=uninitialized -Werror=sometimes-uninitialized"
 $CHECK "$folder/kernel.cl" 2>/dev/null || CHECK=:
+# Oclgrind 21.10 takes some results of vector operations for unset values. If it does so in the whole kernel, only clang checks.
+UNSET=--uninitialized
+DEVICE=Oclgrind $TIMEOUT oclgrind $UNSET "$folder/repro" "$folder/kernel.cl" 2>&1 | grep -q uninitialized && UNSET=
 cat > "$folder/interesting.sh" <<END
 #!/bin/sh
 $CHECK reduced.cl >/dev/null 2>&1 || exit 1
 $TIMEOUT $RUN "$folder/repro" reduced.cl >/dev/null 2>&1
 [ \$? = 1 ] || exit 1
-DEVICE=Oclgrind $TIMEOUT oclgrind --uninitialized "$folder/repro" reduced.cl >oclgrind.log 2>&1 || exit 1
+DEVICE=Oclgrind $TIMEOUT oclgrind $UNSET "$folder/repro" reduced.cl >oclgrind.log 2>&1 || exit 1
 ! grep -q -i -E 'invalid|uninitialized|race|error' oclgrind.log
 END
 chmod +x "$folder/interesting.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp "$folder/kernel.cl" "$work/reduced.cl"
 grep -v '^#line' "$folder/kernel.cl" > "$work/reduced.cl"
 # Without preprocessor directives the reduction goes further, if the fault is still there.
 if command -v clang >/dev/null && clang -E -P -x cl -cl-std=CL1.2 -target spir64 "$work/reduced.cl" > "$work/expanded.cl" 2>/dev/null; then
