@@ -98,7 +98,8 @@ std::jthread Session::compile_notice() const {
     return announces_compiling_ ? raya::announce_compiling(info_.name) : std::jthread();
 }
 
-cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const {
+cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::size_t element_bytes,
+                             const void* host) const {
     if (count == 0) throw std::invalid_argument(fmt::format("buffer '{}': OpenCL has no empty buffers", name));
     if (count > info_.max_allocation_bytes / element_bytes) {
         throw DeviceError(fmt::format(
@@ -107,8 +108,11 @@ cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::si
             name, count, element_bytes, double(count) * double(element_bytes), info_.name, info_.max_allocation_bytes));
     }
     bytes_taken_ += count * element_bytes;
+    const bool shared = host != nullptr && !pinned_ && count * element_bytes >= kMinSharedBytes;
+    const cl_mem_flags flags = shared ? CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR : CL_MEM_READ_WRITE;
+    void* const memory = shared ? const_cast<void*>(host) : nullptr;
     const cl::Buffer buffer = guarded(fmt::format("allocating buffer '{}' ({} bytes)", name, count * element_bytes),
-                                      [&] { return cl::Buffer(context_, CL_MEM_READ_WRITE, count * element_bytes); });
+                                      [&] { return cl::Buffer(context_, flags, count * element_bytes, memory); });
     if (Capture::active() != nullptr) Capture::active()->add_buffer(*queue_, buffer, name, count * element_bytes);
     return buffer;
 }

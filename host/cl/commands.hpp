@@ -53,7 +53,15 @@ class Session {
     /// device's maximum buffer size, or if the allocation fails.
     template <class T>
     Buffer<T> buffer(const std::string& name, std::size_t count) const {
-        return Buffer<T>(allocate(name, count, sizeof(T)), name, count);
+        return Buffer<T>(allocate(name, count, sizeof(T), nullptr), name, count);
+    }
+
+    /// Allocates a buffer for the elements of `host`, which must outlive the buffer and stay unchanged. The caller must
+    /// still write() them. If they are large and the device uses the host's memory, the buffer is `host` itself, so
+    /// that a large scene is stored only once.
+    template <class T>
+    Buffer<T> buffer_of(const std::string& name, std::span<const T> host) const {
+        return Buffer<T>(allocate(name, host.size(), sizeof(T), host.data()), name, host.size());
     }
 
     /// Builds a program, see Program. All sessions of a device share their programs: each combination of source and
@@ -217,7 +225,8 @@ class Session {
                             std::size_t count);
     static void check_blocks(const std::string& label, const std::string& buffer, std::size_t size, Blocks layout,
                              std::size_t count, std::size_t blocks);
-    cl::Buffer allocate(const std::string& name, std::size_t count, std::size_t element_bytes) const;
+    /// `host`: memory to use on a device that uses the host's memory, or nullptr.
+    cl::Buffer allocate(const std::string& name, std::size_t count, std::size_t element_bytes, const void* host) const;
     std::unique_ptr<HostMemory> host_memory(const std::string& name, std::size_t bytes) const;
     void launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes);
     void write_bytes(const std::string& label, const cl::Buffer& target, const std::string& name, std::size_t offset,
@@ -247,6 +256,9 @@ class Session {
     // If this number of commands is pending, the session waits for the device and reads the commands' times. Events of
     // pending commands occupy memory of the driver.
     static constexpr std::size_t kMaxPendingCommands = 4096;
+    // Minimum size of a buffer that shares the host's memory. Smaller ones are copied, so that a device's transfers are
+    // tested by the scenes of `raya verify`.
+    static constexpr std::size_t kMinSharedBytes = 64u << 20;
 
     cl::Device device_;
     DeviceInfo info_;

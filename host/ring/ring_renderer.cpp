@@ -43,7 +43,7 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
       memory_(plan_pe_memory(settings_.machine, pe_demand(settings_, scene.name, job_.job.words().size()))),
       window_(device_window(memory_, settings_)),
       bus_(session, communication_, settings_.mapping.pes, ranks),
-      broadcast_(session.buffer<std::uint32_t>("broadcast words", job_.job.words().size())),
+      broadcast_(session.buffer_of("broadcast words", std::span(job_.job.words()))),
       pixels_(session.buffer<float>("pixel blocks", 3ull * pes_.count * window_)),
       no_marks_(session.buffer<std::uint8_t>("no marks", 1)) {
     ranks_.one_rank_per_host_first([this] { build(); });

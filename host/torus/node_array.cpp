@@ -57,7 +57,7 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       node_words_(max_node_words(memories)),
       options_(kernels.options()),
       plan_(settings, memories, distribution, buffers, options_, session_.device()),
-      memories_(session_.buffer<std::uint32_t>("node memories", memories.words.size())),
+      memories_(session_.buffer_of("node memories", std::span(memories.words))),
       starts_(session_.buffer<std::uint32_t>("starts of node memories", memories.starts.size())),
       run_(session_.buffer<raya_run>("run", 1)),
       queues_(session_.buffer<raya_packet>("queues", std::size_t{nodes_} * buffers.queue)),

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -146,6 +147,24 @@ TEST_CASE("buffers of no or too many elements are refused", "[cl]") {
     CHECK_THROWS_WITH(session.buffer<float>("huge", count), Contains("'huge'") && Contains(std::to_string(max_bytes)) &&
                                                                 Contains(std::to_string(count * sizeof(float))));
     CHECK_THROWS_AS(session.buffer<double>("endless", kMaxSize), DeviceError);  // its size in bytes overflows
+}
+
+TEST_CASE("a large buffer of host elements is stored once, unless the device has memory of its own", "[cl]") {
+    const std::vector<cl_uint> large = consecutive_numbers((64u << 20) / sizeof(cl_uint), 7);
+    for (const bool separate : {false, true}) {
+        Session session(choose_device(""), Timing::kOn, separate ? Transfers::kStaged : Transfers::kDirect);
+        for (const std::size_t missing : {0u, 1u}) {  // one element less is not large
+            CAPTURE(separate, missing);
+            const std::span<const cl_uint> host = std::span(large).first(large.size() - missing);
+            Buffer<cl_uint> buffer = session.buffer_of("words", host);
+            Buffer<cl_uint> copy = session.buffer<cl_uint>("copy", host.size());
+            session.write("write", buffer, host);
+            session.copy("copy", buffer, 0, copy, 0, host.size());
+            CHECK(std::ranges::equal(contents(session, copy), host));
+            const bool shared = buffer.memory().getInfo<CL_MEM_FLAGS>() & CL_MEM_USE_HOST_PTR;
+            CHECK(shared == (!separate && missing == 0));
+        }
+    }
 }
 
 TEST_CASE("the profile contains every command in order, with increasing times", "[cl]") {
