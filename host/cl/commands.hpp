@@ -58,10 +58,11 @@ class Session {
 
     /// Allocates a buffer for the elements of `host`, which must outlive the buffer and stay unchanged. The caller must
     /// still write() them. If they are large and the device uses the host's memory, the buffer is `host` itself, so
-    /// that a large scene is stored only once.
+    /// that a large scene is stored only once. The last copy of the buffer waits for all commands when it is destroyed.
     template <class T>
     Buffer<T> buffer_of(const std::string& name, std::span<const T> host) const {
-        return Buffer<T>(allocate(name, host.size(), sizeof(T), host.data()), name, host.size());
+        return Buffer<T>(allocate(name, host.size(), sizeof(T), host.data()), name, host.size(),
+                         std::shared_ptr<void>(nullptr, [queue = *queue_](void*) { clFinish(queue()); }));
     }
 
     /// Builds a program, see Program. All sessions of a device share their programs: each combination of source and

@@ -19,8 +19,9 @@ class Buffer {
     static_assert(std::is_trivially_copyable_v<T>, "buffers are copied byte by byte");
 
   public:
-    Buffer(cl::Buffer memory, std::string name, std::size_t size)
-        : memory_(std::move(memory)), name_(std::move(name)), size_(size) {}
+    /// `owner`: released with the last copy, before the memory; may be null.
+    Buffer(cl::Buffer memory, std::string name, std::size_t size, std::shared_ptr<const void> owner = {})
+        : memory_(std::move(memory)), name_(std::move(name)), size_(size), owner_(std::move(owner)) {}
 
     const cl::Buffer& memory() const { return memory_; }
     const std::string& name() const { return name_; }
@@ -31,6 +32,7 @@ class Buffer {
     cl::Buffer memory_;
     std::string name_;
     std::size_t size_;
+    std::shared_ptr<const void> owner_;
 };
 
 /// A kernel argument `__local T*`: `count` elements in local memory for each work-group.
