@@ -1,6 +1,8 @@
 #include "host/accel/bvh_split.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -10,11 +12,13 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kBins = 32;  // number of bins along each axis
+constexpr int kBins = 32;  // number of bins along each axis
 // From this depth on, parts are split into equal halves, which bounds the depth of the tree.
 constexpr std::uint32_t kMedianDepth = 24;
 // Parts with fewer items are split on one thread, because starting threads would take longer than they save.
 constexpr std::size_t kMinItemsOfThreads = 1 << 15;
+
+using Int4 = std::int32_t __attribute__((vector_size(16)));
 
 Float4 smaller(const Float4& a, const Float4& b) { return b < a ? b : a; }
 Float4 larger(const Float4& a, const Float4& b) { return a < b ? b : a; }
@@ -24,14 +28,29 @@ void extend(Box4& box, const Box4& added) {
     box.high = larger(box.high, added.high);
 }
 
-Box4 box_of(const BvhItem& item) {
-    static_assert(sizeof(Bounds) == 6 * sizeof(float));
-    Box4 box;
-    const float* const low = item.box.low.data();
-    std::memcpy(&box.low, low, sizeof(Float4));       // low x, y, z, high x
-    std::memcpy(&box.high, low + 2, sizeof(Float4));  // low z, high x, y, z
-    box.high = __builtin_shufflevector(box.high, box.high, 1, 2, 3, 0);
-    return box;
+// An item as it is in memory: low x, y, z, high x; high y, z, number, kind.
+struct Item4 {
+    Float4 first, second;
+
+    explicit Item4(const BvhItem& item) {
+        static_assert(sizeof(BvhItem) == sizeof(Item4) && offsetof(BvhItem, box) == 0);
+        std::memcpy(&first, item.box.low.data(), sizeof(Float4));
+        std::memcpy(&second, item.box.high.data() + 1, sizeof(Float4));
+    }
+    void store(BvhItem& item) const {
+        std::memcpy(item.box.low.data(), &first, sizeof(Float4));
+        std::memcpy(item.box.high.data() + 1, &second, sizeof(Float4));
+    }
+    // The unused elements are high x.
+    Box4 box() const { return {first, __builtin_shufflevector(first, second, 3, 4, 5, 3)}; }
+};
+
+Box4 box_of(const BvhItem& item) { return Item4(item).box(); }
+
+// Returns half the surface area of a box that is not empty.
+float half_area(const Box4& box) {
+    const Float4 size = box.high - box.low;
+    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
 }
 
 // Returns the number of leaves that `items` items need. The surface area heuristic multiplies the area of the items'
@@ -44,7 +63,7 @@ bool fit_one_leaf(std::span<const BvhItem> items) {
 }
 
 Part make_part(std::span<BvhItem> items, const Box4& box, const Box4& centres) {
-    return {items, box, centres, half_area(bounds_of(box)), fit_one_leaf(items)};
+    return {items, box, centres, half_area(box), fit_one_leaf(items)};
 }
 
 // The chunks of the items on which threads work.
@@ -81,71 +100,71 @@ struct Bin {
 
 using Bins = std::array<Bin, kBins>;  // all bins along one axis
 
-// The division of the range of the items' doubled centres along an axis into kBins equal bins.
+// The division of the range of the items' doubled centres along each axis into kBins equal bins.
 struct Binning {
-    float low, bins_per_unit;
+    Float4 low, bins_per_unit{};
 
-    Binning(float lowest, float highest) : low(lowest) {
-        const float range = highest - lowest, quotient = static_cast<float>(kBins) / range;
-        bins_per_unit = range > 0 && quotient < kInfinity ? quotient : 0;
+    explicit Binning(const Box4& centres) : low(centres.low) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const float range = centres.high[axis] - low[axis], quotient = static_cast<float>(kBins) / range;
+            if (range > 0 && quotient < kInfinity) bins_per_unit[axis] = quotient;
+        }
     }
-    std::size_t bin(float doubled_centre) const {
-        const auto bin = static_cast<int>((doubled_centre - low) * bins_per_unit);
-        return std::min(kBins - 1, static_cast<std::size_t>(bin));
+    // Returns the bin along each axis; the fourth element is unused.
+    Int4 bins(const Float4& doubled_centre) const {
+        constexpr float kLast = kBins - 1;
+        const Float4 bin = (doubled_centre - low) * bins_per_unit;
+        return __builtin_convertvector(smaller(Float4{kLast, kLast, kLast, 0}, bin), Int4);
     }
 };
 
-std::array<Binning, 3> binnings_of(const Box4& centres) {
-    return {Binning(centres.low[0], centres.high[0]), Binning(centres.low[1], centres.high[1]),
-            Binning(centres.low[2], centres.high[2])};
-}
-
-std::array<Bins, 3> filled_bins(std::span<const BvhItem> items, const std::array<Binning, 3>& binnings) {
-    std::array<Bins, 3> bins;
+std::array<Bins, 3> filled_bins(std::span<const BvhItem> items, const Binning& binning) {
+    std::array<Bins, 3> axes;
     for (const BvhItem& item : items) {
         const Box4 box = box_of(item);
-        const Float4 centre = box.low + box.high;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            Bin& bin = bins[axis][binnings[axis].bin(centre[axis])];
+        const Int4 bins = binning.bins(box.low + box.high);
+        for (int axis = 0; axis < 3; ++axis) {
+            Bin& bin = axes[static_cast<std::size_t>(axis)][static_cast<std::size_t>(bins[axis])];
             extend(bin.box, box);
             ++bin.items;
         }
     }
-    return bins;
+    return axes;
 }
 
-std::array<Bins, 3> filled_bins(const Chunks& chunks, const std::array<Binning, 3>& binnings) {
-    if (chunks.count == 1) return filled_bins(chunks.items, binnings);
+std::array<Bins, 3> filled_bins(const Chunks& chunks, const Binning& binning) {
+    if (chunks.count == 1) return filled_bins(chunks.items, binning);
     std::vector<std::array<Bins, 3>> of_chunks(chunks.count);
-    chunks.for_each([&](std::size_t chunk) { of_chunks[chunk] = filled_bins(chunks.of(chunk), binnings); });
+    chunks.for_each([&](std::size_t chunk) { of_chunks[chunk] = filled_bins(chunks.of(chunk), binning); });
     for (std::size_t chunk = 1; chunk < chunks.count; ++chunk)
         for (std::size_t axis = 0; axis < 3; ++axis)
             for (std::size_t b = 0; b < kBins; ++b) of_chunks[0][axis][b].add(of_chunks[chunk][axis][b]);
     return of_chunks[0];
 }
 
-// A split plane perpendicular to `axis`, between the bins `last_bin` and `last_bin` + 1.
+// A split plane perpendicular to `axis`, below the bin `first_above`.
 struct Split {
     float cost = kInfinity;
-    std::size_t axis = 0, last_bin = 0;
+    std::size_t axis = 0;
+    int first_above = 0;
 };
 
 // Replaces `best` by the cheapest split along `axis` if that split is cheaper than `best`.
 void improve_split(Split& best, std::size_t axis, const Bins& bins) {
-    const auto cost_of = [](const Bin& sum) { return half_area(bounds_of(sum.box)) * leaf_count(sum.items); };
-    std::array<float, kBins> cost_above{};  // cost_above[b]: cost of all bins above bin b
+    const auto cost_of = [](const Bin& sum) { return half_area(sum.box) * leaf_count(sum.items); };
+    std::array<float, kBins> cost_from;  // cost_from[b]: cost of bin b and all bins above it
     Bin sum;
-    for (std::size_t b = kBins - 1; b > 0; --b) {
+    for (std::size_t b = kBins; b-- > 0;) {
+        if (bins[b].items == 0) continue;
         sum.add(bins[b]);
-        cost_above[b - 1] = bins[b].items > 0 ? cost_of(sum) : cost_above[b];
+        cost_from[b] = cost_of(sum);
     }
-    const std::size_t total_items = sum.items + bins[0].items;
     sum = {};
-    for (std::size_t b = 0; b + 1 < kBins; ++b) {
-        if (bins[b].items == 0) continue;  // the split below this bin costs the same
+    for (std::size_t b = 0; b < kBins; ++b) {
+        if (bins[b].items == 0) continue;
+        const float cost = sum.items > 0 ? cost_of(sum) + cost_from[b] : kInfinity;
+        if (cost < best.cost) best = {cost, axis, static_cast<int>(b)};
         sum.add(bins[b]);
-        const float cost = cost_of(sum) + cost_above[b];
-        if (sum.items < total_items && cost < best.cost) best = {cost, axis, b};
     }
 }
 
@@ -182,12 +201,14 @@ struct Sides {
 Sides partition_at(std::span<BvhItem> items, const Split& plane, const Binning& binning) {
     Sides sides;
     for (BvhItem& slot : items) {
-        const Box4 box = box_of(slot);
+        const Item4 item(slot);
+        const Box4 box = item.box();
         const Float4 centre = box.low + box.high;
-        const bool above = binning.bin(slot.box.low[plane.axis] + slot.box.high[plane.axis]) > plane.last_bin;
+        const bool above = binning.bins(centre)[plane.axis] >= plane.first_above;
         // Without a branch, which the processor would often mispredict.
         BvhItem& first_above = items[sides.below];
-        std::swap(slot, first_above);
+        Item4(first_above).store(slot);
+        item.store(first_above);
         sides.below += !above;
         extend(sides.centres[above], {centre, centre});
     }
@@ -221,13 +242,13 @@ void join_chunks(const Chunks& chunks, const std::vector<Sides>& sides, std::siz
     exchange(std::move(above_first), std::move(below_last));
 }
 
-// Splits the items into those in the bins up to Split::last_bin and the others. The boxes of the parts are the unions
-// of the bins' boxes.
+// Splits the items into those in the bins below Split::first_above and the others. The boxes of the parts are the
+// unions of the bins' boxes.
 Parts split_at(const Part& part, const Split& plane, const Bins& bins, const Binning& binning, const Chunks& chunks) {
     std::vector<Sides> sides(chunks.count);
     chunks.for_each([&](std::size_t chunk) { sides[chunk] = partition_at(chunks.of(chunk), plane, binning); });
     std::array<Bin, 2> sums;
-    for (std::size_t b = 0; b < kBins; ++b) sums[b <= plane.last_bin ? 0 : 1].add(bins[b]);
+    for (int b = 0; b < kBins; ++b) sums[b >= plane.first_above].add(bins[static_cast<std::size_t>(b)]);
     if (chunks.count > 1) join_chunks(chunks, sides, sums[0].items);
     std::array<Box4, 2> centres = {kEmptyBox4, kEmptyBox4};
     for (const Sides& of_chunk : sides)
@@ -265,12 +286,12 @@ std::array<Part, 2> split(const Part& part, std::uint32_t depth, unsigned thread
         return split_by_kind(part);
     if (depth >= kMedianDepth) return split_by_number(part, threads);
     const Chunks chunks(part.items, threads);
-    const std::array<Binning, 3> binnings = binnings_of(part.centres);
-    const std::array<Bins, 3> bins = filled_bins(chunks, binnings);
+    const Binning binning(part.centres);
+    const std::array<Bins, 3> bins = filled_bins(chunks, binning);
     Split best;
     for (std::size_t axis = 0; axis < 3; ++axis) improve_split(best, axis, bins[axis]);
     if (best.cost == kInfinity) return split_by_number(part, threads);
-    return split_at(part, best, bins[best.axis], binnings[best.axis], chunks);
+    return split_at(part, best, bins[best.axis], binning, chunks);
 }
 
 }  // namespace raya

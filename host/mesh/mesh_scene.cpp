@@ -37,6 +37,30 @@ bool all_equal(const std::vector<Vec3>& vectors) {
     return std::ranges::all_of(vectors, [&](const Vec3& v) { return v == vectors.front(); });
 }
 
+// Sets camera and lights. The eye sees `box`, that of all objects, from a three-quarter view, at the smallest distance
+// at which the whole box is in a square image, and 5 % more. Two white lights are near the eye.
+void set_default_view(Scene& scene, const Imath::Box3d& box, UpAxis up_axis) {
+    constexpr double kMargin = 1.05;
+    const Vec3 up = up_axis == UpAxis::kY ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+    const Vec3 front = up_axis == UpAxis::kY ? Vec3(0, 0, 1) : Vec3(0, -1, 0), side(1, 0, 0);
+    const Vec3 back = (2.0 * side + 2.0 * up + 3.0 * front).normalized();  // from the centre to the eye
+    const Vec3 right = up.cross(back).normalized(), top = back.cross(right);
+    const double half_image = std::tan(scene.view.angle_degrees * std::numbers::pi / 360);  // at distance 1
+    double distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 at(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                      corner & 4 ? box.max.z : box.min.z);
+        const Vec3 arm = at - box.center();
+        distance =
+            std::max(distance, arm.dot(back) + std::max(std::abs(arm.dot(right)), std::abs(arm.dot(top))) / half_image);
+    }
+    distance *= kMargin;
+    scene.view.at = box.center();
+    scene.view.from = box.center() + distance * back;
+    scene.view.up = up;
+    scene.lights = {{scene.view.from + distance / 2 * (top - right), {}}, {scene.view.from + distance / 2 * right, {}}};
+}
+
 }  // namespace
 
 MeshScene::MeshScene(const std::string& file, std::vector<SceneRemark>* remarks) : file_(file), remarks_(remarks) {
@@ -138,31 +162,8 @@ Scene MeshScene::finish(UpAxis up) {
                                      "deform it: move it to the origin",
                                      distance / size));
     merge_equal_surfaces(scene_);
-    set_default_view(scene_, up);
+    set_default_view(scene_, box, up);
     return std::move(scene_);
-}
-
-void set_default_view(Scene& scene, UpAxis up_axis) {
-    constexpr double kMargin = 1.05;
-    const Vec3 up = up_axis == UpAxis::kY ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
-    const Vec3 front = up_axis == UpAxis::kY ? Vec3(0, 0, 1) : Vec3(0, -1, 0), side(1, 0, 0);
-    const Vec3 back = (2.0 * side + 2.0 * up + 3.0 * front).normalized();  // from the centre to the eye
-    const Vec3 right = up.cross(back).normalized(), top = back.cross(right);
-    const Imath::Box3d box = scene_box(scene);
-    const double half_image = std::tan(scene.view.angle_degrees * std::numbers::pi / 360);  // at distance 1
-    double distance = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 at(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                      corner & 4 ? box.max.z : box.min.z);
-        const Vec3 arm = at - box.center();
-        distance =
-            std::max(distance, arm.dot(back) + std::max(std::abs(arm.dot(right)), std::abs(arm.dot(top))) / half_image);
-    }
-    distance *= kMargin;
-    scene.view.at = box.center();
-    scene.view.from = box.center() + distance * back;
-    scene.view.up = up;
-    scene.lights = {{scene.view.from + distance / 2 * (top - right), {}}, {scene.view.from + distance / 2 * right, {}}};
 }
 
 }  // namespace raya

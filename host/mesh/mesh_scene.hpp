@@ -60,8 +60,4 @@ class MeshScene {
     std::uint64_t faces_ = 0;
 };
 
-/// Sets camera and lights. The eye sees the box of all objects from a three-quarter view, at the smallest distance at
-/// which the whole box is in a square image, and 5 % more. Two white lights are near the eye.
-void set_default_view(Scene& scene, UpAxis up);
-
 }  // namespace raya

@@ -59,14 +59,15 @@ OutlineCheck clean_outline(Polygon& polygon) {
     // Upper bound of the doubled area that collinear vertices can have because of rounding errors.
     const double max_error = 1e-12 * size * size + 8 * kEpsilon * largest_coordinate * size;
     const Vec3 normal = newell_normal(vertices);
-    for (std::size_t i = 2; normal.length() <= max_error && i < vertices.size(); ++i)
+    const double doubled_area = normal.length();
+    for (std::size_t i = 2; doubled_area <= max_error && i < vertices.size(); ++i)
         if ((vertices[i - 1] - vertices[0]).cross(vertices[i] - vertices[0]).length() > max_error)
             return {OutlineFault::kCrosses, "crosses or retraces itself, so that its signed area is 0"};
-    if (normal.length() <= max_error) return {OutlineFault::kNoArea, "has no area"};
+    if (doubled_area <= max_error) return {OutlineFault::kNoArea, "has no area"};
 
     double off_plane = 0;  // maximum distance of a vertex from the plane
     for (const Vec3& v : vertices)
-        off_plane = std::max(off_plane, std::abs((v - vertices[0] - mean).dot(normal) / normal.length()));
+        off_plane = std::max(off_plane, std::abs((v - vertices[0] - mean).dot(normal) / doubled_area));
     if (off_plane > kFlatness * size)
         return {OutlineFault::kNotFlat,
                 fmt::format("is not flat: a vertex lies {:.3g} off its plane, more than {:.3g} ({} of its size); cut "

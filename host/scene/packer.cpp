@@ -155,8 +155,10 @@ void pack_face(JobWords& records, JobWords& details, std::size_t details_at, con
     if (!polygon.normals.empty()) pack_patch(details, face, axis);
 }
 
-// Appends all polygons, on several threads. Each thread packs a part of the polygons and copies their words into place.
-void pack_polygons(JobWords& words, std::span<const Polygon> polygons, const std::vector<std::uint32_t>& surface_at) {
+// Appends all polygons, on several threads, and returns the number of their faces. Each thread packs a part of the
+// polygons and copies their words into place.
+std::size_t pack_polygons(JobWords& words, std::span<const Polygon> polygons,
+                          const std::vector<std::uint32_t>& surface_at) {
     constexpr std::size_t kPolygons = 1 << 14;  // of a part
     const std::size_t parts = (polygons.size() + kPolygons - 1) / kPolygons;
     const auto polygons_of = [&](std::size_t part) {
@@ -181,6 +183,7 @@ void pack_polygons(JobWords& words, std::span<const Polygon> polygons, const std
         std::copy(records.begin(), records.end(), words.begin() + static_cast<std::ptrdiff_t>(own_records_at));
         std::copy(details.begin(), details.end(), words.begin() + static_cast<std::ptrdiff_t>(own_details_at));
     });
+    return starts[parts].records / RAYA_POLYGON_WORDS;
 }
 
 void pack_cone(JobWords& words, const Cone& c, const std::vector<std::uint32_t>& surface_at) {
@@ -242,9 +245,7 @@ void pack_objects(JobWords& words, raya_job& job, const Scene& scene, const std:
     start_list(scene.cones, job.objects.cones, job.objects.cones_at);
     for (const Cone& c : scene.cones) pack_cone(words, c, surface_at);
     job.objects.polygons_at = static_cast<std::uint32_t>(words.size());
-    job.objects.polygons =
-        static_cast<std::uint32_t>(face_words(scene.polygons).records / std::size_t{RAYA_POLYGON_WORDS});
-    pack_polygons(words, scene.polygons, surface_at);
+    job.objects.polygons = static_cast<std::uint32_t>(pack_polygons(words, scene.polygons, surface_at));
 }
 
 }  // namespace
