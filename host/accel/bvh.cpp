@@ -109,12 +109,6 @@ void extend(Bounds& box, const Bounds& added) {
     }
 }
 
-float half_area(const Bounds& box) {
-    if (box.low[0] > box.high[0]) return 0;
-    const float x = box.high[0] - box.low[0], y = box.high[1] - box.low[1], z = box.high[2] - box.low[2];
-    return x * y + y * z + z * x;
-}
-
 std::uint32_t max_leaf_items(std::uint32_t kind) {
     return kind == RAYA_LINK_POLYGON || kind == RAYA_LINK_OBJECT ? 1 : RAYA_BVH_WIDTH;
 }

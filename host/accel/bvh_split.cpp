@@ -12,7 +12,7 @@
 namespace raya {
 namespace {
 
-constexpr int kBins = 32;  // number of bins along each axis
+constexpr std::size_t kBins = 32;  // number of bins along each axis
 // From this depth on, parts are split into equal halves, which bounds the depth of the tree.
 constexpr std::uint32_t kMedianDepth = 24;
 // Parts with fewer items are split on one thread, because starting threads would take longer than they save.
@@ -46,12 +46,6 @@ struct Item4 {
 };
 
 Box4 box_of(const BvhItem& item) { return Item4(item).box(); }
-
-// Returns half the surface area of a box that is not empty.
-float half_area(const Box4& box) {
-    const Float4 size = box.high - box.low;
-    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
-}
 
 // Returns the number of leaves that `items` items need. The surface area heuristic multiplies the area of the items'
 // box by this number.
@@ -145,8 +139,7 @@ std::array<Bins, 3> filled_bins(const Chunks& chunks, const Binning& binning) {
 // A split plane perpendicular to `axis`, below the bin `first_above`.
 struct Split {
     float cost = kInfinity;
-    std::size_t axis = 0;
-    int first_above = 0;
+    std::size_t axis = 0, first_above = 0;
 };
 
 // Replaces `best` by the cheapest split along `axis` if that split is cheaper than `best`.
@@ -163,7 +156,7 @@ void improve_split(Split& best, std::size_t axis, const Bins& bins) {
     for (std::size_t b = 0; b < kBins; ++b) {
         if (bins[b].items == 0) continue;
         const float cost = sum.items > 0 ? cost_of(sum) + cost_from[b] : kInfinity;
-        if (cost < best.cost) best = {cost, axis, static_cast<int>(b)};
+        if (cost < best.cost) best = {cost, axis, b};
         sum.add(bins[b]);
     }
 }
@@ -204,7 +197,7 @@ Sides partition_at(std::span<BvhItem> items, const Split& plane, const Binning& 
         const Item4 item(slot);
         const Box4 box = item.box();
         const Float4 centre = box.low + box.high;
-        const bool above = binning.bins(centre)[plane.axis] >= plane.first_above;
+        const bool above = static_cast<std::size_t>(binning.bins(centre)[plane.axis]) >= plane.first_above;
         // Without a branch, which the processor would often mispredict.
         BvhItem& first_above = items[sides.below];
         Item4(first_above).store(slot);
@@ -248,7 +241,7 @@ Parts split_at(const Part& part, const Split& plane, const Bins& bins, const Bin
     std::vector<Sides> sides(chunks.count);
     chunks.for_each([&](std::size_t chunk) { sides[chunk] = partition_at(chunks.of(chunk), plane, binning); });
     std::array<Bin, 2> sums;
-    for (int b = 0; b < kBins; ++b) sums[b >= plane.first_above].add(bins[static_cast<std::size_t>(b)]);
+    for (std::size_t b = 0; b < kBins; ++b) sums[b >= plane.first_above].add(bins[b]);
     if (chunks.count > 1) join_chunks(chunks, sides, sums[0].items);
     std::array<Box4, 2> centres = {kEmptyBox4, kEmptyBox4};
     for (const Sides& of_chunk : sides)
