@@ -2,16 +2,26 @@
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <utility>
 
 #include "host/base/module.hpp"
 #include "tests/kernel_cache.hpp"
 #include "tests/paths.h"
+
+// Open MPI starts as root, and more ranks than there are cores: version 4, 5 and 6. As in tests/tools/own_cache.sh.
+constexpr std::pair<const char*, const char*> kMpiSettings[] = {
+    {"OMPI_ALLOW_RUN_AS_ROOT", "1"},
+    {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
+    {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
+    {"PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"},
+    {"PRTE_MCA_mapby", ":oversubscribe"}};
 
 // Unless RAYA_TUNED or RAYA_BINARIES is set, tests ignore tuning results (raya tune) and the kernel binaries in the
 // program's folder.
 int main(int argc, char** argv) {
     setenv("RAYA_TUNED", "off", 0);
     setenv("RAYA_BINARIES", "off", 0);
+    for (const auto& [name, value] : kMpiSettings) setenv(name, value, 1);
     raya::set_program_file(RAYA_PROGRAM);
     const raya::KernelCache cache;
     return Catch::Session().run(argc, argv);

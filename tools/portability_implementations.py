@@ -1,6 +1,8 @@
 """The OpenCL implementations of tools/portability: starts programs on an implementation, and explains why an implementation cannot run."""
-import copy, os, resource, shutil, subprocess, tempfile
+import copy, os, re, resource, shutil, subprocess, tempfile
 from pathlib import Path
+
+from gpu.clang import LLVM
 
 VENDORS = Path("/etc/OpenCL/vendors")
 FETCHED = "implementations"  # folder in the build folder to which tools/portability --setup fetches (tools/portability_setup.py)
@@ -23,8 +25,8 @@ class Implementation:
         """Returns the same implementation with kernels as SPIR-V."""
         other = copy.copy(self)
         other.name, other.variables, other.from_spirv = f"{self.name}, SPIR-V", {**self.variables, "RAYA_BUILD_OPTIONS": "--il"}, True
-        if not shutil.which("clang-15") or not shutil.which("llvm-spirv-15"):
-            other.unavailable = other.unavailable or "no clang-15 or no llvm-spirv-15 (tools/setup --gpu)"
+        if not shutil.which(f"clang-{LLVM}") or not shutil.which(f"llvm-spirv-{LLVM}"):
+            other.unavailable = other.unavailable or f"no clang-{LLVM} or no llvm-spirv-{LLVM} (tools/setup --gpu)"
         return other
 
     def run(self, command, scratch, limit, variables=None):
@@ -63,16 +65,26 @@ def variants_of(name, driver, unavailable, variants):
     return [Implementation(name + suffix, {"OCL_ICD_VENDORS": str(driver), **variables}, unavailable=unavailable) for suffix, variables in variants]
 
 
+def llvm_14_knows(cpuinfo):
+    """Returns false for CPUs with which LLVM 14, in PoCL 3.0, fails. It calls AMD CPUs after family 25 "generic", a name that its own compiler rejects. It
+    takes Zen 4 for Zen 3, which has no AVX-512, and aborts on vectors of 16 floats ("Cannot emit physreg copy instruction")."""
+    family = int((re.search(r"^cpu family\s*: (\d+)$", cpuinfo, re.MULTILINE) or ["", "0"])[1])
+    return "AuthenticAMD" not in cpuinfo or family < 25 or (family == 25 and "avx512vl" not in cpuinfo.split())
+
+
 def known_implementations(build):
     """Returns all known implementations, the fast ones first; `build`: the build folder."""
     unoptimised = (" -cl-opt-disable", {"RAYA_BUILD_OPTIONS": "-cl-opt-disable"})
     no_pocl = None if icd("pocl").exists() else "not installed (Debian: pocl-opencl-icd)"
     found = variants_of("PoCL", icd("pocl"), no_pocl, [
-        ("", {}), (" loopvec", {"POCL_WORK_GROUP_METHOD": "loopvec"}), (" loops", {"POCL_WORK_GROUP_METHOD": "loops"}), unoptimised,
+        ("", {}), (" loopvec", {"POCL_WORK_GROUP_METHOD": "loopvec"}), (" loops", {"POCL_WORK_GROUP_METHOD": "loops"}), (" cbs", {"POCL_WORK_GROUP_METHOD": "cbs"}), unoptimised,
         (" basic", {"POCL_DEVICES": "basic"})])
     for name, file, variants in [("PoCL 3.0 (PyPI)", "pocl-3.0", [("", {})]), ("Intel CPU", "intel-cpu", [("", {}), unoptimised])]:
         driver = (build / FETCHED / f"{file}.icd").absolute()
-        found += variants_of(name, driver, None if driver.exists() else "not set up (tools/portability --setup fetches it)", variants)
+        unavailable = None if driver.exists() else "not set up (tools/portability --setup fetches it)"
+        if file == "pocl-3.0" and not llvm_14_knows(Path("/proc/cpuinfo").read_text()):
+            unavailable = "its LLVM 14 does not know this CPU"
+        found += variants_of(name, driver, unavailable, variants)
     # Kernels are compiled unoptimised, because Oclgrind 21.10 does not support all optimised code. Oclgrind takes build options as an argument.
     found.append(Implementation("Oclgrind", prefix=["oclgrind", "--build-options", "-cl-opt-disable"], slow=True, reports_faults=True,
                                 unavailable=None if shutil.which("oclgrind") else "not installed (Debian: oclgrind)"))
@@ -90,8 +102,10 @@ def known_implementations(build):
 
 
 def mark_missing_devices(implementations, raya):
-    """Marks implementations as unable to run whose driver has no device here, such as a GPU's, or does not accept SPIR-V."""
+    """Marks implementations as unable to run whose driver has no device here, such as a GPU's, does not accept SPIR-V, or does not know a setting."""
     for implementation in implementations:
+        if implementation.name == "PoCL cbs" and "driver 3.1" in implementation.run([raya, "devices"], tempfile.gettempdir(), 120)[1]:
+            implementation.unavailable = "PoCL 3.1 does not know this method"
         if implementation.unavailable or not (implementation.needs_device or implementation.from_spirv):
             continue
         if implementation.run([raya, "verify", "--list"], tempfile.gettempdir(), 120)[0] == 3:  # exit code 3: no usable device

@@ -49,39 +49,12 @@ def unpack(wheel, folder):
                 path.chmod(0o755 if ".so" in path.name else 0o644)
 
 
-def llvm_14_substitute(cpuinfo):
-    """Returns LLVM 14's name of a CPU with the same features, if LLVM 14 does not know this CPU; otherwise None.
-
-    LLVM 14 calls AMD CPUs after family 25 "generic", a name that its own compiler rejects. It takes Zen 4 for Zen 3, which is family 25 too
-    but has no AVX-512, and aborts on vectors of 16 floats ("Cannot emit physreg copy instruction")."""
-    def value(key):
-        return (re.search(rf"^{key}\s*: (.*)$", cpuinfo, re.MULTILINE) or ["", ""])[1]
-    family, has_avx512 = int(value("cpu family") or 0), "avx512vl" in value("flags").split()
-    if value("vendor_id") != "AuthenticAMD" or family < 25 or (family == 25 and not has_avx512):
-        return None
-    return "skylake-avx512" if has_avx512 else "haswell"
-
-
-def patch_cpu_name(library, cpu):
-    """Patches the fetched copy of PoCL 3.0 to use this CPU name, because PoCL 3.0 has no setting for it: replaces the call of LLVM in
-    pocl_get_llvm_cpu_name(), and the check of its result, by a constant. The library's addresses of code and constants equal their file offsets."""
-    content = bytearray(library.read_bytes())
-    calls = [match.start(1) for match in re.finditer(rb"\x55\x53\x48\x83\xec\x08(\xe8....\x48\x85\xd2\x74\x30)\x48\x89\xc5", content, re.DOTALL)]
-    name_position = content.find(b"\0" + cpu.encode() + b"\0") + 1
-    if len(calls) != 1 or name_position == 0:
-        raise SetupError(f"{library.name}: cannot patch the name of this CPU, which its LLVM does not know: the library differs from PyPI's PoCL 3.0")
-    lea, lea_end = calls[0], calls[0] + 7
-    distance = (name_position - lea_end).to_bytes(4, "little", signed=True)
-    content[lea:lea + 10] = b"\x48\x8d\x05" + distance + bytes([0x6a, len(cpu), 0x5a])  # lea rax; push, pop rdx
-    library.write_bytes(content)
-
-
 def size_text(folder):
     files = {(s.st_ino, s.st_size) for s in (p.stat() for p in folder.rglob("*") if p.is_file())}
     return f"{sum(size for _, size in files) / 1e6:.0f} MB"
 
 
-def set_up_implementation(packages, target, cpuinfo):
+def set_up_implementation(packages, target):
     """Sets up one implementation in the folder `target`. The .icd file is written last, so that an interrupted setup is not used."""
     name, driver_file = packages.stem, target.with_name(packages.stem + ".icd")
     requested = packages.read_text()
@@ -99,9 +72,6 @@ def set_up_implementation(packages, target, cpuinfo):
         drivers = sorted(unpacked.glob(DRIVERS[name]))
         if len(drivers) != 1:
             raise SetupError(f"{name}: no driver {DRIVERS[name]} in {', '.join(w.name for w in wheels)}")
-        cpu = llvm_14_substitute(cpuinfo) if name == "pocl-3.0" else None
-        if cpu:
-            patch_cpu_name(drivers[0], cpu)
         (unpacked / "packages.txt").write_text(requested)
         driver_file.unlink(missing_ok=True)
         shutil.rmtree(target, ignore_errors=True)
@@ -110,19 +80,17 @@ def set_up_implementation(packages, target, cpuinfo):
         unpacked.rename(target)
         target.chmod(0o755)
     driver_file.write_text(f"{driver}\n")
-    cpu_note = f"; its LLVM 14 does not know this CPU and uses the settings of {cpu}" if cpu else ""
-    print(f"{name}: {fetched:.0f} MB fetched, {size_text(target)} in {target}{cpu_note}")
+    print(f"{name}: {fetched:.0f} MB fetched, {size_text(target)} in {target}")
 
 
 def set_up(build, folder):
     """Sets up the implementation of each file in `folder`. Returns the exit code: 0, or 3 if a setup failed."""
     target = (build / FETCHED).absolute()
     target.mkdir(parents=True, exist_ok=True)
-    cpuinfo = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else ""
     code = 0
     for packages in sorted(folder.glob("*.txt")):
         try:
-            set_up_implementation(packages, target / packages.stem, cpuinfo)
+            set_up_implementation(packages, target / packages.stem)
         except SetupError as error:
             print(f"tools/portability --setup: {error}", file=sys.stderr)
             code = 3

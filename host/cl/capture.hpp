@@ -18,12 +18,12 @@ namespace raya {
 /// Correct words of a buffer, as far as they are known.
 struct KnownWords {
     std::vector<std::uint32_t> words;
-    std::vector<std::uint32_t> mask;  // 0 for each word that is not known, else 1
+    std::vector<std::uint32_t> mask;  // 0: the word is not known; 1: known; 2: a NaN, of any sign and payload
 
     /// Marks all words of a buffer of `size` words as unknown.
     explicit KnownWords(std::size_t size) : words(size), mask(size) {}
     explicit KnownWords(std::vector<std::uint32_t> all) : words(std::move(all)), mask(words.size(), 1) {}
-    void set(std::size_t at, std::uint32_t word) { words[at] = word, mask[at] = 1; }
+    void set(std::size_t at, std::uint32_t word, bool any_nan = false) { words[at] = word, mask[at] = any_nan ? 2 : 1; }
 };
 
 /// Observes all builds and launches ("steps", numbered from 1) of this process while the object exists. Each step

@@ -1,6 +1,7 @@
 #include "host/cl/commands.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <exception>
 #include <map>

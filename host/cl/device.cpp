@@ -31,6 +31,7 @@ std::string lower_case(std::string text) {
 std::string pci_address_of(const cl::Device& device) {
     cl_device_pci_bus_info_khr pci{};
     if (::clGetDeviceInfo(device(), CL_DEVICE_PCI_BUS_INFO_KHR, sizeof pci, &pci, nullptr) != CL_SUCCESS) return {};
+    if (pci.pci_domain + pci.pci_bus + pci.pci_device + pci.pci_function == 0) return {};  // PoCL 7 for CPUs
     return fmt::format("{:04x}:{:02x}:{:02x}.{:x}", pci.pci_domain, pci.pci_bus, pci.pci_device, pci.pci_function);
 }
 

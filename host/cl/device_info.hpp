@@ -10,7 +10,7 @@ namespace raya {
 struct DeviceInfo {
     std::string name, platform, version, driver;
     std::string type;           // "cpu", "gpu" or "other"
-    std::string pci_address{};  // "0000:3b:00.0"; empty unless the driver has the extension cl_khr_pci_bus_info
+    std::string pci_address{};  // "0000:3b:00.0"; empty without the extension cl_khr_pci_bus_info
     std::uint32_t compute_units = 0;
     std::uint64_t local_memory_bytes = 0;    // available to one work-group
     bool local_memory_is_dedicated = false;  // false: part of global memory, as on CPUs

@@ -1,6 +1,7 @@
 #include "host/cl/program.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -64,14 +65,6 @@ void log_kernel_build(const char* step, const std::string& name, const std::stri
     const double seconds = seconds_since(start);
     std::ofstream(std::getenv("RAYA_KERNEL_LOG"), std::ios::app)
         << fmt::format("{:.4f}\t{}\t{}\t{}\n", seconds, step, name, options) << std::flush;
-}
-
-std::size_t KernelBuild::binary_bytes() const {
-    return guarded(fmt::format("querying the size of program '{}'", name), [this] {
-        std::size_t sum = 0;
-        for (const std::size_t bytes : program.getInfo<CL_PROGRAM_BINARY_SIZES>()) sum += bytes;
-        return sum;
-    });
 }
 
 Program::Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,

@@ -145,10 +145,6 @@ struct KernelBuild {
     cl::Program program;
     std::string name, options;         // name as in Program; options as passed to the compiler
     double build_s = 0, launch_s = 0;  // seconds of the build, and of the first launches
-
-    /// Returns the size of the program's binary in bytes. PoCL compiles every kernel of the program once more to make
-    /// the binary. Throws DeviceError.
-    std::size_t binary_bytes() const;
 };
 
 /// A built OpenCL program, made by Session::build().

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -18,6 +19,7 @@
 #include "host/base/whole_file.hpp"
 #include "host/cl/program.hpp"
 #include "host/error.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -57,8 +59,8 @@ void run_compiler(std::vector<std::string> arguments, const MemoryFile& in, cons
     ::posix_spawn_file_actions_destroy(&files);
     if (error != 0)
         throw DeviceError(fmt::format(
-            "{}: --il cannot run {}: {}; remedy: install clang-15 and llvm-spirv-15 (tools/setup --gpu), or omit --il",
-            operation, arguments[0], std::strerror(error)));
+            "{0}: --il cannot run {1}: {2}; remedy: install clang-{3} and llvm-spirv-{3} (tools/setup --gpu), or omit --il",
+            operation, arguments[0], std::strerror(error), llvm_version()));
     int status = 0;
     while (::waitpid(child, &status, 0) != child)
         if (errno != EINTR) throw DeviceError(fmt::format("{}: lost {}", operation, arguments[0]));
@@ -67,13 +69,13 @@ void run_compiler(std::vector<std::string> arguments, const MemoryFile& in, cons
                                       ending_text(status), fmt::join(arguments, " "), log.content()));
 }
 
-// Returns the source as SPIR-V. Compiles without optimisation, because of defects of llvm-spirv-15
+// Returns the source as SPIR-V. Compiles without optimisation, because of defects of llvm-spirv
 // (docs/porting.md); the driver optimises. The version is 1.0; with -g, which needs it, 1.1.
 std::string compiled_to_spirv(const std::string& source, const std::string& options, cl_uint address_bits,
                               const std::string& operation) {
     MemoryFile text, bitcode, spirv, log;
     std::ofstream(text.path()) << source;
-    std::vector<std::string> clang = {"clang-15",
+    std::vector<std::string> clang = {std::string("clang-") + llvm_version(),
                                       "-x",
                                       "cl",
                                       "-target",
@@ -89,7 +91,7 @@ std::string compiled_to_spirv(const std::string& source, const std::string& opti
     std::istringstream words(options);
     for (std::string word; words >> word;) clang.push_back(word);
     run_compiler(clang, text, bitcode, log, operation);
-    run_compiler({"llvm-spirv-15", "--spirv-max-version=1.1", "-o", "-", "-"}, bitcode, spirv, log, operation);
+    run_compiler({std::string("llvm-spirv-") + llvm_version(), "--spirv-max-version=1.1", "-o", "-", "-"}, bitcode, spirv, log, operation);
     return spirv.content();
 }
 
@@ -127,7 +129,7 @@ std::string il_versions(const cl::Device& device) {
 
 cl::Program spirv_program(const cl::Context& context, const cl::Device& device, const std::string& source,
                           const std::string& options, const std::string& operation) {
-    const cl_platform_id platform = device.getInfo<CL_DEVICE_PLATFORM>();
+    const cl_platform_id platform = cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>())();
     void* create = nullptr;
     if (!il_versions(device).empty())
         for (const char* function : {"clCreateProgramWithILKHR", "clCreateProgramWithIL"})

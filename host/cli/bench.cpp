@@ -226,7 +226,7 @@ void add_bench_command(CLI::App& program) {
         command
             ->add_flag("--build", options->build,
                        "Measure only compilation: compile each kernel of the variants in each format from source, "
-                       "and measure the seconds of the build, the seconds of the first launch, and the binary's size")
+                       "and measure the seconds of the build and of the first launch")
             ->excludes(denormals);
     add_value(*command, "--limit", options->limit_s,
               "With --build: maximum seconds to compile a kernel; exit code 4 if a kernel takes longer")

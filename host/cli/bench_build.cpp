@@ -42,7 +42,6 @@ std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingS
                                   .lanes = lanes,
                                   .build_s = build.build_s,
                                   .launch_s = build.launch_s,
-                                  .binary_bytes = build.binary_bytes(),
                                   .build_options = options});
             }
             recorded_builds.clear();
@@ -54,12 +53,11 @@ std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingS
 
 void print_builds(const std::vector<BenchBuild>& builds) {
     std::vector<std::vector<std::string>> table = {
-        {"kernel", "variant", "format", "lanes", "build s", "first launch s", "binary KB"}};
+        {"kernel", "variant", "format", "lanes", "build s", "first launch s"}};
     double build_s = 0, launch_s = 0;
     for (const BenchBuild& build : builds) {
         table.push_back({build.kernel, build.variant, build.format, std::to_string(build.lanes),
-                         seconds_text(build.build_s), seconds_text(build.launch_s),
-                         fmt::format("{:.0f}", 1e-3 * static_cast<double>(build.binary_bytes))});
+                         seconds_text(build.build_s), seconds_text(build.launch_s)});
         build_s += build.build_s;
         launch_s += build.launch_s;
     }

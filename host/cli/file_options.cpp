@@ -98,7 +98,7 @@ void add_kernel_source_options(CLI::App& command, std::string& folder) {
              "Read the kernels from this folder, for kernel development");
     command.add_flag_callback(
         "--il", use_il,
-        "Compile the kernels to SPIR-V with clang-15 and llvm-spirv-15, and give the driver SPIR-V "
+        "Compile the kernels to SPIR-V with clang and llvm-spirv, and give the driver SPIR-V "
         "instead of source; like --il in RAYA_BUILD_OPTIONS; the image does not change");
 }
 

@@ -85,17 +85,22 @@ class Records {
 
 /// Opens files for assimp, and reports the first that cannot be opened. After a missing material file of an OBJ file,
 /// assimp tries another name and the same names again.
-class ReportingFiles : public Assimp::DefaultIOSystem {
+class ReportingFiles : public Assimp::IOSystem {  // assimp 6 makes DefaultIOSystem final
   public:
     explicit ReportingFiles(Records& records) : records_(records) {}
+    bool Exists(const char* file) const override { return files_.Exists(file); }
+    char getOsSeparator() const override { return files_.getOsSeparator(); }
+    void Close(Assimp::IOStream* stream) override { files_.Close(stream); }
+    bool ComparePaths(const char* one, const char* other) const override { return files_.ComparePaths(one, other); }
     Assimp::IOStream* Open(const char* file, const char* mode) override {
-        Assimp::IOStream* const stream = Assimp::DefaultIOSystem::Open(file, mode);
+        Assimp::IOStream* const stream = files_.Open(file, mode);
         if (stream == nullptr && !std::exchange(is_missing_, true))
             records_.ignore("file that cannot be opened", std::string("file '") + file + "'");
         return stream;
     }
 
   private:
+    Assimp::DefaultIOSystem files_;
     Records& records_;
     bool is_missing_ = false;
 };

@@ -269,7 +269,7 @@ const std::vector<CitedMachine>& cited_machines() {
     return all;
 }
 
-const Machine& machine_named(const std::string& name) {
+const Machine& machine_named(std::string_view name) {
     const auto& all = machines();
     const auto found = std::find_if(all.begin(), all.end(), [&](const Machine& m) { return m.name == name; });
     if (found != all.end()) return *found;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/error.hpp"
@@ -112,7 +113,7 @@ const std::vector<CitedMachine>& cited_machines();
 
 /// Returns the machine called `name`. Throws UserError if there is no such machine (the message lists all machines), or
 /// if raya does not model it (the message states the reason).
-const Machine& machine_named(const std::string& name);
+const Machine& machine_named(std::string_view name);
 
 /// Returns the modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h) on a PE of the SPA, from
 /// the instruction budgets (model/budget.hpp). t805_cycles() (model/t805.hpp) returns those on a node of a torus.

@@ -99,7 +99,6 @@ Json to_json(const BenchReport& report) {
                           {"lanes", build.lanes},
                           {"build_s", build.build_s},
                           {"first_launch_s", build.launch_s},
-                          {"binary_bytes", build.binary_bytes},
                           {"build_options", build.build_options}});
     if (!report.builds.empty()) json["builds"] = builds;
     if (!report.compared.is_null()) json["compared"] = report.compared;

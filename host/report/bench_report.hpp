@@ -36,7 +36,6 @@ struct BenchBuild {
     std::uint32_t lanes = 0;
     double build_s = 0;   // seconds of compilation
     double launch_s = 0;  // seconds of the first launches, summed over the program's kernels
-    std::size_t binary_bytes = 0;
     std::string build_options{};
 };
 

@@ -22,8 +22,8 @@ struct Piece {
 /// Returns the index of the first line at or after `from` that may start with an entity of an object, or the length of
 /// the text if there is none.
 std::size_t object_line(std::string_view text, std::size_t from) {
-    constexpr std::string_view kObjects = "spc", kLineEnds = "\r\n";
-    while ((from = text.find_first_of(kLineEnds, from)) < text.size())
+    constexpr std::string_view kObjects = "spc";
+    while ((from = text.find_first_of("\r\n", from)) < text.size())
         if (++from < text.size() && kObjects.find(text[from]) != kObjects.npos) return from;
     return text.size();
 }

@@ -1,6 +1,7 @@
 #include "host/verify/hits.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <bit>
 #include <cmath>

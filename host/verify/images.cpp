@@ -159,6 +159,22 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
     return with_remedies(pixels, got.options, image_remedies(v, session, image));
 }
 
+// Asks the driver for the binaries of a rendering's kernels, as programs that store kernels do. PoCL compiles all of
+// them once more then, without knowing the size of a group; PoCL 6.0 aborts (docs/defects.md).
+Verdict check_binaries(const Verification& v, Session& session, const Rendering& r) {
+    std::vector<KernelBuild> builds;
+    session.record_builds(&builds);
+    render(v.kernels(r.lanes, r.group_size), session, r);
+    session.record_builds(nullptr);
+    for (const KernelBuild& build : builds) {
+        const auto sizes = guarded("querying the binary of " + build.name,
+                                   [&] { return build.program.getInfo<CL_PROGRAM_BINARY_SIZES>(); });
+        if (sizes.empty() || sizes[0] == 0)
+            return failed(build.name + " has no binary", {.options = build.options});
+    }
+    return passed(counted(builds.size(), "program"));
+}
+
 }  // namespace
 
 std::map<std::string, std::string> counts_by_check_kind(Session& session, const ReferenceImage& image) {
@@ -183,6 +199,11 @@ void verify_images(Verification& v) {
     for (const Rendering& r : renderings)
         if (v.depth() >= r.min_depth && has_given_lanes(r))
             v.check("image", r.name(), [&](Session& session) { return check_rendering(v, session, r); });
+    if (!v.full()) return;
+    const Rendering ring{.image = "glass fp32"}, grid{.image = "polygons fp32", .accel = AccelKind::kGrid},
+        bvh{.image = "polygons fp32", .accel = AccelKind::kBvh}, torus{.image = "polygons fp32", .torus = true};
+    for (const Rendering& r : {ring, grid, bvh, torus})
+        v.check("image", "binaries of " + r.name(), [&](Session& session) { return check_binaries(v, session, r); });
 }
 
 }  // namespace raya

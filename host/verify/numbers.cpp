@@ -118,7 +118,7 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
             const bool skip = !has_denormals_ && has_denormal(answers.operation, operands_of(rows, row), correct);
             (skip ? skipped : compared) += 1;
             if (skip) continue;
-            known.set(answers.operation * rows.count() + row, agrees(got, correct) ? got : correct);
+            known.set(answers.operation * rows.count() + row, correct, is_nan(correct));
             if (agrees(got, correct)) continue;
             if (wrong++ == 0) fault = fault_of(format_, answers.operation, operands_of(rows, row), correct, got);
             ++wrong_of_operation;
@@ -174,11 +174,13 @@ Verdict check_answers(Session& session, const NumberBuild& build, const FormatAn
     return with_remedies(runner.check(rows, expected), runner.options(), remedies);
 }
 
-void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t lanes, bool trusted) {
+void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t lanes, bool trusted,
+                   bool optimised = true) {
     const NumberBuild build{.format = answers.format,
                             .lanes = lanes,
                             .trusted = trusted,
                             .imprecise = !trusted && v.device().correctly_rounded_divide_sqrt,
+                            .optimised = optimised,
                             .sources = v.sources()};
     v.check("number", build.name(), [&](Session& session) {
         return check_answers(session, build, answers, number_remedies(build, v.device(), v.lanes_remedies(lanes)));
@@ -234,7 +236,11 @@ bool is_representative(const NumberFormat& format) {
 void verify_numbers(Verification& v) {
     for (const FormatAnswers& answers : known_answers()) {
         if (!v.full() && !is_representative(answers.format)) continue;
-        for (const std::uint32_t lanes : v.lanes()) verify_format(v, answers, lanes, true);
+        for (const std::uint32_t lanes : v.lanes()) {
+            verify_format(v, answers, lanes, true);
+            // Without the optimiser, vectors are passed to functions: PoCL 7.1 loses half of each (docs/defects.md).
+            if (v.full() && answers.format.is_fp32()) verify_format(v, answers, lanes, true, false);
+        }
         const bool promises_rounding = v.device().correctly_rounded_divide_sqrt || v.device().fused_multiply_add;
         if (v.full() && promises_rounding) verify_format(v, answers, v.lanes_or_default(), false);
     }

@@ -1,5 +1,5 @@
 // Makes PoCL 3.1 accept SPIR-V: a library that is preloaded into raya (LD_PRELOAD). PoCL 3.1 accepts LLVM bitcode for
-// the target SPIR, so this library translates SPIR-V to such bitcode with llvm-spirv-15.
+// the target SPIR, so this library translates SPIR-V to such bitcode with llvm-spirv.
 //   RAYA_SPIRV_FAULT="129 131"      replaces all instructions with opcode 129 (OpFAdd) by opcode 131 (OpFSub)
 #include <CL/cl.h>
 #include <CL/cl_ext.h>
@@ -39,7 +39,7 @@ std::string bitcode_of(const std::vector<std::uint32_t>& module) {
     const std::string spirv = folder / "module.spv", bitcode = folder / "module.bc";
     std::ofstream(spirv).write(reinterpret_cast<const char*>(module.data()), std::streamsize(module.size() * 4));
     std::string bytes;
-    if (std::system(("llvm-spirv-15 -r " + spirv + " -o " + bitcode).c_str()) == 0) {
+    if (std::system(("llvm-spirv-" RAYA_LLVM " -r " + spirv + " -o " + bitcode).c_str()) == 0) {
         std::ifstream file(bitcode);
         bytes.assign(std::istreambuf_iterator<char>(file), {});
     }

@@ -223,7 +223,7 @@ TEST_CASE("bench --build: lists compile times, and exits with 4 if one takes lon
     for (std::size_t i = 0; i < 3; ++i) {
         CHECK(builds[i]["kernel"] == kernels[i]);
         CHECK(builds[i]["lanes"] == 4);
-        for (const char* key : {"build_s", "first_launch_s", "binary_bytes"}) CHECK(builds[i][key] > 0);
+        for (const char* key : {"build_s", "first_launch_s"}) CHECK(builds[i][key] > 0);
         CHECK_FALSE(contains(builds[i]["build_options"].get<std::string>(), "RAYA_BUILT"));
         CHECK_THAT(run.out, Catch::Contains(kernels[i]));
     }

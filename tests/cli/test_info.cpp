@@ -21,17 +21,17 @@ Document info_of(const std::string& scene, Arguments options = {}) {
     return Document::parse(run.out);
 }
 
-const Document& machine_of(const Document& info, const std::string& name) {
+const Document& machine_of(const Document& info, std::string_view name) {
     for (const Document& machine : info["machines"])
         if (machine["name"] == name) return machine;
-    FAIL("no machine " + name);
+    FAIL("no machine " << name);
     return info;
 }
 
-const Document& need_of(const Document& machine, const std::string& accel) {
+const Document& need_of(const Document& machine, std::string_view accel) {
     for (const Document& need : machine["needs"])
         if (need["accel"] == accel) return need;
-    FAIL("no accelerator " + accel);
+    FAIL("no accelerator " << accel);
     return machine;
 }
 

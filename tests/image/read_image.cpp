@@ -22,7 +22,8 @@ std::vector<T> read_values(OIIO::ImageInput& input, const OIIO::TypeDesc& type) 
 
 /// Reads the file's channels as floats. Sets `width` and `height` to the image's size.
 std::vector<float> read_floats(const std::filesystem::path& path, int channels, int& width, int& height) {
-    const auto input = OIIO::ImageInput::open(path.string());
+    const OIIO::ImageSpec defaults;  // without it OpenImageIO 2.5 to 3.1 return the rows of a PFM file bottom first
+    const auto input = OIIO::ImageInput::open(path.string(), &defaults);
     if (!input) throw std::runtime_error(OIIO::geterror());
     const OIIO::ImageSpec& spec = input->spec();
     if (spec.nchannels != channels) throw std::runtime_error(path.string() + ": wrong number of channels");

@@ -146,10 +146,7 @@ inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& ar
     static int runs = 0;
     const std::string run_id = std::to_string(::getpid()) + "." + std::to_string(++runs),
                       mark = detail::kRunMark + run_id;
-    run_options.variables.insert(run_options.variables.end(), {{"OMPI_ALLOW_RUN_AS_ROOT", "1"},
-                                                               {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
-                                                               {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
-                                                               {"RAYA_TEST_RUN", run_id}});
+    run_options.variables.emplace_back("RAYA_TEST_RUN", run_id);
     RanksOutcome outcome;
     outcome.command = mpi.launcher;
     for (const std::string& argument : arguments) outcome.command += " " + argument;

@@ -31,7 +31,7 @@ TEST_CASE("ranks with devices of different types give the image of a single proc
     for (const Mpi& mpi : installed_mpis()) {
         std::vector<std::string> arguments = {"-n", "3", mpi.program};
         arguments.insert(arguments.end(), render.begin(), render.end());
-        arguments.insert(arguments.end(), {"--report", ranks_report, "--device", "pthread,basic"});
+        arguments.insert(arguments.end(), {"--report", ranks_report, "--device", "0,1"});
         const RanksOutcome outcome =
             run_ranks(mpi, arguments, 0, {}, {.variables = {{"POCL_DEVICES", "pthread basic"}}});
         INFO(outcome.describe());
@@ -40,8 +40,10 @@ TEST_CASE("ranks with devices of different types give the image of a single proc
         std::vector<std::string> devices;
         const Document report = Document::parse(file_contents(ranks_report));
         for (const Document& rank : report["measured"]["ranks"])
-            devices.push_back(rank["device"]["name"].get<std::string>().substr(0, 5));
-        CHECK(devices == std::vector<std::string>{"pthre", "basic", "pthre"});
+            devices.push_back(rank["device"]["name"].get<std::string>());
+        REQUIRE(devices.size() == 3);
+        CHECK(devices[0] != devices[1]);
+        CHECK(devices[2] == devices[0]);
     }
 }
 

@@ -76,11 +76,9 @@ TEST_CASE("mpirun: an error of all ranks is reported once, with rank and host", 
 
 TEST_CASE("mpirun: ranks with different arguments refuse to run", "[ranks][.mpirun]") {
     const ScratchFolder outputs;
+    const RankScript rank_script;  // not "-n 1 ... : -n 2 ...", with which Open MPI 5.0.7 crashes
     for (const Mpi& mpi : installed_mpis()) {
-        Arguments arguments = launch_arguments(mpi, 1, render_arguments(outputs));
-        const Arguments other_arguments = launch_arguments(mpi, 2, render_arguments(outputs, {"--pes", "8"}));
-        arguments.push_back(":");
-        arguments.insert(arguments.end(), other_arguments.begin(), other_arguments.end());
+        const Arguments arguments = rank_script.arguments(mpi, 3, 1, "set -- \"$@\" --pes 8", render_arguments(outputs));
         check_message(outputs, run_ranks(mpi, arguments), 2, {"raya: rank ", "other arguments than rank 0"});
     }
 }
@@ -170,7 +168,7 @@ TEST_CASE("mpirun: a killed rank, SIGINT and SIGTERM end all ranks", "[ranks][.m
                 const Arguments redirected =
                     rank_script.arguments(mpi, 3, 0, "exec 2>" + file, long_render(outputs, machine));
                 check_ended(outputs, run_ranks(mpi, redirected, 3, {.signal = signal}, late_kill), 0);
-                CHECK(file_contents(file) == "raya: interrupted\n");
+                CHECK_THAT(file_contents(file), Catch::EndsWith("raya: interrupted\n"));
             }
         }
 }

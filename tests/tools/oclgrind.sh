@@ -6,6 +6,7 @@
 # Oclgrind's log must stay empty (its exit code is always 0), and every image must be that of the default device. By default it runs one scene
 # and one injected fault of each kind; with RAYA_THOROUGH=1, all of them.
 set -euo pipefail
+command -v oclgrind >/dev/null || { echo "skipped: no oclgrind"; exit 77; }
 raya=$(readlink -f "$1")
 patch_kernels=$(readlink -f "$2")
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..

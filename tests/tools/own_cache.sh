@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs a test program with its own kernel cache. ctest runs several programs at once, which must not share a cache (pocl issue 586).
+# Runs a test program with its own kernel cache, and with settings of Open MPI. ctest runs several programs at once, which must not share a cache (pocl issue 586).
 #   own_cache.sh NAME COMMAND...     cache: folder NAME in POCL_CACHE_DIR, by default build/pocl-cache. The next run reuses it.
 #                                    A new cache is a copy of RAYA_KERNEL_STORE; new kernels are also added to RAYA_KERNEL_STORE
 #                                    (tests/kernel_cache.hpp)
@@ -11,6 +11,9 @@ mkdir -p "$POCL_CACHE_DIR"  # PoCL does not create the folder
 store=${RAYA_KERNEL_STORE-}
 [[ ! -d $store ]] || cp -rln "$store/." "$POCL_CACHE_DIR"
 export RAYA_TUNED=off RAYA_BINARIES=off  # tests must not use a developer's tuning or compiled kernels
+# Open MPI starts as root, and more ranks than there are cores: versions 4, 5 and 6.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe PRTE_MCA_mapby=:oversubscribe
 code=0
 "${@:2}" || code=$?
 [[ ! -d $store ]] || (cd "$POCL_CACHE_DIR" && find . -type f ! -name 'tempfile*' ! -name '*.part*' -exec cp -ln --parents -t "$store" {} +) || true

@@ -49,7 +49,7 @@ code=0 output=$(in_root raya render $scene -o /root/c.png 2>&1) || code=$?
 if [[ -n ${RAYA_THOROUGH-} ]]; then
     cp -n "$build"/debs/*.deb "$bare/var/cache/apt/archives/" 2>/dev/null || mkdir -p "$bare/var/cache/apt/archives"
     in_root apt-get -qq update
-    in_root sh -c 'apt-get install -qq -y --reinstall /out/raya_*.deb libopenimageio2.4' >"$bare.log" 2>&1 || fail "$(tail "$bare.log")"
+    in_root sh -c 'apt-get install -qq -y --reinstall /out/raya_*.deb $(dpkg-deb -f /out/raya_*.deb Recommends | grep -o "libopenimageio[^ ,]*")' >"$bare.log" 2>&1 || fail "$(tail "$bare.log")"
     output=$(in_root raya render $scene -o /root/c.png) || fail "render: $output"
     [[ $output == *"($hash)"* ]] || fail "wrong PNG: $output"
 fi

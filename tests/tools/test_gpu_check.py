@@ -2,13 +2,14 @@
 """Tests tools/gpu_check with injected faults in kernels, in the budget and in the output of compilers, and without compilers. Takes some seconds.
   test_gpu_check.py BUILD     the build folder: kernel_builds and patch_kernels
 Exit code 77: no compiler for GPUs; the checks that need none have passed."""
-import csv, json, os, pathlib, subprocess, sys, tempfile, time
+import csv, json, os, pathlib, shutil, subprocess, sys, tempfile, time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SCRATCH = pathlib.Path(tempfile.mkdtemp())
 sys.path.insert(0, str(ROOT / "tools"))
 from gpu import amd, intel, nvidia  # noqa: E402
+from gpu.clang import LLVM  # noqa: E402
 from gpu.budget import COLUMNS, Budget  # noqa: E402
 from gpu.figures import Figures  # noqa: E402
 
@@ -84,10 +85,10 @@ for options, text in ((["--targets", "sm_1"], "sm_1"), (["--write", "--only", "x
     check(*options, code=2, texts=[text])
 program_folder = SCRATCH / "bin"
 program_folder.mkdir()
-for program in ("env", "python3"):
-    (program_folder / program).symlink_to("/usr/bin/" + program)
-check(code=3, path=program_folder, texts=["Debian: clang-15", "Debian: intel-opencl-icd", "tools/setup --gpu"])
-check("--libclc", "/nowhere", code=3, path=program_folder, texts=["Debian: libclc-15"])
+for program in ("env", "python3", "bash"):
+    (program_folder / program).symlink_to(shutil.which(program))
+check(code=3, path=program_folder, texts=[f"Debian: clang-{LLVM}", "Debian: intel-opencl-icd", "tools/setup --gpu"])
+check("--libclc", "/nowhere", code=3, path=program_folder, texts=[f"Debian: libclc-{LLVM}"])
 
 # The remaining checks compile kernels.
 only_compose = ["--only", "torus/compose fp32"]

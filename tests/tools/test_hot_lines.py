@@ -7,6 +7,8 @@ import os, pathlib, platform, re, shutil, subprocess, sys, tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 SCRATCH = pathlib.Path(tempfile.mkdtemp())
+LLVM = subprocess.run([ROOT / "tools" / "setup", "--llvm"], text=True, capture_output=True, check=True).stdout.strip()
+SYMBOLIZER = f"llvm-symbolizer-{LLVM}"
 SCENE = [ROOT / "scenes" / "centre.nff", "--machine", "grande", "--format", "fp32"]
 
 
@@ -26,8 +28,9 @@ def hot_lines(*arguments, code=0, texts=(), **environment):
 
 
 def mock_programs(**bodies):
-    """Returns a PATH with these shell scripts only."""
+    """Returns a PATH with bash and these shell scripts only."""
     folder = pathlib.Path(tempfile.mkdtemp(dir=SCRATCH))
+    (folder / "bash").symlink_to(shutil.which("bash"))
     for name, body in bodies.items():
         (folder / name).write_text(f"#!{shutil.which('bash')}\n{body}\n")
         (folder / name).chmod(0o755)
@@ -38,13 +41,12 @@ def mock_programs(**bodies):
 at_build = "--build", BUILD
 hot_lines(*at_build, code=2, texts=["no scene"])
 hot_lines("--build", SCRATCH, *SCENE, code=3, texts=[f"{SCRATCH}/raya is missing", "tools/run"])
-hot_lines(*at_build, *SCENE, code=3, texts=["llvm-symbolizer is missing", "tools/setup --profile"], PATH=mock_programs())
-hot_lines(*at_build, *SCENE, code=3, texts=["perf is missing", "tools/setup --profile"], PATH=mock_programs(**{"llvm-symbolizer": ""}))
+hot_lines(*at_build, *SCENE, code=3, texts=[f"{SYMBOLIZER} is missing", "tools/setup --profile"], PATH=mock_programs())
+hot_lines(*at_build, *SCENE, code=3, texts=["perf is missing", "tools/setup --profile"], PATH=mock_programs(**{SYMBOLIZER: ""}))
 hot_lines(*at_build, *SCENE, code=3, texts=["perf cannot sample cpu-clock", "perf_event_paranoid", "No permission"],
-          PATH=mock_programs(**{"llvm-symbolizer": "", "perf": "echo No permission >&2; exit 255"}))
-symbolizers = ["llvm-symbolizer", *(f"llvm-symbolizer-{version}" for version in range(14, 31))]
+          PATH=mock_programs(**{SYMBOLIZER: "", "perf": "echo No permission >&2; exit 255"}))
 probe = ["perf", "record", "-q", "-N", "-o", "/dev/null", "-e", "cpu-clock", "true"]
-if not any(map(shutil.which, symbolizers)) or not shutil.which("perf") or subprocess.run(probe, capture_output=True).returncode:
+if not shutil.which(SYMBOLIZER) or not shutil.which("perf") or subprocess.run(probe, capture_output=True).returncode:
     sys.exit(77)
 hot_lines(*at_build, "--event", "no-such-event", *SCENE, code=3, texts=["perf cannot sample no-such-event"])
 hot_lines(*at_build, SCRATCH / "none.nff", code=2, texts=["none.nff: cannot read"])

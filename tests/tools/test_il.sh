@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Tests --il: kernels built from SPIR-V.
 #   test_il.sh RAYA SPIRV_ON_POCL BUILD     the program; the library made of tests/cli/spirv_on_pocl.cpp; the build folder
-# Exit code 77: no clang-15 or llvm-spirv-15 (tools/setup --gpu), or no PoCL. Intel's runtime is also tested if tools/portability --setup
+# Exit code 77: no clang or llvm-spirv (tools/setup --gpu), or no PoCL. Intel's runtime is also tested if tools/portability --setup
 # has fetched it.
 set -euo pipefail
 raya=$(readlink -f "$1") library=$(readlink -f "$2") build=$(readlink -f "$3")
 root=$(dirname "$(dirname "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")")")
-for tool in clang-15 llvm-spirv-15; do
+llvm=$("$root/tools/setup" --llvm)
+for tool in clang-$llvm llvm-spirv-$llvm; do
     command -v $tool >/dev/null || { echo "skipped: no $tool"; exit 77; }
 done
 export OCL_ICD_VENDORS=/etc/OpenCL/vendors/pocl.icd
@@ -20,57 +21,66 @@ expect() { [[ $out == *"$1"* ]] || fail "no '$1'"; }                         # e
 render=(render "$root/scenes/mirrors.nff" --format fp32 --lanes 1 --size 20 --bounces 4 -o "$scratch/x.pfm" --report "$scratch/report.json")
 hash_of() { sed -n 's/.*"hash": "\(.*\)".*/\1/p' "$scratch/report.json"; }
 
-# A device that does not accept SPIR-V.
+# A device that does not accept SPIR-V. From PoCL 5 on, PoCL does.
 variables=(A=)
-for arguments in "verify" "verify --device 0" "bench --device 0" "render $root/scenes/planes.nff --device 0 -o $scratch/x.pfm"; do
-    # shellcheck disable=SC2086  # several words
-    run $arguments --il
-    ((code == 3)) || fail "exit code $code of $arguments on a device that does not accept SPIR-V"
-    expect "accept"
-    expect "SPIR-V"
-    expect "remedy: "
-done
+preload=()
+run verify --list --il
+if ((code == 3)); then
+    preload=("LD_PRELOAD=$library")
+    for arguments in "verify" "verify --device 0" "bench --device 0" "render $root/scenes/planes.nff --device 0 -o $scratch/x.pfm"; do
+        # shellcheck disable=SC2086  # several words
+        run $arguments --il
+        ((code == 3)) || fail "exit code $code of $arguments on a device that does not accept SPIR-V"
+        expect "accept"
+        expect "SPIR-V"
+        expect "remedy: "
+    done
+fi
 run "${render[@]}"
 ((code == 0)) || fail "exit code $code from source"
 from_source=$(hash_of)
 
 # The same image and the same answers as from source; faults in the SPIR-V are found, so it is really used.
-variables=("LD_PRELOAD=$library")
+variables=(A= "${preload[@]}")
 run "${render[@]}" --il
 ((code == 0)) || fail "exit code $code of a render"
 [[ $(hash_of) == "$from_source" && $from_source =~ ^[0-9a-f]{32}$ ]] || fail "image $(hash_of), from source: $from_source"
 grep -q '"build_options": ".* --il"' "$scratch/report.json" || fail "the report does not mention --il"
 [[ $out != *warning* ]] || fail "a warning"
-run verify --brief --lanes 1 --il
+crashes=()
+((${#preload[@]} > 0)) || crashes=(--skip "torus2d 3x2x2 root")  # PoCL 7.1: docs/defects.md
+run verify --brief --lanes 1 --il "${crashes[@]}"
 ((code == 0)) || fail "exit code $code of verify"
 expect "checks passed, 0 failed, 0 skipped"
-variables+=("RAYA_SPIRV_FAULT=129 131")  # OpFAdd, OpFSub
-run verify --brief --lanes 1 --il --only "number fp32"
-((code == 4)) || fail "exit code $code of verify with a fault"
-expect "run raya verify without --il"
-run "${render[@]}" --il
-((code != 0)) || [[ $(hash_of) != "$from_source" ]] || fail "the image is right in spite of a fault"
+if ((${#preload[@]} > 0)); then
+    variables+=("RAYA_SPIRV_FAULT=129 131")  # OpFAdd, OpFSub
+    run verify --brief --lanes 1 --il --only "number fp32"
+    ((code == 4)) || fail "exit code $code of verify with a fault"
+    expect "run raya verify without --il"
+    run "${render[@]}" --il
+    ((code != 0)) || [[ $(hash_of) != "$from_source" ]] || fail "the image is right in spite of a fault"
+fi
 
 # Missing compilers; a kernel with an error; an option that clang does not have.
 mkdir "$scratch/bin"
-ln -s "$(command -v clang-15)" "$scratch/bin"
-variables=("LD_PRELOAD=$library" "PATH=$scratch/bin")
+ln -s "$(command -v clang-$llvm)" "$scratch/bin"
+variables=(A= "${preload[@]}" "PATH=$scratch/bin")
 run "${render[@]}" --il
-((code == 3)) || fail "exit code $code without llvm-spirv-15"
-expect "cannot run llvm-spirv-15: No such file or directory; remedy: install clang-15 and llvm-spirv-15 (tools/setup --gpu)"
-variables=("LD_PRELOAD=$library")
+((code == 3)) || fail "exit code $code without llvm-spirv-$llvm"
+expect "cannot run llvm-spirv-$llvm: No such file or directory; remedy: install clang-$llvm and llvm-spirv-$llvm (tools/setup --gpu)"
+variables=(A= "${preload[@]}")
 cp -r "$root/kernels" "$scratch"
 echo "int x = ;" >>"$scratch/kernels/ring/trace.cl"
 run "${render[@]}" --il --kernel-dir "$scratch/kernels"
 ((code == 3)) || fail "exit code $code of a kernel with an error"
-expect "building program 'ring/trace.cl': clang-15 ended with exit code 1"
+expect "building program 'ring/trace.cl': clang-$llvm ended with exit code 1"
 expect "ring/trace.cl:"
-variables=("LD_PRELOAD=$library" "RAYA_BUILD_OPTIONS=--il -no-such-option")
+variables=(A= "${preload[@]}" "RAYA_BUILD_OPTIONS=--il -no-such-option")
 run "${render[@]}"
 ((code == 3)) || fail "exit code $code of a wrong option"
 expect "-no-such-option"
 
-tested="PoCL with a library that accepts SPIR-V"
+tested="PoCL${preload:+ with a library that accepts SPIR-V}"
 if [[ -e $build/implementations/intel-cpu.icd ]]; then
     variables=("OCL_ICD_VENDORS=$build/implementations/intel-cpu.icd")
     run "${render[@]}" --il

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks the manual pages of `raya manual` as man shows them: they contain all text of --help-all, and man prints no warnings. Exit code 77: no man.
-  test_manual.py RAYA FOLDER     FOLDER holds the pages that the build has made: raya.1 and man1/"""
+  test_manual.py RAYA FOLDER     FOLDER holds the pages that the build has made: man1/"""
 import os
 import pathlib
 import re
@@ -87,9 +87,9 @@ def run():
                 faults.append(f"raya manual {command}: the printed page differs from the file of raya manual -o")
             if printed != (built / "man1" / f"raya-{command}.1").read_text():
                 faults.append(f"raya-{command}.1 of the build differs from the program's output")
-        if (built / "raya.1").read_text() != pathlib.Path(f"{folder}/raya.1").read_text():
+        if (built / "man1" / "raya.1").read_text() != pathlib.Path(f"{folder}/raya.1").read_text():
             faults.append("raya.1 of the build differs from the program's output")
-        if "EXIT CODES 0 done, 2 bad option" not in text_of_page(str(built / "raya.1")):
+        if "EXIT CODES 0 done, 2 bad option" not in text_of_page(str(built / "man1" / "raya.1")):
             faults.append("raya.1: the page does not contain the exit codes")
         count += len(names)
     refused = subprocess.run([raya, "manual", "rendr"], capture_output=True, text=True)

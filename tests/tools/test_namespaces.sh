@@ -61,8 +61,7 @@ END
 chmod 755 "$scratch/on_host"
 printf '%s\n' "127.0.0.1 localhost" "10.83.18.1 ${hosts[0]}" "10.83.18.2 ${hosts[1]}" >"$scratch/hosts"
 host_list=${hosts[0]},${hosts[1]}
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
-export OMPI_MCA_plm_rsh_agent=$scratch/on_host OMPI_MCA_pml=ob1 OMPI_MCA_btl=tcp,self
+export OMPI_MCA_plm_rsh_agent=$scratch/on_host PRTE_MCA_plm_ssh_agent=$scratch/on_host OMPI_MCA_pml=ob1 OMPI_MCA_btl=tcp,self
 launch="$mpirun --bind-to none --host $host_list"
 
 bytes_on_link() { ip netns exec "${hosts[0]}" cat /sys/class/net/link0/statistics/{r,t}x_bytes | awk '{ bytes += $1 } END { print bytes }'; }

@@ -37,7 +37,6 @@ RARE = {
 }
 # These members need MPI.
 MPI_MEMBERS = ("ping.json: ", "render.json: measured.ranks", "render.json: rank.", "verify.json: devices[].rank", "verify.json: devices[].host")
-MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 # (kernel file, text, faulty replacement): a mutant, for which a check of verify must fail.
 FAULT = ("shared/mapping.h", "if (m.kind == RAYA_ROWS) return row % m.pes;", "if (m.kind == RAYA_ROWS) return (row + 1) % m.pes;")
 
@@ -100,7 +99,7 @@ class Reports:
         self.raya, self.patch_kernels, self.mpirun, self.folder = raya, patch_kernels, mpirun, Path(folder)
         self.folder.mkdir(exist_ok=True)
         cache = os.environ.get("POCL_CACHE_DIR")  # concurrent programs must not share a cache (own_cache.sh)
-        self.environment = {**MPI, **({"POCL_CACHE_DIR": str(Path(cache, self.folder.name))} if cache else {})}
+        self.environment = {"POCL_CACHE_DIR": str(Path(cache, self.folder.name))} if cache else {}
         if cache:
             Path(cache, self.folder.name).mkdir(exist_ok=True)
         self.made = []  # (file of the schema, command, report)

@@ -75,6 +75,19 @@ class Test:
         self.expect(output.split("\n")[1].strip() in (folder / "README.md").read_text(), "README.md has not the wrong words", output)
         code, output = self.repro(folder, folder / "right.cl")
         self.expect(code == 0, f"{check}: the case with the right kernel: exit code {code}", output)
+        return folder
+
+    def nan_signs(self):
+        """Every NaN is right, whatever its sign, as in verify; a number of the other sign is wrong."""
+        folder, store = self.kernel_fault(*KERNEL_FAULTS[-1]), "store_operations(a, b, c, results + first, rows);"
+        right = (folder / "right.cl").read_text()
+        self.expect(right.count(store) == 1, f"not one '{store}'")
+        for condition, wanted in (("(*w & 0x7fffffff) > 0x7f800000", 0), ("(*w & 0x7fffffff) == 0x7f800000", 1)):  # NaN; infinity
+            loop = f"for (uint i = 0; i < 16 * RAYA_LANES; ++i) {{ __global uint* w = results + first + i / RAYA_LANES * rows + i % RAYA_LANES; " \
+                   f"if ({condition}) *w ^= 0x80000000; }}"
+            (folder / "signs.cl").write_text(right.replace(store, store + loop))
+            code, output = self.repro(folder, folder / "signs.cl")
+            self.expect(code == wanted, f"other signs where {condition}: exit code {code}", output)
 
     def driver_fault(self, check, fault, description):
         folder = self.new_folder()
@@ -146,6 +159,7 @@ def main():
         if mode == ["--reduce"]:
             return test.reduce()
         test.messages()
+        test.nan_signs()
         for fault in KERNEL_FAULTS if mode else KERNEL_FAULTS[4:5]:
             test.kernel_fault(*fault)
         for fault in DRIVER_FAULTS[1:] if mode else DRIVER_FAULTS[2:]:

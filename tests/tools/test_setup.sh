@@ -31,6 +31,9 @@ expect() {  # expect CODE TEXT...: the exit code, and texts in the output
 
 expect_no_output() { [[ -z $out ]] || { echo "FAILED line ${BASH_LINENO[0]}: unexpected output: $out"; exit 1; }; }
 
+release() { echo "VERSION_CODENAME=$1" >"$machine/os-release"; }  # release NAME
+export RAYA_OS_RELEASE=$machine/os-release
+release bookworm
 line='sudo apt-get update && sudo apt-get install -y --no-install-recommends'
 
 # --print needs no program.
@@ -44,6 +47,29 @@ expect 2 "unknown option '--nonsense'"
 run_setup --gpu --print --package
 expect 0 "$line g++ cmake" "oclgrind clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools cvise dpkg-dev lintian man-db zsh fish"
 [[ $out != *debootstrap* ]] || { echo "FAILED: a group that was not named"; exit 1; }
+
+# Each release has its own names, and lacks some packages. Other systems get the newest names.
+run_setup --llvm
+expect 0 15
+while read -r name llvm ocloc; do
+    release "$name"
+    run_setup --llvm
+    [[ $code == 0 && $out == "$llvm" ]] || { echo "FAILED: $name: --llvm: $out"; exit 1; }
+    run_setup --gpu --profile --print
+    expect 0 "$line g++" " clang-$llvm llvm-$llvm libclc-$llvm $ocloc${ocloc:+ }llvm-spirv-$llvm spirv-tools cvise linux-perf llvm-$llvm"
+    [[ $out != *" -"[!-y]* && $out != *oclgrind* ]] || { echo "FAILED: $name: $out"; exit 1; }
+done <<<$'trixie 19\nforky 21 intel-ocloc\nresolute 21 intel-ocloc\nother 21 intel-ocloc'
+rm "$RAYA_OS_RELEASE"
+run_setup --llvm
+expect 0 21
+release trixie
+mock_program dpkg-query "printf '%s installed\n' ${all[*]}"
+run_setup --gpu
+expect 1 "trixie has no oclgrind intel-ocloc" "neither root nor sudo" "$line clang-19"
+run_setup
+expect 0
+expect_no_output
+release bookworm
 
 # Nothing is missing.
 mock_program dpkg-query "printf '%s installed\n' ${all[*]}"

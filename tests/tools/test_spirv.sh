@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Compiles every kernel to SPIR-V as raya does with --il (host/cl/spirv.cpp), validates it with spirv-val for OpenCL 1.2, and looks for uses of
 # what clspv does not support (tools/gpu/spirv.py).
-#   tests/tools/test_spirv.sh       exit code 77: clang-15, llvm-spirv-15 or spirv-val is missing (tools/setup --gpu)
+#   tests/tools/test_spirv.sh       exit code 77: clang, llvm-spirv or spirv-val is missing (tools/setup --gpu)
 set -euo pipefail
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
-for tool in clang-15 llvm-spirv-15 spirv-val; do
+llvm=$("$root/tools/setup" --llvm)
+for tool in clang-$llvm llvm-spirv-$llvm spirv-val; do
     command -v $tool >/dev/null || { echo "skipped: no $tool"; exit 77; }
 done
 scratch=$(mktemp -d)
@@ -15,8 +16,8 @@ limits=(env PYTHONDONTWRITEBYTECODE=1 python3 "$root/tools/gpu/spirv.py")
 
 # module FILE MODULE OPTION...: compiles a kernel
 module() {
-    clang-15 -x cl -target spir64 -O2 -Xclang -disable-llvm-passes -emit-llvm -cl-std=CL1.2 -I "$root" "${scene[@]}" "${@:3}" -c "$1" -o "$2.bc"
-    llvm-spirv-15 --spirv-max-version=1.1 "$2.bc" -o "$2"
+    "clang-$llvm" -x cl -target spir64 -O2 -Xclang -disable-llvm-passes -emit-llvm -cl-std=CL1.2 -I "$root" "${scene[@]}" "${@:3}" -c "$1" -o "$2.bc"
+    "llvm-spirv-$llvm" --spirv-max-version=1.1 "$2.bc" -o "$2"
 }
 
 for kernel in "$root"/kernels/*/*.cl; do

@@ -1,5 +1,9 @@
 """clang and libclc, used instead of the OpenCL compilers of NVIDIA and AMD."""
 import hashlib, re, shutil, subprocess
+from pathlib import Path
+
+SETUP = Path(__file__).resolve().parents[1] / "setup"
+LLVM = subprocess.run([SETUP, "--llvm"], capture_output=True, text=True, check=True).stdout.strip()  # version of this system's LLVM: "15"
 
 INLINE_OPTIONS = ["-mllvm", "-inline-threshold=1000000"]  # inline all calls that can be inlined, as the drivers' compilers do
 
@@ -12,9 +16,9 @@ class Clang:
         """Returns the programs and libraries that are not installed, with their Debian packages."""
         found = []
         if not shutil.which(self.program):
-            found.append(f"{self.program} (Debian: clang-15)")
+            found.append(f"{self.program} (Debian: clang-{LLVM})")
         if not (self.libclc / library).exists():
-            found.append(f"{self.libclc / library} (Debian: libclc-15)")
+            found.append(f"{self.libclc / library} (Debian: libclc-{LLVM})")
         return found
 
     def version(self, library):

@@ -37,7 +37,7 @@ def packages():
                                text=True).stdout.splitlines()
     except OSError:
         lines = []
-    return {**found, **{name: version for status, name, version in map(str.split, sorted(lines)) if status == "installed"}}
+    return {**found, **{name: version for status, name, version in (line.split(" ") for line in sorted(lines)) if status == "installed"}}
 
 
 def inputs_of(study, scenes):

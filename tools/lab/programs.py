@@ -38,8 +38,8 @@ def missing_mpirun():
 
 def run_on_ranks(ranks, arguments):
     """Runs raya with these arguments on `ranks` MPI ranks with one thread each. Returns its standard output."""
-    settings = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
-                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    settings = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",  # Open MPI 4
+                "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe", "PRTE_MCA_mapby": ":oversubscribe"}  # 5; 6
     command = LAUNCHER + ["-n", str(ranks), "env", "POCL_MAX_PTHREAD_COUNT=1", raya.program(), *arguments]
     return output_of(command, f"{ranks} ranks", env={**os.environ, **settings})
 
