@@ -58,9 +58,10 @@ void run_compiler(std::vector<std::string> arguments, const MemoryFile& in, cons
     const int error = ::posix_spawnp(&child, argv[0], &files, nullptr, argv.data(), environ);
     ::posix_spawn_file_actions_destroy(&files);
     if (error != 0)
-        throw DeviceError(fmt::format(
-            "{0}: --il cannot run {1}: {2}; remedy: install clang-{3} and llvm-spirv-{3} (tools/setup --gpu), or omit --il",
-            operation, arguments[0], std::strerror(error), llvm_version()));
+        throw DeviceError(
+            fmt::format("{0}: --il cannot run {1}: {2}; remedy: install clang-{3} and llvm-spirv-{3} (tools/setup "
+                        "--gpu), or omit --il",
+                        operation, arguments[0], std::strerror(error), llvm_version()));
     int status = 0;
     while (::waitpid(child, &status, 0) != child)
         if (errno != EINTR) throw DeviceError(fmt::format("{}: lost {}", operation, arguments[0]));
@@ -91,7 +92,8 @@ std::string compiled_to_spirv(const std::string& source, const std::string& opti
     std::istringstream words(options);
     for (std::string word; words >> word;) clang.push_back(word);
     run_compiler(clang, text, bitcode, log, operation);
-    run_compiler({std::string("llvm-spirv-") + llvm_version(), "--spirv-max-version=1.1", "-o", "-", "-"}, bitcode, spirv, log, operation);
+    run_compiler({std::string("llvm-spirv-") + llvm_version(), "--spirv-max-version=1.1", "-o", "-", "-"}, bitcode,
+                 spirv, log, operation);
     return spirv.content();
 }
 

@@ -96,10 +96,9 @@ CLI::Option* set_file_use(CLI::Option* option, FileUse use) {
 void add_kernel_source_options(CLI::App& command, std::string& folder) {
     add_file(command, FileUse::kKernelFolder, "--kernel-dir", folder, "DIR",
              "Read the kernels from this folder, for kernel development");
-    command.add_flag_callback(
-        "--il", use_il,
-        "Compile the kernels to SPIR-V with clang and llvm-spirv, and give the driver SPIR-V "
-        "instead of source; like --il in RAYA_BUILD_OPTIONS; the image does not change");
+    command.add_flag_callback("--il", use_il,
+                              "Compile the kernels to SPIR-V with clang and llvm-spirv, and give the driver SPIR-V "
+                              "instead of source; like --il in RAYA_BUILD_OPTIONS; the image does not change");
 }
 
 FileUse file_use_of(CLI::Option& option) {

@@ -169,8 +169,7 @@ Verdict check_binaries(const Verification& v, Session& session, const Rendering&
     for (const KernelBuild& build : builds) {
         const auto sizes = guarded("querying the binary of " + build.name,
                                    [&] { return build.program.getInfo<CL_PROGRAM_BINARY_SIZES>(); });
-        if (sizes.empty() || sizes[0] == 0)
-            return failed(build.name + " has no binary", {.options = build.options});
+        if (sizes.empty() || sizes[0] == 0) return failed(build.name + " has no binary", {.options = build.options});
     }
     return passed(counted(builds.size(), "program"));
 }

@@ -142,7 +142,8 @@ TEST_CASE("bench --compare --junit --tap --expect: one test case for each row", 
                                        Catch::Contains("\nok 2 - " + name + "group 999 # SKIP in the baseline alone"));
     check_refused(outputs, small_bench({"--compare", slow, "--expect", folder / "none"}), 2,
                   {"--expect", "cannot be read: No such file or directory"});
-    check_refused(outputs, small_bench({"--junit", outputs / "b.xml"}), 2, {"--junit, --tap, --expect: need --compare"});
+    check_refused(outputs, small_bench({"--junit", outputs / "b.xml"}), 2,
+                  {"--junit, --tap, --expect: need --compare"});
 }
 
 TEST_CASE("bench: refuses invalid baselines, reports and tolerances", "[cli]") {

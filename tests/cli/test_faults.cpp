@@ -139,7 +139,8 @@ TEST_CASE("render: succeeds with a fault that is never reached (control)", "[cli
 TEST_CASE("render --device: the error for a device that is no longer there lists the available devices", "[cli]") {
     const ScratchFolder outputs;
     const RunOptions basic{.variables = {{"POCL_DEVICES", "basic"}}};  // PoCL 5 and later name it cpu-minimal
-    const std::string name = run_raya({"devices"}, basic).out.find("minimal") == std::string::npos ? "basic" : "minimal";
+    const std::string name =
+        run_raya({"devices"}, basic).out.find("minimal") == std::string::npos ? "basic" : "minimal";
     const Arguments arguments = small_render(outputs, {"--device", name});
     const RunOutcome run = run_raya(arguments, basic);
     INFO(run.describe());

@@ -139,7 +139,8 @@ TEST_CASE("render, generate: refuse a file that they cannot write, before any wo
 
 TEST_CASE("render: without OpenImageIO it refuses PNG and EXR before rendering, and writes PPM and PFM", "[cli]") {
     const ScratchFolder libraries, outputs;
-    const std::string broken = libraries / fmt::format("libOpenImageIO.so.{}.{}", OIIO_VERSION_MAJOR, OIIO_VERSION_MINOR);
+    const std::string broken =
+        libraries / fmt::format("libOpenImageIO.so.{}.{}", OIIO_VERSION_MAJOR, OIIO_VERSION_MINOR);
     std::ofstream(broken) << "no library";
     const RunOptions run_options{.variables = {{"LD_LIBRARY_PATH", libraries.path()}}};
     const std::string scene = scene_file("planes");

@@ -78,7 +78,8 @@ TEST_CASE("mpirun: ranks with different arguments refuse to run", "[ranks][.mpir
     const ScratchFolder outputs;
     const RankScript rank_script;  // not "-n 1 ... : -n 2 ...", with which Open MPI 5.0.7 crashes
     for (const Mpi& mpi : installed_mpis()) {
-        const Arguments arguments = rank_script.arguments(mpi, 3, 1, "set -- \"$@\" --pes 8", render_arguments(outputs));
+        const Arguments arguments =
+            rank_script.arguments(mpi, 3, 1, "set -- \"$@\" --pes 8", render_arguments(outputs));
         check_message(outputs, run_ranks(mpi, arguments), 2, {"raya: rank ", "other arguments than rank 0"});
     }
 }
