@@ -42,6 +42,7 @@ struct Defect {
     std::size_t groups = 1, group_size = 1;
     cl_uint right = 0;  // the correct result of each work-item
     std::vector<KnownFailure> known_failures;
+    std::string options{};  // for the compiler
 };
 
 const std::vector<Defect> kDefects = {
@@ -74,13 +75,22 @@ const std::vector<Defect> kDefects = {
      32,
      {{"Portable Computing Language", "driver 3.0", 5, false,
        "PoCL 3.0 takes a private structure of another work-item after a barrier"}}},
+    {"wide_vector",
+     20,
+     1,
+     1,
+     40,
+     {{"Portable Computing Language", "driver 7.1", 402, false,
+       "PoCL 7.1 passes vectors of 512 bits to builtin functions in the registers of another calling convention, on "
+       "CPUs with AVX-512 for which LLVM prefers 256 bits"}},
+     "-cl-opt-disable"},
 };
 
 // Runs the kernel. Returns the first wrong result, or the correct one.
 cl_uint run_kernel(const Defect& defect, Session& session) {
     std::ifstream file(RAYA_SOURCE_DIR "/tests/portability/" + defect.name + ".cl");
     const std::string source{std::istreambuf_iterator<char>(file), {}};
-    Program program = session.build(defect.name + ".cl", source, {"-cl-std=CL1.2"});
+    Program program = session.build(defect.name + ".cl", source, {"-cl-std=CL1.2", defect.options});
     std::vector<cl_uint> results(defect.groups * defect.group_size, 0);
     Buffer<cl_uint> out = session.buffer<cl_uint>("out", results.size());
     session.write("clear", out, results);
@@ -98,7 +108,8 @@ cl_uint run_kernel(const Defect& defect, Session& session) {
 }
 
 std::string text_of(const Defect& defect) {
-    return fmt::format("{}, n = {}, {} x {} work-items", defect.name, defect.n, defect.groups, defect.group_size);
+    return fmt::format("{}, n = {}, {} x {} work-items{}{}", defect.name, defect.n, defect.groups, defect.group_size,
+                       defect.options.empty() ? "" : ", ", defect.options);
 }
 
 // Returns true if the failure is known for this device.
