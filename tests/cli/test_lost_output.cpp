@@ -7,7 +7,7 @@ namespace {
 
 /// Runs raya in a shell with these redirections and returns its exit code.
 int code_of(const std::string& arguments, const std::string& redirections) {
-    std::string command = RAYA_PROGRAM;
+    std::string command = "'" RAYA_PROGRAM "'";
     command.append(" ").append(arguments).append(" ").append(redirections);
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -26,14 +26,16 @@ struct Shell {
 
 const std::string kRaya = std::string("'") + RAYA_PROGRAM + "' ";
 const std::string kRender = kRaya + "render ";
+// Quoted for a shell: folders may have blanks in their names.
+const std::string kScene = "'" + scene_file("planes") + "'";
 const std::string kSmallOptions = " --size 12 --pes 12 --lanes 4 ";
 
 TEST_CASE("render - -o -: reads stdin and writes stdout with the same bytes as files", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
-    const std::string scene = scene_file("planes");
-    REQUIRE(shell(kRender + scene + " -o a.ppm --report a.json --quiet" + kSmallOptions) == 0);
-    REQUIRE(shell("cat " + scene + " | " + kRender + "- -o - --report b.json" + kSmallOptions + "> b.ppm 2> log") == 0);
+    REQUIRE(shell(kRender + kScene + " -o a.ppm --report a.json --quiet" + kSmallOptions) == 0);
+    REQUIRE(shell("cat " + kScene + " | " + kRender + "- -o - --report b.json" + kSmallOptions + "> b.ppm 2> log") ==
+            0);
     CHECK(file_contents(folder / "b.ppm") == file_contents(folder / "a.ppm"));
     const std::string log = file_contents(folder / "log");
     CHECK(contains(log, "stdin: 12 x 12 pixels"));
@@ -42,7 +44,7 @@ TEST_CASE("render - -o -: reads stdin and writes stdout with the same bytes as f
     CHECK(report["scene"] == "stdin");
     CHECK(report["image"]["file"] == "stdout");
     CHECK(report["image"]["hash"] == json_of(folder / "a.json")["image"]["hash"]);
-    REQUIRE(shell(kRender + "- -o - --quiet" + kSmallOptions + "< " + scene + " > c.ppm 2> log") == 0);
+    REQUIRE(shell(kRender + "- -o - --quiet" + kSmallOptions + "< " + kScene + " > c.ppm 2> log") == 0);
     CHECK(file_contents(folder / "c.ppm") == file_contents(folder / "a.ppm"));
     CHECK(file_contents(folder / "log").empty());
 }
@@ -50,13 +52,12 @@ TEST_CASE("render - -o -: reads stdin and writes stdout with the same bytes as f
 TEST_CASE("render: every output file can go to stdout", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
-    const std::string scene = scene_file("planes");
     const auto stdout_of = [&](const std::string& option, const std::string& file,
                                const std::string& extra_options = "") {
         CAPTURE(option);
-        REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " " + file + kSmallOptions + extra_options + "> log") ==
-                0);
-        REQUIRE(shell(kRender + scene + " -o x.ppm " + option + " -" + kSmallOptions + extra_options +
+        REQUIRE(shell(kRender + kScene + " -o x.ppm " + option + " " + file + kSmallOptions + extra_options +
+                      "> log") == 0);
+        REQUIRE(shell(kRender + kScene + " -o x.ppm " + option + " -" + kSmallOptions + extra_options +
                       "> out 2> log") == 0);
         CHECK(contains(file_contents(folder / "log"), "rays    "));
         return file_contents(folder / "out");
@@ -73,8 +74,7 @@ TEST_CASE("render: every output file can go to stdout", "[cli]") {
 TEST_CASE("render --packets -: writes the same bytes to stdout as to a file", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
-    const std::string line =
-        kRender + scene_file("planes") + " -o x.ppm --machine torus --nodes 2x1x1 --size 8 --lanes 4 ";
+    const std::string line = kRender + kScene + " -o x.ppm --machine torus --nodes 2x1x1 --size 8 --lanes 4 ";
     REQUIRE(shell(line + "--packets p.csv.gz > log") == 0);
     REQUIRE(shell(line + "--packets - > out 2> log") == 0);
     CHECK(file_contents(folder / "out") == file_contents(folder / "p.csv.gz"));
@@ -84,7 +84,7 @@ TEST_CASE("render --packets -: writes the same bytes to stdout as to a file", "[
 TEST_CASE("explore -o -: writes the same page to stdout as to a file", "[cli]") {
     const ScratchFolder folder;
     const Shell shell{folder};
-    const std::string line = kRaya + "explore " + scene_file("planes") + kSmallOptions;
+    const std::string line = kRaya + "explore " + kScene + kSmallOptions;
     REQUIRE(shell(line + "-o a.html --quiet") == 0);
     REQUIRE(shell(line + "-o - > b.html 2> log") == 0);
     CHECK((file_contents(folder / "b.html") == file_contents(folder / "a.html")));

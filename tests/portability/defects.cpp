@@ -19,15 +19,19 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
+#include "host/cl/spirv.hpp"
+#include "host/verify/verify.hpp"
 #include "tests/paths.h"
 
 namespace {
 using namespace raya;
 
 struct KnownFailure {
-    std::string platform, device;  // substrings of the names of platform and of "DEVICE, driver VERSION"; empty: any
-    cl_uint wrong = 0;             // the wrong result of each work-item
-    bool crashes = false;          // true: a signal ends the process, without a result
+    // Part of the name of the platform, and pattern (name_matches()) of "DEVICE, driver VERSION", with --il followed by
+    // ", SPIR-V"; empty: any.
+    std::string platform, device;
+    cl_uint wrong = 0;     // the wrong result of each work-item
+    bool crashes = false;  // true: a signal ends the process, without a result
     std::string reason;
 };
 
@@ -80,10 +84,23 @@ const std::vector<Defect> kDefects = {
      1,
      1,
      40,
-     {{"Portable Computing Language", "driver 7.1", 402, false,
-       "PoCL 7.1 passes vectors of 512 bits to builtin functions in the registers of another calling convention, on "
-       "CPUs with AVX-512 for which LLVM prefers 256 bits"}},
+     {{"Portable Computing Language", "skylake-avx512*driver 7.1", 402, false,
+       "PoCL 7.1 passes vectors of 512 bits to builtin functions in the registers of another calling convention"}},
      "-cl-opt-disable"},
+    {"widest_vector",
+     21,
+     1,
+     1,
+     21,
+     {{"Portable Computing Language", "driver 6.0*SPIR-V", 0, false,
+       "PoCL 6.0, for SPIR-V, passes vectors that are larger than a register in memory that it does not write"}}},
+    {"early_return",
+     21,
+     1,
+     1,
+     22,
+     {{"Portable Computing Language", "driver 7.1*SPIR-V", 0, true,
+       "PoCL 7.1 crashes while it compiles the SPIR-V of a private variable to which nothing is written"}}},
 };
 
 // Runs the kernel. Returns the first wrong result, or the correct one.
@@ -115,7 +132,7 @@ std::string text_of(const Defect& defect) {
 // Returns true if the failure is known for this device.
 bool occurs_on(const KnownFailure& known, const DeviceInfo& device) {
     return device.platform.find(known.platform) != std::string::npos &&
-           (device.name + ", driver " + device.driver).find(known.device) != std::string::npos;
+           name_matches(device.name + ", driver " + device.driver + (uses_il() ? ", SPIR-V" : ""), known.device);
 }
 
 /// Prints the output line for a defect of `device`, the device of `session`; returns true if the result is right or an

@@ -166,11 +166,12 @@ TEST_CASE("mpirun: only rank 0 reads stdin and writes stdout", "[ranks][.mpirun]
     const auto shell = [&](const std::string& line) {
         return std::system(("cd '" + folder.path().string() + "' && " + line).c_str());
     };
-    REQUIRE(shell(RAYA_PROGRAM " render " + scene_file("planes") + " -o single.ppm" + options) == 0);
+    const std::string scene = "'" + scene_file("planes") + "'";
+    REQUIRE(shell("'" RAYA_PROGRAM "' render " + scene + " -o single.ppm" + options) == 0);
     for (const Mpi& mpi : installed_mpis()) {
-        const std::string launch = mpi.launcher + " --bind-to none -n 3 " + mpi.program;
+        const std::string launch = mpi.launcher + " --bind-to none -n 3 '" + mpi.program + "'";
         CAPTURE(launch);
-        CHECK(shell(launch + " render - -o -" + options + "< " + scene_file("planes") + " > ranks.ppm") == 0);
+        CHECK(shell(launch + " render - -o -" + options + "< " + scene + " > ranks.ppm") == 0);
         CHECK((file_contents(folder / "ranks.ppm") == file_contents(folder / "single.ppm")));
     }
 }

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Runs the workflows of docs/ci on this machine (run_workflow.py): raya-verify.yml with a bundle, once with a driver that loses copies; tools/ci_summary.
 
-    tests/tools/test_ci_workflows.py BUILD           BUILD: the build folder, with the target `bundled` built
-    tests/tools/test_ci_workflows.py BUILD --all     also raya-portability.yml: build, fast tests, all implementations; about an hour
+    tests/tools/test_ci_workflows.py BUILD CL_FAULTS           BUILD: the build folder, with the target `bundled` built; CL_FAULTS: the library of
+                                                               tests/cli/cl_faults.cpp
+    tests/tools/test_ci_workflows.py BUILD CL_FAULTS --all     also raya-portability.yml: build, fast tests, all implementations; about an hour
 Exit codes: 0 as expected; 1 not; 77 Python has no yaml, or there is no curl (Debian: python3-yaml, curl)
 """
 import os, shutil, subprocess, sys, tempfile
@@ -31,7 +32,7 @@ def summary(*files):
     return done.returncode, done.stdout + done.stderr
 
 
-def bundle_workflow(build, scratch):
+def bundle_workflow(build, cl_faults, scratch):
     bundle = scratch / "bundle.tar.gz"
     subprocess.run([ROOT / "tools/bundle", "--build", build, "-o", bundle], check=True, stdout=subprocess.DEVNULL)
     variables = {"BUNDLE": f"file://{bundle}", "POCL_CACHE_DIR": os.environ["POCL_CACHE_DIR"]}
@@ -43,7 +44,7 @@ def bundle_workflow(build, scratch):
     code, text = summary(junit, scratch / "none.xml")
     check(code == 0 and f"| {len(cases)} | 0 | 0 |" in text and "No test failed." in text and "none.xml | *not written*" in text, text)
 
-    fault = {"LD_PRELOAD": f"{build}/tests/libcl_faults.so", "RAYA_FAULT": "clEnqueueCopyBufferRect 1 lost"}
+    fault = {"LD_PRELOAD": cl_faults, "RAYA_FAULT": "clEnqueueCopyBufferRect 1 lost"}
     is_right, local = run("raya-verify.yml", scratch / "wrong", {**variables, **fault})
     check([code for _, _, code, _ in local.steps] == [0, 4, 0], f"raya-verify.yml with a fault: {local.steps}")  # the file is uploaded, too
     code, text = summary(local.store / "artifacts/verify/verify.xml")
@@ -70,7 +71,7 @@ def main():
     build = Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as scratch:
         Path(scratch).chmod(0o755)  # some tests run raya as another user
-        bundle_workflow(build, Path(scratch))
+        bundle_workflow(build, sys.argv[2], Path(scratch))
         if "--all" in sys.argv:
             portability_workflow(Path(scratch))
     print("\n".join(faults) or "the workflows: as expected")
