@@ -5,6 +5,7 @@
 #include <bit>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 
 #include "host/model/unit_text.hpp"
 #include "host/ring/mapping.hpp"
@@ -166,6 +167,7 @@ Verdict check_binaries(const Verification& v, Session& session, const Rendering&
     session.record_builds(&builds);
     render(v.kernels(r.lanes, r.group_size), session, r);
     session.record_builds(nullptr);
+    if (builds.empty()) throw std::logic_error("check_binaries: no build was recorded");
     for (const KernelBuild& build : builds) {
         const auto sizes = guarded("querying the binary of " + build.name,
                                    [&] { return build.program.getInfo<CL_PROGRAM_BINARY_SIZES>(); });
