@@ -254,9 +254,11 @@ TEST_CASE("image files: contain no date, host or software version", "[image_io]"
     for (const char* name : {"a.png", "a.exr", "a.pfm", "a.ppm", "a.tif", "a.jpg"}) {
         CAPTURE(name);
         write_image(folder / name, special_image(), kAttributes);
-        const std::string first = contents(folder / name);
+        std::string first = contents(folder / name);
         write_image(folder / name, special_image(), kAttributes);
         CHECK(contents(folder / name) == first);
+        const std::string no_date("capDate\0string\0\1\0\0\0000", 20);  // OpenImageIO 3.1 writes the date "0"
+        if (const std::size_t at = first.find(no_date); at != first.npos) first.erase(at, no_date.size());
         for (const char* word : {"capDate", "tIME", "DateTime", "Software", "HostComputer", "OpenImageIO"})
             CHECK_THAT(first, !Contains(word));
     }

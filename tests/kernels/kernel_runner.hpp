@@ -12,6 +12,7 @@
 #include "host/cl/commands.hpp"
 #include "host/cl/kernels.hpp"
 #include "host/verify/check_runner.hpp"
+#include "tests/kernels/unoptimised.hpp"
 #include "tests/paths.h"
 
 namespace raya {
@@ -36,8 +37,13 @@ struct TestBuild {
 
 /// Builds in fp32 for each number of lanes, with and without optimisation. Tests compare all results with the first.
 inline const std::vector<TestBuild>& test_builds() {
-    static const std::vector<TestBuild> all = {{1, true},  {4, true},  {8, true},  {16, true},
-                                               {1, false}, {4, false}, {8, false}, {16, false}};
+    static const std::vector<TestBuild> all = [] {
+        std::vector<TestBuild> builds;
+        for (const bool optimised : {true, false})
+            for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
+                if (optimised || tests_unoptimised(lanes)) builds.push_back({lanes, optimised});
+        return builds;
+    }();
     return all;
 }
 

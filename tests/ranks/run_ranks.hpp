@@ -1,6 +1,7 @@
 // Runs raya under mpirun with one process per rank. Records the output, the exit code and the number of processes that
 // do not end by themselves.
 #pragma once
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <functional>
 #include <optional>
@@ -110,8 +111,9 @@ inline pid_t start(const Mpi& mpi, std::vector<std::string> arguments, std::vect
     ::_exit(127);
 }
 
-/// Waits until `ranks` ranks run, then for fault.after_ms ms, and sends fault.signal. Returns false if the ranks do not
-/// start within 30 s or the signal cannot be sent.
+/// Waits until `ranks` ranks have loaded PoCL, which follows MPI_Init (2 s in Open MPI 6), or, with another driver, for
+/// 10 s; then for fault.after_ms ms, and sends fault.signal. Returns false if the ranks do not start within 30 s or the
+/// signal cannot be sent.
 inline bool send_signal(const Mpi& mpi, const std::string& mark, pid_t launcher, std::size_t ranks,
                         const RanksFault& fault) {
     const Clock::time_point deadline = Clock::now() + std::chrono::seconds(30);
@@ -120,6 +122,12 @@ inline bool send_signal(const Mpi& mpi, const std::string& mark, pid_t launcher,
         if (Clock::now() > deadline || run_program_detail::has_ended(launcher)) return false;
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
+    const auto has_driver = [](const RankProcess& rank) {
+        return process_file("/proc/" + std::to_string(rank.process), "maps").find("libpocl") != std::string::npos;
+    };
+    const Clock::time_point latest = Clock::now() + std::chrono::seconds(10);
+    while (!std::all_of(started.begin(), started.end(), has_driver) && Clock::now() < latest)
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
     std::this_thread::sleep_for(std::chrono::milliseconds(fault.after_ms));
     pid_t target = launcher;
     for (const RankProcess& p : started)

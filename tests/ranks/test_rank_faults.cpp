@@ -135,8 +135,6 @@ TEST_CASE("mpirun: a rank out of memory ends all ranks", "[ranks][.mpirun]") {
                                                      preload_command(RAYA_CL_FAULTS, "RAYA_FAULT", "new 1000000 0"),
                                                      large_render)),
                 2, {"raya: rank " + std::to_string(rank) + " on ", "out of memory on the host"});
-        // The memory limit may cause an error in raya, in the driver or in MPI, so the text is not checked.
-        check_ended(outputs, run_ranks(mpi, rank_script.arguments(mpi, 3, 0, "ulimit -v 400000", large_render)), 2);
     }
 }
 
@@ -155,6 +153,7 @@ TEST_CASE("mpirun: a full disk on rank 0 ends all ranks", "[ranks][.mpirun]") {
 
 // mpirun may drop the output of an interrupted rank, so this test redirects rank 0's messages to a file. By default
 // Open MPI kills a rank one second after a signal, which is too early on a busy machine; in this test it waits 4 s.
+// Open MPI 6.0.0rc2 kills the ranks within 0.1 s.
 TEST_CASE("mpirun: a killed rank, SIGINT and SIGTERM end all ranks", "[ranks][.mpirun]") {
     const ScratchFolder outputs, messages;
     const RankScript rank_script;
@@ -165,11 +164,12 @@ TEST_CASE("mpirun: a killed rank, SIGINT and SIGTERM end all ranks", "[ranks][.m
             const Arguments arguments = launch_arguments(mpi, 3, long_render(outputs, machine));
             for (const std::uint32_t rank : quick(1, {2u, 0u}))
                 check_ended(outputs, run_ranks(mpi, arguments, 3, {.signal = SIGKILL, .rank = rank}), 1);
+            const bool kills_at_once = contains(run_ranks(mpi, {"--version"}).out, "(Open MPI) 6.");
             for (const int signal : quick(1, {SIGINT, SIGTERM})) {
                 const Arguments redirected =
                     rank_script.arguments(mpi, 3, 0, "exec 2>" + file, long_render(outputs, machine));
                 check_ended(outputs, run_ranks(mpi, redirected, 3, {.signal = signal}, late_kill), 0);
-                CHECK_THAT(file_contents(file), Catch::EndsWith("raya: interrupted\n"));
+                if (!kills_at_once) CHECK_THAT(file_contents(file), Catch::EndsWith("raya: interrupted\n"));
             }
         }
 }
@@ -178,8 +178,8 @@ TEST_CASE("mpirun: a rank that hangs ends the run after RAYA_RANK_TIMEOUT", "[ra
     const ScratchFolder outputs;
     for (const Mpi& mpi : installed_mpis()) {
         const RanksOutcome run = run_ranks(mpi, launch_arguments(mpi, 3, long_render(outputs, "torus")), 3,
-                                           {.signal = SIGSTOP, .rank = 2}, {.variables = {{"RAYA_RANK_TIMEOUT", "2"}}});
-        check_message(outputs, run, 3, {"has waited for the other ranks for 2 s", "RAYA_RANK_TIMEOUT"});
+                                           {.signal = SIGSTOP, .rank = 2}, {.variables = {{"RAYA_RANK_TIMEOUT", "6"}}});
+        check_message(outputs, run, 3, {"has waited for the other ranks for 6 s", "RAYA_RANK_TIMEOUT"});
     }
 }
 

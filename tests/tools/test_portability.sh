@@ -118,14 +118,16 @@ expect "PoCL loopvec, image: SKIP groups: one work-item only"
 [[ $out == *$'\n'"8 cells: 5 right, 0 FAIL, 3 undecided." ]] || fail "the last line does not count the cells"
 expect "PoCL loopvec, defects: long_loop, n = 9: expected failure, 8 instead of 9: a reason"
 
-# Known defects of llvmpipe that do not occur on PoCL are named.
-touch "$build/tests/portability_defects.gone"
-matrix --only "PoCL loopvec" --checks defects
-((code == 0)) || fail "exit code $code where known defects no longer occur"
-expect "| none, 3 gone |"
-expect "PoCL loopvec, defects: long_loop, n = 100000, 1 x 1 work-items: right, 65535 was expected: Mesa's llvmpipe ends every loop"
-expect "right, a crash was expected"
-rm "$build/tests/portability_defects.gone"
+# Known defects of llvmpipe that do not occur on PoCL are named. Not with a PoCL that has defects of its own, which would be unknown ones of llvmpipe.
+if [[ $("$defects") != *": expected failure"* ]]; then
+    touch "$build/tests/portability_defects.gone"
+    matrix --only "PoCL loopvec" --checks defects
+    ((code == 0)) || fail "exit code $code where known defects no longer occur"
+    expect "| none, 3 gone |"
+    expect "PoCL loopvec, defects: long_loop, n = 100000, 1 x 1 work-items: right, 65535 was expected: Mesa's llvmpipe ends every loop"
+    expect "right, a crash was expected"
+    rm "$build/tests/portability_defects.gone"
+fi
 
 matrix --only PoCL
 ((code == 1)) || fail "exit code $code where something is wrong"

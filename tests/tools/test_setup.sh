@@ -58,7 +58,7 @@ while read -r name llvm ocloc; do
     run_setup --gpu --profile --print
     expect 0 "$line g++" " clang-$llvm llvm-$llvm libclc-$llvm $ocloc${ocloc:+ }llvm-spirv-$llvm spirv-tools cvise linux-perf llvm-$llvm"
     [[ $out != *" -"[!-y]* && $out != *oclgrind* ]] || { echo "FAILED: $name: $out"; exit 1; }
-done <<<$'trixie 19\nforky 21 intel-ocloc\nresolute 21 intel-ocloc\nother 21 intel-ocloc'
+done <<<$'trixie 19\nforky 21 intel-ocloc intel-opencl-icd\nresolute 21 intel-ocloc intel-opencl-icd\nother 21 intel-ocloc intel-opencl-icd'
 rm "$RAYA_OS_RELEASE"
 run_setup --llvm
 expect 0 21
