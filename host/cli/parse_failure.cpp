@@ -52,7 +52,8 @@ std::string value_error_text(std::string text) {
         const std::size_t at = text.find(old_text);
         if (at != std::string::npos) text.replace(at, old_text.size(), new_text);
     };
-    replace("At Most 1 required but received", "takes one value, not");
+    for (const char* const limit : {"At Most", "At most"})  // CLI11 2.2 and 2.6
+        replace(std::string(limit) + " 1 required but received", "takes one value, not");
     replace("1 required ", "value ");
     return text;
 }

@@ -40,11 +40,12 @@ Arguments operator+(Arguments arguments, const Arguments& extra_arguments) {
 // missing ones first.
 Arguments start_of(const Command& command, const OptionText& option) {
     Arguments arguments = command.path;
-    for (const OptionText& other : command.text.options) {
-        if (!other.required || other.names == option.names) continue;
-        if (!other.is_argument()) arguments.push_back(other.names.back());
-        arguments.push_back(other.choices.empty() ? "8" : other.choices.front());
-    }
+    for (const auto& group : {command.text.arguments, command.text.options})
+        for (const OptionText& other : group) {
+            if (!other.required || other.names == option.names) continue;
+            if (!other.is_argument()) arguments.push_back(other.names.back());
+            arguments.push_back(other.choices.empty() ? "8" : other.choices.front());
+        }
     return arguments;
 }
 
