@@ -43,7 +43,7 @@ grep -qF "$top/lib/libOpenCL.so.1" <<<"$loaded" || fail "raya does not load its 
 run_unpacked "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.ppm"
 expect 0 "(474a384374e81c5144a0e5405232a750)"
 loaded=$(grep -vF "$POCL_CACHE_DIR/" <<<"$loaded")  # without compiled kernels
-! grep -E "$root|raya_|OpenImageIO|libmpi|libfmt|libxxhash" <<<"$loaded" || fail "a render loads these libraries"
+! grep -E "$root/|raya_|OpenImageIO|libmpi|libfmt|libxxhash" <<<"$loaded" || fail "a render loads these libraries"
 [[ $(head -c 15 "$scratch/home/centre.ppm") == $'P6\n256 256\n255' ]] || fail "the image is not a PPM"
 run_unpacked "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.png"
 expect 2 "there is no file '$top/raya_pictures.so"
