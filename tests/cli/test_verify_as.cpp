@@ -15,6 +15,9 @@ const SourcePatch kLostLight{"shading/shade.clh", "const uint lights = ((job_wor
                              "const uint lights = ((job_words)scene)->lights - (RAYA_ACCEL == RAYA_ACCEL_BVH && "
                              "RAYA_LANES == 4);\n    tree_hit met"};
 
+// For --as: the folder of the sources may have blanks in its name.
+std::string quoted_scene(const std::string& name) { return "'" + scene_file(name) + "'"; }
+
 RunOutcome verify_as(const std::string& render, const Arguments& more = {}, const RunOptions& options = {}) {
     Arguments arguments = {"verify", "--as", render};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -24,7 +27,7 @@ RunOutcome verify_as(const std::string& render, const Arguments& more = {}, cons
 TEST_CASE("verify --as: finds a fault only if the render meets it", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string kernels = " --kernel-dir " + write_kernels(scratch / "kernels", {kLostLight});
-    const std::string render = "render " + scene_file("polygons") + " --lanes 4 --format fp32 -o x.png";
+    const std::string render = "render " + quoted_scene("polygons") + " --lanes 4 --format fp32 -o x.png";
     const RunOutcome right = verify_as("raya " + render + kernels);
     INFO(right.describe());
     CHECK(right.code == 0);
@@ -46,7 +49,7 @@ TEST_CASE("verify --as: checks ray packets if the render uses them", "[cli][veri
     const ScratchFolder scratch;
     const std::string kernels = write_kernels(
         scratch / "kernels", {{"bvh/packet.clh", "return entered & all;", "return entered & all & ~1u;"}});
-    const std::string render = "render " + scene_file("polygons") +
+    const std::string render = "render " + quoted_scene("polygons") +
                                " --machine grande --accel bvh --lanes 16 -o x.png --kernel-dir " + kernels;
     const RunOutcome wrong = verify_as(render, {"--only", "image polygons"});
     INFO(wrong.describe());
@@ -64,7 +67,7 @@ TEST_CASE("verify --as: without reference images in the format, compares with th
     const std::string kernels = " --kernel-dir " + write_kernels(scratch / "kernels", {kLostLight});
     const std::string report = scratch / "v.json";
     const RunOutcome run = verify_as(
-        "render " + scene_file("polygons") + " --lanes 4 --format e7m11 --accel bvh" + kernels, {"--report", report});
+        "render " + quoted_scene("polygons") + " --lanes 4 --format e7m11 --accel bvh" + kernels, {"--report", report});
     INFO(run.describe());
     CHECK(run.code == 4);
     CHECK_THAT(run.out, Catch::Contains("SKIP  number    e7m11, 4 lanes") &&
@@ -76,14 +79,14 @@ TEST_CASE("verify --as: without reference images in the format, compares with th
 }
 
 TEST_CASE("verify --as: the torus, and an offset that reference images do not allow", "[cli][verify]") {
-    const RunOutcome torus = verify_as("render " + scene_file("polygons") + " --machine torus --nodes 2x2x1 --lanes 4",
+    const RunOutcome torus = verify_as("render " + quoted_scene("polygons") + " --machine torus --nodes 2x2x1 --lanes 4",
                                        {"--only", "image polygons"});
     INFO(torus.describe());
     CHECK(torus.code == 0);
     CHECK_THAT(torus.out, Catch::Contains("PASS  image     polygons fp32, as given") &&
                               Catch::Contains("PASS  image     polygons.nff 32x32") && !Catch::Contains("filter"));
     const RunOutcome offset =
-        verify_as("render " + scene_file("mirrors") + " --size 40 --offset 35 --lanes 4", {"--only", "image mirrors"});
+        verify_as("render " + quoted_scene("mirrors") + " --size 40 --offset 35 --lanes 4", {"--only", "image mirrors"});
     INFO(offset.describe());
     CHECK(offset.code == 0);
     CHECK_THAT(offset.out, Catch::Contains("SKIP  image     mirrors spa22, as given") &&
@@ -112,7 +115,7 @@ TEST_CASE("verify --as: builds the same program as the render", "[cli][verify]")
     const auto of_render = trace_builds(render);
     REQUIRE(of_render.size() == 1);
     const auto of_verify = trace_builds(
-        {"verify", "--as", "render " + scene_file("mirrors") + " --size 64" + options, "--only", "image mirrors.nff"});
+        {"verify", "--as", "render " + quoted_scene("mirrors") + " --size 64" + options, "--only", "image mirrors.nff"});
     CHECK(of_verify.size() == 2);  // the render's program and the simplest one
     CHECK(of_verify.contains(*of_render.begin()));
 }
@@ -120,7 +123,7 @@ TEST_CASE("verify --as: builds the same program as the render", "[cli][verify]")
 TEST_CASE("verify --as: a fault of the arithmetic; --list and --soak", "[cli][verify]") {
     const ScratchFolder scratch;
     const std::string kernels = write_kernels(scratch / "kernels", {kRoundingFault});
-    const std::string render = "render " + scene_file("mirrors") + " --lanes 4";
+    const std::string render = "render " + quoted_scene("mirrors") + " --lanes 4";
     const RunOutcome run = verify_as(render, {"--only", "number", "--kernel-dir", kernels});
     INFO(run.describe());
     CHECK(run.code == 4);
@@ -136,7 +139,7 @@ TEST_CASE("verify --as: a fault of the arithmetic; --list and --soak", "[cli][ve
 
 TEST_CASE("verify --as: refuses what raya render refuses", "[cli][verify]") {
     const ScratchFolder outputs;
-    const std::string scene = scene_file("mirrors");
+    const std::string scene = quoted_scene("mirrors");
     check_refused(outputs, {"verify", "--as", "devices"}, 2, {"--as \"devices\": must be a render, such as"});
     check_refused(outputs, {"verify", "--as", "render --help"}, 2, {"--as: must be a render without --help"});
     check_refused(outputs, {"verify", "--as", "render " + scene + " --lens 2"}, 2, {"--as: render: no option --lens"});
