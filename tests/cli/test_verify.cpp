@@ -281,11 +281,13 @@ TEST_CASE("verify: skips checks that the device does not support; if all are ski
 
 TEST_CASE("verify --full: fails if the driver has no binary of a program", "[cli][verify]") {
     const std::vector<std::string> command = {"verify", "--full", "--only", "binaries of glass"};
-    const RunOutcome right = run_raya(command), faulty = run_raya(command, device_with_fault("clGetProgramInfo 4453 0"));
+    const RunOutcome right = run_raya(command),
+                     faulty = run_raya(command, device_with_fault("clGetProgramInfo 4453 0"));
     INFO(right.describe() + faulty.describe());
     CHECK(right.code == 0);
     CHECK(faulty.code == 4);
-    CHECK_THAT(faulty.out, Catch::Contains("FAIL  image     binaries of glass fp32") && Catch::Contains("has no binary"));
+    CHECK_THAT(faulty.out,
+               Catch::Contains("FAIL  image     binaries of glass fp32") && Catch::Contains("has no binary"));
 }
 
 TEST_CASE("verify --device all: checks every usable device", "[cli][verify]") {

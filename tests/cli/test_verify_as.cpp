@@ -79,14 +79,15 @@ TEST_CASE("verify --as: without reference images in the format, compares with th
 }
 
 TEST_CASE("verify --as: the torus, and an offset that reference images do not allow", "[cli][verify]") {
-    const RunOutcome torus = verify_as("render " + quoted_scene("polygons") + " --machine torus --nodes 2x2x1 --lanes 4",
-                                       {"--only", "image polygons"});
+    const RunOutcome torus =
+        verify_as("render " + quoted_scene("polygons") + " --machine torus --nodes 2x2x1 --lanes 4",
+                  {"--only", "image polygons"});
     INFO(torus.describe());
     CHECK(torus.code == 0);
     CHECK_THAT(torus.out, Catch::Contains("PASS  image     polygons fp32, as given") &&
                               Catch::Contains("PASS  image     polygons.nff 32x32") && !Catch::Contains("filter"));
-    const RunOutcome offset =
-        verify_as("render " + quoted_scene("mirrors") + " --size 40 --offset 35 --lanes 4", {"--only", "image mirrors"});
+    const RunOutcome offset = verify_as("render " + quoted_scene("mirrors") + " --size 40 --offset 35 --lanes 4",
+                                        {"--only", "image mirrors"});
     INFO(offset.describe());
     CHECK(offset.code == 0);
     CHECK_THAT(offset.out, Catch::Contains("SKIP  image     mirrors spa22, as given") &&
@@ -114,8 +115,8 @@ TEST_CASE("verify --as: builds the same program as the render", "[cli][verify]")
     render.insert(render.end(), more.begin(), more.end());
     const auto of_render = trace_builds(render);
     REQUIRE(of_render.size() == 1);
-    const auto of_verify = trace_builds(
-        {"verify", "--as", "render " + quoted_scene("mirrors") + " --size 64" + options, "--only", "image mirrors.nff"});
+    const auto of_verify = trace_builds({"verify", "--as", "render " + quoted_scene("mirrors") + " --size 64" + options,
+                                         "--only", "image mirrors.nff"});
     CHECK(of_verify.size() == 2);  // the render's program and the simplest one
     CHECK(of_verify.contains(*of_render.begin()));
 }

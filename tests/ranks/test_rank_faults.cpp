@@ -33,6 +33,8 @@ void check_message(const ScratchFolder& outputs, const RanksOutcome& run, int co
 }
 
 // Returns arguments of a render that has not ended when run_ranks() sends a signal.
+bool is_open_mpi_6(const Mpi& mpi) { return contains(run_ranks(mpi, {"--version"}).out, "(Open MPI) 6."); }
+
 Arguments long_render(const ScratchFolder& outputs, const std::string& machine) {
     return {"render",
             scene_file("centre"),
@@ -135,6 +137,10 @@ TEST_CASE("mpirun: a rank out of memory ends all ranks", "[ranks][.mpirun]") {
                                                      preload_command(RAYA_CL_FAULTS, "RAYA_FAULT", "new 1000000 0"),
                                                      large_render)),
                 2, {"raya: rank " + std::to_string(rank) + " on ", "out of memory on the host"});
+        // The memory limit may cause an error in raya, in the driver or in MPI, so the text is not checked. Open MPI
+        // 6.0.0rc2 itself hangs.
+        if (!is_open_mpi_6(mpi))
+            check_ended(outputs, run_ranks(mpi, rank_script.arguments(mpi, 3, 0, "ulimit -v 400000", large_render)), 2);
     }
 }
 
@@ -164,12 +170,11 @@ TEST_CASE("mpirun: a killed rank, SIGINT and SIGTERM end all ranks", "[ranks][.m
             const Arguments arguments = launch_arguments(mpi, 3, long_render(outputs, machine));
             for (const std::uint32_t rank : quick(1, {2u, 0u}))
                 check_ended(outputs, run_ranks(mpi, arguments, 3, {.signal = SIGKILL, .rank = rank}), 1);
-            const bool kills_at_once = contains(run_ranks(mpi, {"--version"}).out, "(Open MPI) 6.");
             for (const int signal : quick(1, {SIGINT, SIGTERM})) {
                 const Arguments redirected =
                     rank_script.arguments(mpi, 3, 0, "exec 2>" + file, long_render(outputs, machine));
                 check_ended(outputs, run_ranks(mpi, redirected, 3, {.signal = signal}, late_kill), 0);
-                if (!kills_at_once) CHECK_THAT(file_contents(file), Catch::EndsWith("raya: interrupted\n"));
+                if (!is_open_mpi_6(mpi)) CHECK_THAT(file_contents(file), Catch::EndsWith("raya: interrupted\n"));
             }
         }
 }

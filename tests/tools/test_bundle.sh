@@ -25,7 +25,7 @@ system=$(getconf GNU_LIBC_VERSION | cut -d' ' -f2)
 mkdir "$scratch/away" "$scratch/home"
 tar -xzf "$scratch/one.tar.gz" -C "$scratch/away"
 top=$(echo "$scratch"/away/raya-*)
-found=$(grep -rlF -e "$root/host/" -e "$root/kernels/" -e "$root/scenes/" -e "$root/build" "$top" || true)  # "/raya" would be part of many texts
+found=$(grep -rlaP "(?<![\w.~}\x00-])\Q$root\E/" "$top" || true)  # a whole path: /raya/ also ends many others
 [[ -z $found ]] || fail "the path of the sources is in: $found"
 grep -q "$glibc or newer" "$top/README.md" || fail "README.md has another glibc than $glibc"
 run_unpacked() {  # run_unpacked COMMAND...: sets code, out and loaded

@@ -19,7 +19,7 @@ run_installed() {  # run_installed COMMAND...: runs the command without the buil
 expect() { [[ $code == "$1" && $out == *"$2"* ]] || fail "exit code $code: $out"; }  # expect CODE TEXT
 
 # No text file contains a path of the sources or the build. (Programs contain such paths only in debugging information.)
-found=$(grep -rIlF -e "$root/host/" -e "$root/kernels/" -e "$root/scenes/" -e "$build" "$prefix" || true)  # "/raya/" would be part of many texts
+found=$(grep -rIlP "(?<![\w.~}-])(\Q$root\E/|\Q$build\E)" "$prefix" || true)  # a whole path: /raya/ also ends many others
 [[ -z $found ]] || fail "the path of the sources is in: $found"
 ! objdump -p "$prefix/bin/raya" "$prefix"/lib/raya/*.so | grep -E "R(UN)?PATH.*($root|$build)" || fail "the search path of libraries leads to the build"
 
