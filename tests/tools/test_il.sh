@@ -26,15 +26,19 @@ variables=(A=)
 preload=()
 run verify --list --il
 if ((code == 3)); then
-    preload=("LD_PRELOAD=$library")
-    for arguments in "verify" "verify --device 0" "bench --device 0" "render $root/scenes/planes.nff --device 0 -o $scratch/x.pfm"; do
-        # shellcheck disable=SC2086  # several words
-        run $arguments --il
-        ((code == 3)) || fail "exit code $code of $arguments on a device that does not accept SPIR-V"
+    ln -s "$library" "$scratch/spirv.so"  # LD_PRELOAD knows no blanks
+    preload=("LD_PRELOAD=$scratch/spirv.so")
+    refuse() {  # refuse ARGUMENT...
+        run "$@" --il
+        ((code == 3)) || fail "exit code $code of $* on a device that does not accept SPIR-V"
         expect "accept"
         expect "SPIR-V"
         expect "remedy: "
-    done
+    }
+    refuse verify
+    refuse verify --device 0
+    refuse bench --device 0
+    refuse render "$root/scenes/planes.nff" --device 0 -o "$scratch/x.pfm"
 fi
 run "${render[@]}"
 ((code == 0)) || fail "exit code $code from source"

@@ -5,7 +5,7 @@ damaged reports are refused.
     tests/tools/test_reports.py RAYA PATCH_KERNELS [MPIRUN]      without MPIRUN, reports of ranks are skipped
 RAYA_REPORT_MUTATIONS: number of damaged reports (600); RAYA_REPORT_SEED: their seed (random). Exit code 77: no jsonschema.
 """
-import copy, json, os, random, re, subprocess, sys, tempfile, time, warnings
+import copy, json, os, random, re, shlex, subprocess, sys, tempfile, time, warnings
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -171,7 +171,8 @@ class Reports:
         if self.mpirun:
             self.make("verify", *check, launcher=[self.mpirun, "-n", "2"])
         # The only check is skipped, because there are no stored results in this format.
-        self.make("verify", "verify", "--as", f"render {scene} --lanes 1 --format e7m11", "--only", "number", "--report", "r.json", code=4)
+        skipped = f"render {shlex.quote(str(scene))} --lanes 1 --format e7m11"
+        self.make("verify", "verify", "--as", skipped, "--only", "number", "--report", "r.json", code=4)
         self.run(self.patch_kernels, "kernels", *FAULT)
         self.make("verify", *check, "--kernel-dir", "kernels", code=4)
         for arguments in ((self.odd_scene(), "--accel", "grid"), (self.odd_mesh(),), (SCENES / "centre.nff", "--offset", "3")):
