@@ -202,8 +202,8 @@ TEST_CASE("kernel cache: raya uses a private folder if other users may write PoC
         give_to_nobody(homes / name);
     ::chmod((homes / "above").c_str(), 0777);
     check_private_folder(homes / "above", "", "/above' (mode 0777)");
+    if (::geteuid() != 0) return;  // the folders are this user's
     check_private_folder(homes.path(), "", "is not writable");
-    if (::geteuid() != 0) return;
     fs::create_directories(homes / "foreign/.cache/pocl");
     REQUIRE(::chown((homes / "foreign/.cache/pocl").c_str(), 1, 1) == 0);
     ::chmod((homes / "foreign/.cache/pocl").c_str(), 0777);

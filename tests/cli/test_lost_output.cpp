@@ -39,7 +39,7 @@ TEST_CASE("stderr: if it is closed or full, the exit code does not change", "[cl
 TEST_CASE("stdout: if it is closed, output does not go into a file that raya opens", "[cli]") {
     const ScratchFolder folder;
     const std::string image = folder / "x.pfm";
-    CHECK(code_of("render " + scene_file("planes") + " --size 4 --pes 4 --lanes 4 -o " + image, ">&- 2>&-") == 2);
+    CHECK(code_of("render '" + scene_file("planes") + "' --size 4 --pes 4 --lanes 4 -o " + image, ">&- 2>&-") == 2);
     CHECK(file_contents(image).size() == std::string("PF\n4 4\n-1.0\n").size() + 4 * 4 * 3 * 4);
 }
 

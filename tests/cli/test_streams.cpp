@@ -175,7 +175,7 @@ TEST_CASE("-: messages name stdin and the line", "[cli]") {
     CHECK(shell(kRender + "- -o x.ppm <&- 2> log") == 2);
     CHECK(shell(kRender + "- -o x.ppm < . 2> log") == 2);
     CHECK(contains(file_contents(folder / "log"), "stdin: cannot read the scene"));
-    CHECK(shell("(echo 'la 1 1 1'; cat " + scene_file("planes") + ") | " + kRaya + "info - > out 2> log") == 0);
+    CHECK(shell("(echo 'la 1 1 1'; cat " + kScene + ") | " + kRaya + "info - > out 2> log") == 0);
     CHECK(contains(file_contents(folder / "log"), "warning: stdin:1: entity 'la'"));
     CHECK(contains(file_contents(folder / "out"), "skipped stdin:1: entity 'la'"));
 }
@@ -185,7 +185,7 @@ TEST_CASE("-o -: a failed write to stdout causes exit code 2", "[cli]") {
     const Shell shell{folder};
     for (const std::string redirection : {"> /dev/full", ">&-"}) {
         CAPTURE(redirection);
-        CHECK(shell(kRender + scene_file("planes") + " -o - --quiet" + kSmallOptions + redirection + " 2> log") == 2);
+        CHECK(shell(kRender + kScene + " -o - --quiet" + kSmallOptions + redirection + " 2> log") == 2);
         CHECK(contains(file_contents(folder / "log"), "cannot write 'stdout'"));
         CHECK(shell(kRaya + "generate random 5 -o - " + redirection + " 2> log") == 2);
     }
@@ -224,7 +224,7 @@ TEST_CASE("-: a message says that raya reads a terminal; binary output to a term
     CHECK(shell(kRaya + "info - < " + terminal.name() + " > out 2> log") == 0);
     CHECK(contains(file_contents(folder / "log"), "raya: reading stdin from the terminal; end with Ctrl-D"));
     CHECK(contains(file_contents(folder / "out"), "stdin: 1 object: 1 sphere"));
-    CHECK(shell(kRender + scene_file("planes") + " -o -" + kSmallOptions + "> " + terminal.name() + " 2> log") == 2);
+    CHECK(shell(kRender + kScene + " -o -" + kSmallOptions + "> " + terminal.name() + " 2> log") == 2);
     CHECK(contains(file_contents(folder / "log"), "stdout is a terminal"));
 }
 
