@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <iomanip>
 #include <memory>
+#include <sstream>
 #include <vector>
 
 #include "host/base/standard_streams.hpp"
@@ -16,7 +18,10 @@
 namespace raya {
 
 RenderCommand parse_render(const std::string& text) {
-    std::vector<std::string> words = CLI::detail::split_up(text);
+    std::vector<std::string> words;  // those with blanks are in quotes
+    std::istringstream in(text);
+    for (std::string word; in >> std::ws && !in.eof(); words.push_back(word))
+        in >> std::quoted(word, in.peek() == '\'' ? '\'' : '"');
     if (!words.empty() && words.front() == "raya") words.erase(words.begin());
     if (words.empty() || words.front() != "render")
         throw UserError(fmt::format("--as \"{}\": must be a render, such as \"render scene.nff --lanes 8\"", text));

@@ -146,7 +146,8 @@ TEST_CASE("verify --as: refuses what raya render refuses", "[cli][verify]") {
     check_refused(outputs, {"verify", "--as", "render " + scene + " --lens 2"}, 2, {"--as: render: no option --lens"});
     check_refused(outputs, {"verify", "--as", "render " + scene + " --nodes 2x2x2"}, 2, {"--as: --nodes"});
     check_refused(outputs, {"verify", "--as", "render -"}, 2, {"--as: the scene must be a file"});
-    check_refused(outputs, {"verify", "--as", "render no-such.nff"}, 2, {"no-such.nff: cannot read the scene"});
+    for (const char* render : {"render 'no such.nff'", "  render \"no such.nff\" ", "render 'no such.nff"})
+        check_refused(outputs, {"verify", "--as", render}, 2, {"raya: no such.nff: cannot read the scene"});
     check_refused(outputs, {"verify", "--as", "render " + scene + " --group 5000"}, 2, {"--group 5000"});
     check_refused(outputs, {"verify", "--as", "render " + scene, "--full"}, 2, {"--as with --brief, --quick, --full"});
     check_refused(outputs, {"verify", "--as", "render " + scene + " --device no-such-device"}, 3, {"no-such-device"});
