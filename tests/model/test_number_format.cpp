@@ -15,7 +15,7 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kSeed = 22;
+constexpr std::uint64_t kFirstSeed = 22;
 
 /// Returns a random number of either sign. Its exponent may lie slightly outside the format's range. Often the number
 /// lies on or next to a number of the format or a tie between two such numbers.
@@ -32,12 +32,12 @@ double random_double(SplitMix& random, const NumberFormat& format) {
 
 void check_rounding(const NumberFormat& format) {
     MpfrOracle oracle(format);
-    SplitMix random(kSeed);
+    SplitMix random(kFirstSeed);
     for (int i = 0; i < 50'000; ++i) {
         const double value = random_double(random, format);
         const float found = round_to_format(value, format), expected = oracle.round(value);
         if (std::bit_cast<std::uint32_t>(found) == std::bit_cast<std::uint32_t>(expected)) continue;
-        CAPTURE(format_name(format), kSeed, i, value, expected);
+        CAPTURE(format_name(format), kFirstSeed, i, value, expected);
         FAIL("the value is rounded to " << found);
     }
 }

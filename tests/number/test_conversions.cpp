@@ -11,7 +11,7 @@
 namespace raya {
 namespace {
 
-constexpr std::uint64_t kSeed = 17;
+constexpr std::uint64_t kFirstSeed = 17;
 constexpr std::size_t kRows = 20'000;
 
 /// Appends `rows` to `all`, and the expected results of `operations` for these rows to `expected`.
@@ -28,7 +28,7 @@ void append(NumberRows& all, std::vector<ExpectedNumbers>& expected, const Numbe
 
 TEST_CASE("exact operations are exact, conversions round once", "[number][conversions]") {
     // `fp32_rows` has normal fp32 numbers and infinities, `integer_rows` integers.
-    NumberRows fp32_rows = RandomOperands({8, 23, false}, kSeed).rows(kRows), integer_rows;
+    NumberRows fp32_rows = RandomOperands({8, 23, false}, kFirstSeed).rows(kRows), integer_rows;
     fp32_rows.a[0] = INFINITY;
     fp32_rows.a[1] = -INFINITY;
     for (std::uint32_t i = 0; i < kRows; ++i) integer_rows.add(std::bit_cast<float>(i), 1, 1);
@@ -36,10 +36,10 @@ TEST_CASE("exact operations are exact, conversions round once", "[number][conver
          {NumberFormat{5, 4, true}, NumberFormat{6, 15, false}, NumberFormat{8, 21, false}}) {
         NumberRows rows;
         std::vector<ExpectedNumbers> expected;
-        append(rows, expected, format, RandomOperands(format, kSeed).rows(kRows), {kNeg, kAbs, kMax, kFloor});
+        append(rows, expected, format, RandomOperands(format, kFirstSeed).rows(kRows), {kNeg, kAbs, kMax, kFloor});
         append(rows, expected, format, fp32_rows, {kRound});
         append(rows, expected, format, integer_rows, {kFromIndex});
-        CAPTURE(format_name(format), kSeed);
+        CAPTURE(format_name(format), kFirstSeed);
         CHECK(wrong_numbers(number_build(format), rows, expected) == "");
     }
 }

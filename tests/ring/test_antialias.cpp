@@ -126,7 +126,7 @@ std::vector<std::uint64_t> supersampling_cost(const CostImage& fine, const Image
             std::uint64_t sum = 0;
             for (const auto& offset : offsets_of(c.antialias))
                 sum += fine.cycles[std::size_t((2 * row + 1 + offset[0]) * fine.width + 2 * column + 1 + offset[1])];
-            cost.push_back(value_at(mask, row, column, 0) ? sum : 0);
+            cost.push_back(value_at(mask, row, column, 0) != 0 ? sum : 0);
         }
     return cost;
 }
