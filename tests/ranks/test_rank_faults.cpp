@@ -32,9 +32,9 @@ void check_message(const ScratchFolder& outputs, const RanksOutcome& run, int co
     check_ended(outputs, run, 1);
 }
 
-// Returns arguments of a render that has not ended when run_ranks() sends a signal.
 bool is_open_mpi_6(const Mpi& mpi) { return contains(run_ranks(mpi, {"--version"}).out, "(Open MPI) 6."); }
 
+// Returns arguments of a render that has not ended when run_ranks() sends a signal.
 Arguments long_render(const ScratchFolder& outputs, const std::string& machine) {
     return {"render",
             scene_file("centre"),

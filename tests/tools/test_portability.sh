@@ -292,6 +292,19 @@ for other in "--write" "--list" "--junit x.xml"; do
     matrix --root trixie $other
     ((code == 2)) || fail "exit code $code of --root with $other"
 done
+# The page's rows of --root: a known failure is marked and explained, an unknown one is not.
+rows=$(python3 -B - "$root/tools" <<'EOF'
+import importlib.machinery, importlib.util, sys
+sys.path.insert(0, sys.argv[1])
+loader = importlib.machinery.SourceFileLoader("portability", sys.argv[1] + "/portability")
+portability = importlib.util.module_from_spec(importlib.util.spec_from_loader("portability", loader))
+loader.exec_module(portability)
+saved = {"devices": {"PoCL loops": ["a CPU", "6.0"]}, "cells": {"PoCL loops, image": ["FAIL 2/23", 3, ["two"]], "PoCL loops, machine": ["FAIL 1/25", 4, []]}}
+print(portability.rows_of_root("trixie", saved, ["number", "machine", "image"]))
+EOF
+)
+[[ $rows == *"['trixie: PoCL loops', 'a CPU', '6.0', '', 'FAIL 1/25', 'XFAIL 2/23', '7']"*"'image', 'two')"*"'image', 'FAIL 2/23 (expected: "* ]] ||
+    fail "rows of --root: $rows"
 matrix --checks renders,nonsense
 ((code == 2)) || fail "exit code $code of an unknown check"
 echo "tools/portability: as expected"
