@@ -16,11 +16,9 @@ constexpr std::pair<const char*, const char*> kMpiSettings[] = {
     {"PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"},
     {"PRTE_MCA_mapby", ":oversubscribe"}};
 
-// Unless RAYA_TUNED or RAYA_BINARIES is set, tests ignore tuning results (raya tune) and the kernel binaries in the
-// program's folder.
+// Unless RAYA_TUNED is set, tests ignore tuning results (raya tune).
 int main(int argc, char** argv) {
     setenv("RAYA_TUNED", "off", 0);
-    setenv("RAYA_BINARIES", "off", 0);
     for (const auto& [name, value] : kMpiSettings) setenv(name, value, 1);
     raya::set_program_file(RAYA_PROGRAM);
     const raya::KernelCache cache;

@@ -107,21 +107,16 @@ fs::path module_folder() {
     return fs::weakly_canonical(program.filename() == "bin" ? program.parent_path() / "lib/raya" : program, failure);
 }
 
-std::string unsafe_code_file_reason(const fs::path& file) {
-    const ProgramFile program = program_file();
-    // Folders above the program are not checked, because a user who may change them could replace the program itself.
-    std::string reason =
-        unsafe_path_reason(file.parent_path(), {::geteuid(), program.owner}, Sticky::kRefused, program.folder);
-    if (reason.empty()) reason = unsafe_entry_reason(file, {::geteuid(), program.owner}, Sticky::kRefused);
-    return reason;
-}
-
 fs::path module_file(const std::string& name) {
     const fs::path file = module_folder() / name;
     std::error_code failure;
     if (!fs::is_regular_file(fs::symlink_status(file, failure)))
         throw ModuleError(fmt::format("there is no file '{}'", file.string()));
-    const std::string reason = unsafe_code_file_reason(file);
+    const ProgramFile program = program_file();
+    // Folders above the program are not checked, because a user who may change them could replace the program itself.
+    std::string reason =
+        unsafe_path_reason(file.parent_path(), {::geteuid(), program.owner}, Sticky::kRefused, program.folder);
+    if (reason.empty()) reason = unsafe_entry_reason(file, {::geteuid(), program.owner}, Sticky::kRefused);
     if (reason.empty()) return file;
     throw UserError(
         fmt::format("refused to load '{}': {}; remedy: chmod go-w, or install raya as root", file.string(), reason));

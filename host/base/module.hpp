@@ -38,11 +38,6 @@ std::filesystem::path module_file(const std::string& name);
 /// folder is named `bin`, else the program's folder. Throws ModuleError if the program's path cannot be read.
 std::filesystem::path module_folder();
 
-/// Checks if users other than root, this user and the program's owner may change `file`, its folder, or any higher
-/// folder that does not contain the program. Returns the reason if they may, as unsafe_path_reason() does, else an
-/// empty string.
-std::string unsafe_code_file_reason(const std::filesystem::path& file);
-
 /// Makes module_folder() use the path of `file` instead of the program's. For the Python module and tests.
 void set_program_file(const std::filesystem::path& file);
 

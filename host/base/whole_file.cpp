@@ -9,7 +9,9 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -21,6 +23,31 @@
 namespace raya {
 namespace fs = std::filesystem;
 namespace {
+
+/// Names in messages: of inputs, by file_version(), and of promised outputs, by file_identity().
+struct UsedFiles {
+    std::mutex mutex;
+    std::map<std::string, std::string> inputs, outputs;
+};
+
+UsedFiles& used_files() {
+    static UsedFiles files;
+    return files;
+}
+
+/// Returns a text that identifies a regular file and its contents: device, inode, and time of the last change, because
+/// a new file may get the inode of a deleted one. Empty if there is no such file.
+std::string file_version(const fs::path& path) {
+    struct stat s {};
+    if (::stat(path.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return "";
+    return fmt::format("{}:{}:{}.{}", s.st_dev, s.st_ino, s.st_ctim.tv_sec, s.st_ctim.tv_nsec);
+}
+
+/// Throws UserError if the output `name` is the input `version`. Call with the lock held.
+void refuse_input(const UsedFiles& files, const std::string& version, const std::string& name) {
+    if (const auto input = files.inputs.find(version); input != files.inputs.end())
+        throw UserError(fmt::format("{}: would overwrite the input {}; name another file", name, input->second));
+}
 
 [[noreturn]] void refuse_to_read(int error) { throw UnreadableFile(std::generic_category().message(error)); }
 
@@ -198,6 +225,52 @@ std::string read_file(const std::filesystem::path& path, Pipes pipes, std::uint6
     return read_all(file.number, static_cast<std::uint64_t>(status.st_size), max_bytes);
 }
 
+void register_input(const fs::path& path, const std::string& name) {
+    const fs::path file = is_standard_stream(path) ? "/dev/stdin" : path;
+    const std::string version = file_version(file);
+    if (version.empty()) return;
+    UsedFiles& files = used_files();
+    const std::lock_guard lock(files.mutex);
+    const auto input = files.inputs.emplace(version, path.string()).first;
+    if (!name.empty()) input->second = name;
+    if (const auto output = files.outputs.find(file_identity(file)); output != files.outputs.end())
+        refuse_input(files, version, output->second);
+}
+
+void forget_input(const fs::path& path) {
+    const std::lock_guard lock(used_files().mutex);
+    used_files().inputs.erase(file_version(path));
+}
+
+std::string read_input(const fs::path& path, Pipes pipes, std::uint64_t max_bytes) {
+    register_input(path);
+    return read_file(path, pipes, max_bytes);
+}
+
+void promise_output(const fs::path& path, const std::string& name) {
+    const bool is_stdout = is_standard_stream(path);
+    const fs::path file = is_stdout ? "/dev/stdout" : path;
+    // If an earlier check has reserved stdout for a file, /dev/stdout refers to stderr.
+    const bool is_known = !is_stdout || !stdout_is_reserved();
+    std::string identity = is_known ? file_identity(file) : "";
+    if (identity.empty() && is_stdout) identity = path.string();
+    UsedFiles& files = used_files();
+    const std::lock_guard lock(files.mutex);
+    if (is_known) refuse_input(files, file_version(file), name);
+    if (identity.empty()) return;
+    const auto [output, is_new] = files.outputs.emplace(identity, name);
+    if (is_new || output->second == name) return;
+    if (is_stdout && output->second.ends_with(" -"))
+        throw UserError(fmt::format("{} and {}: only one file can go to stdout; name files for the other options",
+                                    output->second, name));
+    throw UserError(fmt::format("{}: the same file as {}; name another file", name, output->second));
+}
+
+void forget_promised_outputs() {
+    const std::lock_guard lock(used_files().mutex);
+    used_files().outputs.clear();
+}
+
 void check_writable(const fs::path& path) {
     checked_target(path);
     if (is_standard_stream(path)) reserve_stdout();
@@ -219,6 +292,10 @@ void write_whole_file(const fs::path& path, std::string_view bytes) {
 void write_whole_file(const fs::path& path, const std::function<std::string_view()>& next_piece) {
     const Target target = checked_target(path);
     if (target.direct) return write_direct(path, next_piece);
+    {
+        const std::lock_guard lock(used_files().mutex);
+        refuse_input(used_files(), file_version(target.file), path.string());
+    }
     const auto temporary = open_temporary(target.file, path);
     if (const int error = write_and_close(temporary->descriptor, next_piece)) refuse(path, error);
     if (std::rename(temporary->path.c_str(), target.file.c_str()) != 0) refuse(path, errno);

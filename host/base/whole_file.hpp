@@ -23,6 +23,26 @@ enum class Pipes { kRefused, kRead };
 std::string read_file(const std::filesystem::path& path, Pipes pipes = Pipes::kRefused,
                       std::uint64_t max_bytes = std::uint64_t{1} << 36);
 
+/// Remembers that this process reads the file at `path` for its user, so that it does not overwrite the file.
+/// `name`: the file in messages; default: the path. Does nothing if there is no such regular file. Throws UserError if
+/// the file is a promised output.
+void register_input(const std::filesystem::path& path, const std::string& name = "");
+
+/// Forgets an input, because its user asks to replace it.
+void forget_input(const std::filesystem::path& path);
+
+/// Calls register_input() and read_file(). For files that the user names, or that such a file names; raya's own files,
+/// such as checkpoints, are read and replaced without it.
+std::string read_input(const std::filesystem::path& path, Pipes pipes = Pipes::kRefused,
+                       std::uint64_t max_bytes = std::uint64_t{1} << 36);
+
+/// Remembers that the process will write `path`; for "-", the file to which stdout is redirected. `name`: the output in
+/// messages. Throws UserError if the file is an input or a promised output with another name, also through links.
+void promise_output(const std::filesystem::path& path, const std::string& name);
+
+/// Forgets the promised outputs: the call of the Python module that named them ends.
+void forget_promised_outputs();
+
 /// Throws UserError with file, reason and remedy if write_whole_file() could not write `path`: it is a folder, its
 /// folder is missing or not writable, or the existing file is not writable. Writes nothing. Commands call it before
 /// long work, so that they fail early. For "-", reserves stdout for the file (standard_streams.hpp).
@@ -36,7 +56,7 @@ std::string file_identity(const std::filesystem::path& path);
 /// Writes `bytes` to a temporary file in the folder of `path` and renames it, so that no reader sees a partial file and
 /// an old file stays unchanged until the new one is complete. Follows symbolic links, also to a file that does not
 /// exist yet. Writes directly to a device, a pipe (`/dev/stdout`) or stdout ("-"). Throws UserError with file, reason
-/// and remedy. Failures and interruptions (interruption.hpp) leave no temporary file.
+/// and remedy, also if the file is an input. Failures and interruptions (interruption.hpp) leave no temporary file.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// Writes a file in the same way, but in pieces, so that the whole file need not be in memory. `next_piece` returns one

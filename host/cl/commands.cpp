@@ -91,10 +91,6 @@ Program Session::build(const std::string& name, const std::string& source,
     return shared.programs.emplace(std::pair(all_options, source), program).first->second;
 }
 
-void Session::save_binaries() const {
-    for (const auto& [key, program] : shared_context(device_).programs) program.save_binary();
-}
-
 std::jthread Session::compile_notice() const {
     return announces_compiling_ ? raya::announce_compiling(info_.name) : std::jthread();
 }

@@ -10,6 +10,7 @@
 
 #include "host/base/log.hpp"
 #include "host/base/module.hpp"
+#include "host/cl/bad_drivers.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
 #include "host/cl/spirv.hpp"
@@ -128,18 +129,31 @@ std::vector<cl::Device> devices_of(const cl::Platform& platform) {
     } catch (const cl::Error& error) {
         if (error.err() != CL_DEVICE_NOT_FOUND) throw device_error(error.what(), error.err(), "looking for devices");
     }
+    for (const cl::Device& device : devices) device_info(device);
     return devices;
+}
+
+std::string name_of(const cl::Platform& platform) try {
+    return platform.getInfo<CL_PLATFORM_NAME>();
+} catch (const cl::Error&) {
+    return "without a name";
 }
 
 }  // namespace
 
 std::vector<cl::Device> all_devices() {
+    const Discovery discovery;
     std::vector<cl::Device> all;
-    for (const cl::Platform& platform : all_platforms()) {
-        for (const cl::Device& device : devices_of(platform))  // a driver with two ICD files reports its devices twice
-            if (std::none_of(all.begin(), all.end(), [&](const cl::Device& known) { return known() == device(); }))
-                all.push_back(device);
-    }
+    std::vector<std::string> errors;
+    for (const cl::Platform& platform : all_platforms()) try {
+            for (const cl::Device& device : devices_of(platform))  // a driver with two ICD files reports its devices twice
+                if (std::none_of(all.begin(), all.end(), [&](const cl::Device& known) { return known() == device(); }))
+                    all.push_back(device);
+        } catch (const DeviceError& error) {
+            errors.push_back(fmt::format("platform {}: {}", name_of(platform), error.what()));
+        }
+    if (all.empty() && !errors.empty()) throw DeviceError(errors.front());
+    for (const std::string& error : errors) warn("warning: " + error + "; its devices are left out");
     return all;
 }
 

@@ -9,8 +9,8 @@
 
 namespace raya {
 
-/// Returns all devices of all platforms, in the order of the ICD loader; empty if no driver is installed. Throws
-/// DeviceError if a query fails with another error than CL_DEVICE_NOT_FOUND.
+/// Returns all devices of all platforms, in the order of the ICD loader; empty if no driver is installed. Leaves out
+/// platforms whose queries fail, with a warning; throws DeviceError if no other platform has a device.
 std::vector<cl::Device> all_devices();
 
 /// Queries the properties of a device. Throws DeviceError if a query fails.

@@ -25,6 +25,7 @@
 #include "host/base/log.hpp"
 #include "host/base/module.hpp"
 #include "host/base/whole_file.hpp"
+#include "host/cl/bad_drivers.hpp"
 #include "host/error.hpp"
 
 namespace raya {
@@ -60,6 +61,7 @@ extern "C" void report_driver_crash(int signal) {
     remove_files_in_progress();
     const char* operation = current_operation.load();
     if (operation == nullptr && thread != ::getpid()) operation = "running a kernel";  // probably a driver's thread
+    if (first_thread == 0) restart_after_crash();
     if (operation == nullptr || first_thread != 0) {  // outside of drivers, or in this handler itself
         std::signal(signal, SIG_DFL);
         ::raise(signal);

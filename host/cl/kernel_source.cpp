@@ -25,7 +25,7 @@ std::string read_kernel_file(const std::string& file, std::filesystem::path fold
         return found->second;
     }
     try {
-        return read_file(folder / file);
+        return read_input(folder / file);
     } catch (const UnreadableFile& error) {
         throw UserError(
             fmt::format("cannot read kernel file '{}': {}; --kernel-dir must be a folder like raya's own kernels/",

@@ -5,13 +5,10 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <optional>
 #include <utility>
 
-#include "host/base/log.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
-#include "host/cl/kernel_binaries.hpp"
 #include "host/cl/spirv.hpp"
 
 namespace raya {
@@ -72,7 +69,6 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
     : name_(std::move(name)), options_(joined(options)) {
     std::string driver_options = options_;
     const bool from_spirv = remove_il_option(driver_options);
-    if (load_binary(context, device, source, driver_options)) return;
     const std::string operation = fmt::format("building program '{}'", name_);
     const std::string device_name = guarded(operation, [&] {
         program_ = from_spirv ? spirv_program(context, device, source, driver_options, operation)
@@ -91,35 +87,6 @@ Program::Program(const cl::Context& context, const cl::Device& device, std::stri
         throw;
     }
     log_ = log_of(program_, device);
-}
-
-bool Program::load_binary(const cl::Context& context, const cl::Device& device, const std::string& source,
-                          const std::string& driver_options) {
-    try {
-        binary_file_ = kernel_binary_file(device, source, options_);
-        const std::optional<KernelBinary> binary = read_kernel_binary(binary_file_);
-        if (!binary) return false;
-        program_ = cl::Program(context, {device}, {*binary});
-        const DriverCall call("loading a kernel's binary");
-        program_.build(device, driver_options.c_str());
-        binary_file_.clear();
-        log_message(kDetailed, fmt::format("build {}: from the binary installed with raya\n", name_));
-        return true;
-    } catch (const cl::Error& error) {
-        log_message(kDetailed,
-                    fmt::format("binary of {}: refused by the driver: {}\n", name_, error_name(error.err())));
-        return false;
-    } catch (...) {  // out of memory, as in the constructor
-        program_() = nullptr;
-        throw;
-    }
-}
-
-void Program::save_binary() const {
-    if (binary_file_.empty()) return;
-    const auto binaries = guarded(fmt::format("reading the binary of program '{}'", name_),
-                                  [this] { return program_.getInfo<CL_PROGRAM_BINARIES>(); });
-    write_kernel_binary(binary_file_, binaries.at(0));
 }
 
 cl::Kernel Program::checked_kernel(const std::string& kernel_name, std::size_t argument_count) const {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -160,11 +159,6 @@ class Program {
     const std::string& log() const { return log_; }          // build log, with the compiler's warnings
     const cl::Program& handle() const { return program_; }
 
-    /// Writes the binary, which contains the kernels launched so far, to the file from which later runs load it
-    /// (kernel_binaries.hpp). Does nothing if the program was itself loaded from that file. Throws UserError or
-    /// DeviceError on failure.
-    void save_binary() const;
-
     /// Returns the kernel `kernel_name` with parameters Args (see Kernel). Throws DeviceError if there is no such
     /// kernel (with a list of kernels) or if the number of parameters differs (with both numbers).
     template <class... Args>
@@ -175,14 +169,8 @@ class Program {
   private:
     cl::Kernel checked_kernel(const std::string& kernel_name, std::size_t argument_count) const;
 
-    /// Loads the program from its binary file. Returns false if there is no file or the driver rejects it.
-    bool load_binary(const cl::Context& context, const cl::Device& device, const std::string& source,
-                     const std::string& driver_options);
-
     cl::Program program_;
     std::string name_, options_, log_;
-    std::filesystem::path binary_file_;  // file for save_binary(); empty if the program was loaded from it, or
-                                         // if module_folder() fails
 };
 
 }  // namespace raya

@@ -21,6 +21,8 @@
 #include "host/base/interruption.hpp"
 #include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
+#include "host/cl/bad_drivers.hpp"
+#include "host/cl/device.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/file_options.hpp"
@@ -50,7 +52,6 @@ constexpr const char* kEnvironment =
     "  RAYA_DEVICE         the device, unless --device is given\n"
     "  RAYA_BUILD_OPTIONS  added to every kernel's build options, and listed in reports\n"
     "  RAYA_TUNED          off: use the defaults, not the values that raya tune stored\n"
-    "  RAYA_BINARIES       off: ignore the kernels that render --cache-kernels stored, and compile\n"
     "  RAYA_PYTHON         the Python that runs studies; default: /usr/bin/python3\n"
     "  RAYA_MPIRUN         the command with which study ranks starts ranks; default: mpirun --bind-to none\n"
     "  RAYA_MESH_TIMEOUT   seconds that reading a mesh may take; default: 120\n"
@@ -88,6 +89,8 @@ int run_worker(const WorkerRequest& request) {
     try {
         if (request.task == kTrialTask)
             run_trial(request.pipe, request.settings);
+        else if (request.task == kDiscoveryTask)
+            send_line(request.pipe, {{"devices", all_devices().size()}});
         else
             run_checks(request.pipe, request.settings, render_case);
         return kExitOk;
@@ -218,8 +221,12 @@ int run_program(int argc, char** argv, const std::string& build) {
     install_crash_handlers();
     silence_signals_of_other_ranks();
     try {
-        if (const auto request = worker_request(argc, argv)) return run_worker(*request);
+        if (const auto request = worker_request(argc, argv)) {
+            if (request->task != kDiscoveryTask) restart_without_bad_drivers(argv, request->pipe);
+            return run_worker(*request);
+        }
         const std::unique_ptr<Ranks> ranks = open_ranks();
+        if (!ranks) restart_without_bad_drivers(argv, -1);
         if (ranks)
             set_crash_prefix(fmt::format("rank {} on {}: ", ranks->rank(), ranks->host()),
                              failure_delay_s(ranks->rank()));

@@ -5,38 +5,34 @@
 #include "host/cl/kernel_options.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
-#include "host/error.hpp"
-#include "host/report/table.hpp"
 
 namespace raya {
 namespace {
 
-const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
+// Lines of at most 80 characters, unless a driver's own names are longer.
+std::string device_text(std::size_t number, const DeviceInfo& info) {
+    std::string usable = unusable_reason(info).empty() ? "usable" : "not usable: " + unusable_reason(info);
+    for (const auto& [has, what] : {std::pair{info.correctly_rounded_divide_sqrt, "exact division and square root"},
+                                    {info.fused_multiply_add, "fma"},
+                                    {info.profiling, "profiling"}})
+        if (has) usable += fmt::format(", {}", what);
+    return fmt::format(
+        "{}  {}\n   {}, driver {}\n   {}{}{}\n   {}, {} units, {} KB of {} memory, {} MB of global memory\n"
+        "   {} lanes and groups of {} by default\n   {}\n\n",
+        number, info.name, info.platform, info.driver, info.version, info.il_versions.empty() ? "" : ", IL ",
+        info.il_versions, info.type, info.compute_units, info.local_memory_bytes / 1024,
+        info.local_memory_is_dedicated ? "local" : "local (in global)", info.global_memory_bytes >> 20,
+        default_lanes(info), default_group_size(info), usable);
+}
 
 void list_devices() {
-    std::vector<std::vector<std::string>> rows = {{"#", "device", "platform", "type", "units", "lanes", "group",
-                                                   "local KB", "global MB", "div/sqrt exact", "fma", "profiling",
-                                                   "usable"}};
-    std::vector<std::string> versions;
-    for (const cl::Device& device : all_devices()) {
-        const DeviceInfo info = device_info(device);
-        rows.push_back(
-            {std::to_string(rows.size() - 1), info.name, info.platform, info.type, std::to_string(info.compute_units),
-             std::to_string(default_lanes(info)), std::to_string(default_group_size(info)),
-             fmt::format("{}{}", info.local_memory_bytes / 1024, info.local_memory_is_dedicated ? "" : " (global)"),
-             std::to_string(info.global_memory_bytes >> 20), yes_or_no(info.correctly_rounded_divide_sqrt),
-             yes_or_no(info.fused_multiply_add), yes_or_no(info.profiling), yes_or_no(unusable_reason(info).empty())});
-        versions.push_back(fmt::format("{}: {}, driver {}{}{}", versions.size(), info.version, info.driver,
-                                       info.il_versions.empty() ? "" : ", IL ", info.il_versions));
-    }
-    if (versions.empty()) choose_device("");  // throws the error for a computer without devices
-    fmt::print("{}\n", text_table(rows));
-    for (const std::string& version : versions) fmt::print("{}\n", version);
+    const std::vector<cl::Device> devices = all_devices();
+    if (devices.empty()) choose_device("");  // throws the error for a computer without devices
+    for (std::size_t i = 0; i < devices.size(); ++i) fmt::print("{}", device_text(i, device_info(devices[i])));
     fmt::print(
-        "\nlanes, group: the defaults of --lanes and --group. --device and RAYA_DEVICE take a number, a type, or "
-        "part of a name or version.\nThe options in RAYA_BUILD_OPTIONS are added to every kernel's build "
-        "options; the report lists them. For example, RAYA_BUILD_OPTIONS=-cl-opt-disable shows whether the compiler's "
-        "optimiser causes a wrong result.\n");
+        "--device and RAYA_DEVICE take a number, a type, or part of a name or version; --lanes\n"
+        "and --group replace the defaults. RAYA_BUILD_OPTIONS=-cl-opt-disable shows whether\n"
+        "the compiler's optimiser causes a wrong result.\n");
 }
 
 }  // namespace

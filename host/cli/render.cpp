@@ -15,11 +15,7 @@ void render(const CLI::App& parser, const RenderCommand& command, Ranks& ranks) 
     refuse_options_of_other_machines(parser, machine_named(command.render.machine));
     if (ranks.is_first()) check_render(parser, command);  // only rank 0 writes files
     RenderRun run(command, ranks);
-    if (command.frames.given())
-        render_frames(parser, command, run);
-    else
-        render_image(command, run);
-    if (command.cache_kernels && ranks.is_first()) run.session().save_binaries();
+    render_image(command, run);
 }
 
 std::vector<ShortHelp> render_short_help() {
@@ -41,8 +37,6 @@ std::vector<ShortHelp> render_short_help() {
             {"--exposure", image, "Brighten 8-bit images by 2^EV"},
             {"--from", image, "Eye point; also --at, --up, --angle; default: scene's"},
             {"--light", image, "Replace the scene's lights; once for each light"},
-            {"--frames", image, "Render numbered frames, with --turn or --camera-path"},
-            {"--turn", image, "Turn the eye about --at over the frames"},
             {"--pe-memory", machine, "Memory of a PE or node; default: the machine's"},
             {"--fold", machine, "Assignment of slots to PEs"},
             {"--nodes", machine, "Nodes of the torus along x, y and z"},
@@ -53,8 +47,7 @@ std::vector<ShortHelp> render_short_help() {
             {"--trace", output, "Write a trace for ui.perfetto.dev"},
             {"--cost", output, "Write the modelled cycles of each pixel"},
             {"--checkpoint", output, "Save the progress of a long render to this file"},
-            {"--resume", output, "Continue from the file of --checkpoint"},
-            {"--cache-kernels", output, "Store the compiled kernels for later renders"}};
+            {"--resume", output, "Continue from the file of --checkpoint"}};
 }
 
 }  // namespace
@@ -64,7 +57,6 @@ void check_render(const CLI::App& parser, const RenderCommand& command) {
     if (command.counters && !command.needs_roofline())
         throw UserError("--counters: the counts are shown with the roofline: add --profile or --page FILE.html");
     check_checkpoint_options(parser, command.checkpoint);
-    if (command.frames.given()) check_frames(command);
     check_output_files(parser, command);
 }
 
@@ -80,7 +72,6 @@ void add_render_command_options(CLI::App& command, RenderCommand& options) {
              "stdout, as PPM. If a file goes to stdout, the summary goes to stderr");
     add_render_options(command, options.render);
     add_tone_options(command, options.tone);
-    add_frame_options(command, options.frames);
     add_checkpoint_options(command, options.checkpoint);
     add_torus_options(command, options.torus);
     group.next(kDiagnostics);
@@ -119,10 +110,6 @@ CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<Render
         "With --profile or --page, and a CPU as the device: count processor time, page faults and, where "
         "Linux offers them, cycles, instructions, cache misses and branch misses of each kernel. The host "
         "waits for each launch, which makes renders with many launches slower");
-    last_options.next(kKernels);
-    command->add_flag("--cache-kernels", options->cache_kernels,
-                      "Store the binaries of this render's kernels in the program's folder: later renders with the "
-                      "same kernels and options, on this device and driver, do not compile");
     return command;
 }
 

@@ -7,7 +7,6 @@
 #include "host/base/progress.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/cli/checkpoint_options.hpp"
-#include "host/cli/frame_options.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/render_recorder.hpp"
 #include "host/cli/render_run.hpp"
@@ -30,10 +29,9 @@ struct RenderCommand {
     TorusOptions torus;
     std::string image, cost, mask, report, page;  // names of output files; empty: not requested
     ToneOptions tone;
-    FrameOptions frames;
     CheckpointOptions checkpoint;
     TraceOptions trace;
-    bool profile = false, counters = false, cache_kernels = false;
+    bool profile = false, counters = false;
     bool summary = true;          // print the report's summary
     bool prints_profile = true;   // print the table of --profile
     ProgressCallback progress{};  // empty: progress bar on a terminal
@@ -41,11 +39,6 @@ struct RenderCommand {
     bool counts = false;          // count all events, even if nothing else needs them, see needs_counts()
     bool record_costs = false;    // ring: store the cost of each pixel in Render::ring
     bool keep_packets = false;    // torus: store packets, cycles and link_words in Render
-
-    /// Returns the options whose files get frame numbers with --frames, and the file names (empty: not given).
-    std::vector<std::pair<const char*, std::string>> files() const {
-        return {{"--output", image}, {"--cost", cost}, {"--mask", mask}, {"--report", report}};
-    }
 
     /// Returns kOn only if times of device commands are printed or written, because timing slows down a GPU's queue.
     Timing timing() const {
@@ -58,7 +51,7 @@ struct RenderCommand {
     /// machine, they are counted only for options that need them.
     bool needs_counts() const {
         return counts || render.machine != "grande" || needs_report() || needs_roofline() || record_costs ||
-               !cost.empty() || !trace.file.empty() || !checkpoint.file.empty() || frames.given();
+               !cost.empty() || !trace.file.empty() || !checkpoint.file.empty();
     }
     /// Returns true if the report compares kernels with the device's peak.
     bool needs_roofline() const { return profile || !page.empty(); }
@@ -98,14 +91,6 @@ CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<Render
 
 /// Throws UserError if options are incompatible or a file is not writable.
 void check_render(const CLI::App& parser, const RenderCommand& command);
-
-/// Throws UserError for outputs that --frames does not support: stdout, and options for a single image, such as --page.
-void check_frames(const RenderCommand& command);
-
-/// Renders the frames, except those whose settings and files are the same as in the record (frame_record.hpp). Writes
-/// the frames' files and the record, and prints a line for each frame. `parser` has the given options.
-/// Throws UserError for invalid frames and unwritable files.
-void render_frames(const CLI::App& parser, const RenderCommand& command, RenderRun& run);
 
 /// Rank 0 reads the scene and applies the view options. Other ranks get the scene's name and resolution, without
 /// objects. With several ranks and a ring machine, sets `options.accel` on all ranks to rank 0's choice.

@@ -99,9 +99,7 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     const RingSettings settings = ring_settings_of(command, run.options, scene);
     warn_of_slow_search(scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     Session& session = run.session();
-    RingRenderer renderer(session, scene, settings, ranks, [&] {
-        if (!command.frames.given()) drop_objects(input.scene);  // frames need them again
-    });
+    RingRenderer renderer(session, scene, settings, ranks, [&] { drop_objects(input.scene); });
     if (ranks.is_first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     run.progress.stage("rendering");
     const CheckpointFile checkpoint(command.checkpoint);

@@ -5,7 +5,6 @@
 #include "host/cl/device.hpp"
 #include "host/cli/render_command.hpp"
 #include "host/error.hpp"
-#include "host/model/unit_text.hpp"
 
 namespace raya {
 namespace {
@@ -21,32 +20,9 @@ void require_host_device(const cl::Device& device) {
 
 }  // namespace
 
-void RenderProgress::stage(const std::string& label) {
-    if (bar_ && sequence_size_ == 0) bar_->stage(label);
-}
-
-void RenderProgress::begin_images(std::size_t count) {
-    sequence_size_ = count;
-    finished_images_ = 0;
-    if (bar_) bar_->stage(counted(count, "frame"));
-}
-
-void RenderProgress::next_image() {
-    ++finished_images_;
-    if (bar_ && sequence_size_ > 0)
-        bar_->update(static_cast<double>(finished_images_) / static_cast<double>(sequence_size_));
-}
-
 ProgressCallback RenderProgress::callback() {
     if (!bar_ || !bar_->active()) return callback_;
-    if (sequence_size_ == 0) return [this](double fraction) { bar_->update(fraction); };
-    return [this](double fraction) {
-        bar_->update((static_cast<double>(finished_images_) + fraction) / static_cast<double>(sequence_size_));
-    };
-}
-
-void RenderProgress::end() {
-    if (sequence_size_ == 0) bar_.reset();
+    return [this](double fraction) { bar_->update(fraction); };
 }
 
 RenderRun::RenderRun(const RenderCommand& command, Ranks& all_ranks)

@@ -17,33 +17,27 @@ namespace raya {
 
 struct RenderCommand;
 
-/// The progress bar of a command that renders one image or a sequence.
+/// The progress bar of a render, or the caller's callback instead of it.
 class RenderProgress {
   public:
     RenderProgress(bool shows_bar, const std::string& label) : bar_(std::in_place, shows_bar, label) {}
     /// Calls `callback` with the progress instead of showing a bar.
     explicit RenderProgress(ProgressCallback callback) : callback_(std::move(callback)) {}
 
-    /// Sets the bar's label to the current stage of a single image. In a sequence the label is the number of images.
-    void stage(const std::string& label);
+    /// Sets the bar's label.
+    void stage(const std::string& label) {
+        if (bar_) bar_->stage(label);
+    }
 
-    /// Starts a sequence: from now on the bar shows how many of `count` images are finished.
-    void begin_images(std::size_t count);
-    /// Counts the current image as finished.
-    void next_image();
-
-    /// Returns the callback that shows the progress of the current image; empty if the progress is not shown.
+    /// Returns the callback that shows the progress; empty if the progress is not shown.
     ProgressCallback callback();
 
-    /// Erases the bar of a single image, so that its summary can be printed. The bar of a sequence remains below the
-    /// lines of its images.
-    void end();
+    /// Erases the bar, so that the summary can be printed.
+    void end() { bar_.reset(); }
 
   private:
     std::optional<ProgressBar> bar_;
     ProgressCallback callback_;
-    std::size_t sequence_size_ = 0;  // number of images; 0: not a sequence
-    std::size_t finished_images_ = 0;
 };
 
 /// A command's scene, session and progress. Several renders may use them, one after the other.

@@ -168,9 +168,7 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
     refuse_history_with_ranks(settings, ranks);
     refuse_checkpoint_with_records(command, recorder, settings);
     Session& session = run.session();
-    TorusRenderer renderer(session, scene, settings, ranks, [&] {
-        if (!command.frames.given()) drop_objects(input.scene);  // frames need them again
-    });
+    TorusRenderer renderer(session, scene, settings, ranks, [&] { drop_objects(input.scene); });
     if (ranks.is_first()) warn_of_lost_objects(scene, renderer.scale(), settings.format, input.warnings);
     TorusOutputs outputs(command, recorder, settings);
     const CheckpointFile checkpoint(command.checkpoint);

@@ -17,8 +17,6 @@
 namespace raya {
 
 void Warnings::add(const std::string& text) {
-    if (std::ranges::find(texts_, text) != texts_.end())
-        return;  // an earlier frame of the sequence printed this warning
     warn("warning: " + text);
     texts_.push_back(text);
 }

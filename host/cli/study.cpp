@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -71,8 +72,8 @@ std::string studies_text() {
 }
 
 void check_study(const StudyCommand& command) {
-    // The shards and the manifest contain the study and its settings.
-    const bool repeats = !command.merged.empty() || !command.searched.empty() || !command.manifest.empty();
+    // A manifest contains the study and its settings.
+    const bool repeats = !command.searched.empty() || !command.manifest.empty();
     if (!repeats && command.study.empty())
         throw UserError("STUDY is required; raya help study lists the studies; remedy: raya study NAME -o DIR");
     if (command.folder.empty() && command.searched.empty() && command.manifest.empty())
@@ -138,7 +139,7 @@ void add_shard_options(CLI::App& command, StudyCommand& options) {
               "command continues after a stop")
         ->type_name("I/N");
     CLI::Option* const merge = add_file(command, FileUse::kRead, "--merge", options.merged, "DIR...",
-                                        "Folders of all N shards: write the results of the study");
+                                        "Folders of all N shards of this study, with these scenes: write its results");
     CLI::Option* const missing =
         add_file(command, FileUse::kRead, "--missing", options.searched, "DIR...",
                  "Folders of shards: list the shards that are absent, incomplete or damaged (exit code 4)");
@@ -155,7 +156,7 @@ void add_study_options(CLI::App& command, StudyCommand& options) {
     CLI::Option* const study =
         add_file(command, FileUse::kRead, "STUDY", options.study, "STUDY|all|FILE.py",
                  "Name of a study in the list below, all for all studies, or a file with your own study; may be left "
-                 "out with --merge, --missing and --check");
+                 "out with --missing and --check");
     offer_choices(study, study_names());
     add_file(command, FileUse::kRead, "SCENE", options.scenes, "SCENE",
              "Scenes in NFF, or meshes (.obj, .ply, .gltf, .glb, .stl); one of them may be -: stdin; with `all`, "
@@ -169,9 +170,10 @@ void add_study_options(CLI::App& command, StudyCommand& options) {
     add_value(command, "--size", options.size,
               "Image size in pixels a side, 17..4096; default: the study's size, 256 in most studies")
         ->type_name("N");
-    add_value(command, "--views", options.views,
-              "Number of pictures in the ensembles of the studies of load, 20..5000, divided among the scene families; "
-              "default: 108")
+    add_value(
+        command, "--views", options.views,
+        "Number of pictures in the ensembles of the studies of load, 20..5000, divided among the nine scene families "
+        "and rounded up to as many of each; default: 108")
         ->type_name("N");
     add_value(
         command, "--seed", options.seed,
@@ -228,7 +230,16 @@ void check_module_folder(const fs::path& folder) {
     }
     ::setenv("PYTHONSAFEPATH", "1", 1);  // Python imports no modules from the working folder
     ::setenv("RAYA_PROGRAM", program.c_str(), 1);
-    ::execlp(python.c_str(), python.c_str(), "-m", "raya.lab", "--settings", settings.c_str(), nullptr);
+    // Until raya.lab handles signals, Ctrl-C ends Python without a traceback, but not before Python can unblock it.
+    constexpr const char* kStart =
+        "import runpy, signal; signal.getsignal(2) == signal.SIG_IGN or signal.signal(2, signal.SIG_DFL); "
+        "signal.pthread_sigmask(signal.SIG_UNBLOCK, [2]); "
+        "runpy.run_module('raya.lab', run_name='__main__', alter_sys=True)";
+    sigset_t interruption;
+    ::sigemptyset(&interruption);
+    ::sigaddset(&interruption, SIGINT);
+    ::sigprocmask(SIG_BLOCK, &interruption, nullptr);
+    ::execlp(python.c_str(), python.c_str(), "-c", kStart, "--settings", settings.c_str(), nullptr);
     throw UserError(
         fmt::format("study needs Python: cannot start {}: {}; remedy: sudo apt-get install python3, or "
                     "set RAYA_PYTHON to another Python",

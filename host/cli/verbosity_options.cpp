@@ -25,6 +25,7 @@ void add_to(CLI::App& command, const std::shared_ptr<VerbosityFlags>& flags) {
     const OptionGroup group(command, kGeneralOptions);
     for (const char* name : {"--help", "--help-all"})
         if (CLI::Option* help = command.get_option_no_throw(name); help != nullptr) help->group(kGeneralOptions);
+    if (command.get_help_all_ptr() == nullptr) command.set_help_all_flag("--help-all")->group("");  // hidden
     command.add_flag_function(
         "-q,--quiet",
         [flags](std::int64_t count) {

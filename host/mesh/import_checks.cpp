@@ -33,6 +33,7 @@ std::string read_ply_header(std::istream& in, bool& is_ascii, std::vector<PlyEle
         if (word == "element") {
             elements.push_back({next, 0, {}, {}});
             if (!(words >> elements.back().count)) return "PLY: the header has an element without a number";
+            if (elements.back().count > UINT32_MAX) return "PLY: more elements than raya reads";
         }
         if (word == "property" && !elements.empty()) {
             elements.back().is_list.push_back(next == "list");

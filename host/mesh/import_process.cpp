@@ -20,6 +20,7 @@
 
 #include "host/base/child_process.hpp"
 #include "host/base/module.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
 #include "host/mesh/import_records.hpp"
 
@@ -130,6 +131,7 @@ void check_readable(const std::filesystem::path& file, const MeshScene& scene) {
 
 void import_mesh(const std::filesystem::path& file, MeshScene& scene) {
     check_readable(file, scene);
+    register_input(file);
     ImportProcess process(file, scene);
     read_records(process, scene);
 }

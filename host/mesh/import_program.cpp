@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <set>
 #include <string>
@@ -83,17 +84,33 @@ class Records {
     std::FILE* file_;
 };
 
-/// Opens files for assimp, and reports the first that cannot be opened. After a missing material file of an OBJ file,
-/// assimp tries another name and the same names again.
+/// Opens files for assimp: regular files in the mesh's folder or in folders below it, also by their links. Reports them,
+/// and the first that cannot be opened. After a missing material file of an OBJ file, assimp tries another name and the
+/// same names again.
 class ReportingFiles : public Assimp::IOSystem {  // assimp 6 makes DefaultIOSystem final
   public:
-    explicit ReportingFiles(Records& records) : records_(records) {}
-    bool Exists(const char* file) const override { return files_.Exists(file); }
+    ReportingFiles(Records& records, const std::filesystem::path& mesh)
+        : records_(records),
+          mesh_(std::filesystem::canonical(mesh)),
+          folder_(std::filesystem::canonical(std::filesystem::absolute(mesh).parent_path()) / "") {}
+    bool Exists(const char* file) const override {  // assimp 5.2 would open a pipe, and wait
+        std::error_code error;
+        return is_regular_file(std::filesystem::path(file), error);
+    }
     char getOsSeparator() const override { return files_.getOsSeparator(); }
     void Close(Assimp::IOStream* stream) override { files_.Close(stream); }
     bool ComparePaths(const char* one, const char* other) const override { return files_.ComparePaths(one, other); }
     Assimp::IOStream* Open(const char* file, const char* mode) override {
-        Assimp::IOStream* const stream = files_.Open(file, mode);
+        std::error_code error;
+        const std::filesystem::path path = std::filesystem::canonical(file, error);
+        Assimp::IOStream* stream = nullptr;
+        if (!error && is_regular_file(path, error)) {
+            if (path != mesh_ && !path.native().starts_with(folder_.native()))
+                records_.end(std::string("the file '") + file + "' is not in the mesh's folder; remedy: copy it there");
+            records_.put(ImportRecord::kFile);
+            records_.put_text(path.native());
+            stream = files_.Open(file, mode);
+        }
         if (stream == nullptr && !std::exchange(is_missing_, true))
             records_.ignore("file that cannot be opened", std::string("file '") + file + "'");
         return stream;
@@ -102,6 +119,7 @@ class ReportingFiles : public Assimp::IOSystem {  // assimp 6 makes DefaultIOSys
   private:
     Assimp::DefaultIOSystem files_;
     Records& records_;
+    std::filesystem::path mesh_, folder_;
     bool is_missing_ = false;
 };
 
@@ -253,7 +271,7 @@ void put_scene(const aiScene& scene, const Format& format, Records& records) {
     records.put(ImportRecord::kStart);
     try {
         Assimp::Importer importer;
-        importer.SetIOHandler(new ReportingFiles(records));  // the importer deletes it
+        importer.SetIOHandler(new ReportingFiles(records, file));  // the importer deletes it
         std::string extension = file.substr(file.rfind('.') + 1);
         for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
         if (const std::string fault = fault_of_file(file, extension); !fault.empty()) records.end(fault);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/whole_file.hpp"
 #include "host/mesh/mesh_scene.hpp"
 
 namespace raya {
@@ -17,6 +18,9 @@ class RecordReader {
         if (take<ImportRecord>() != ImportRecord::kStart) refuse();
         while (true) {
             switch (take<ImportRecord>()) {
+                case ImportRecord::kFile:
+                    register_input(take_text());
+                    break;
                 case ImportRecord::kSurface:
                     take_surface();
                     break;

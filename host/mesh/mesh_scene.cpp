@@ -130,7 +130,12 @@ void MeshScene::add_face(const Mesh& mesh, std::uint64_t face, std::size_t first
     if (size > 3) {
         const OutlineFault fault = clean_outline(polygon).fault;
         if (fault == OutlineFault::kNone || fault == OutlineFault::kNotFlat) {
-            for (Polygon& triangle : triangles_of(polygon)) add_polygon(scene_, std::move(triangle), std::cref(report));
+            try {
+                for (Polygon& triangle : triangles_of(polygon))
+                    add_polygon(scene_, std::move(triangle), std::cref(report));
+            } catch (const UserError& error) {
+                refuse(place_of(mesh, face) + ": " + error.what());
+            }
             return;
         }
     }

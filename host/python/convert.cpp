@@ -2,23 +2,29 @@
 
 #include <fmt/core.h>
 
+#include "host/base/encoding.hpp"
+
 namespace raya {
 namespace {
 
+// Lists, tuples, numpy arrays.
+bool is_sequence(const py::handle& value) {
+    return PySequence_Check(value.ptr()) != 0 && !py::isinstance<py::str>(value) && !py::isinstance<py::bytes>(value);
+}
+
 std::string text_of(const std::string& option, const py::handle& value) {
     if (py::isinstance<py::bool_>(value))
-        throw py::type_error(fmt::format("{}: the option takes a value, not True", option));
-    if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value)) return py::str(value);
+        throw py::value_error(fmt::format("{}: the option takes a value, not True", option));
+    if (!is_sequence(value)) return py::str(value);
     std::string text;
     for (const py::handle element : value) text += (text.empty() ? "" : ",") + text_of(option, element);
     return text;
 }
 
 bool holds_sequences(const py::handle& value) {
-    if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value)) return false;
+    if (!is_sequence(value)) return false;
     for (const py::handle element : value)
-        if (py::isinstance<py::list>(element) || py::isinstance<py::tuple>(element) || py::isinstance<py::str>(element))
-            return true;
+        if (is_sequence(element) || py::isinstance<py::str>(element)) return true;
     return false;
 }
 
@@ -38,9 +44,15 @@ std::vector<std::string> option_arguments(const py::dict& options) {
         else if (name == "light" && holds_sequences(value))
             for (const py::handle light : value) arguments.push_back(option + '=' + text_of(option, light));
         else
-            arguments.push_back(option + '=' + text_of(option, value));
+            arguments.push_back(option + '=' +
+                                (name == "size" ? replaced(text_of(option, value), ",", "x") : text_of(option, value)));
     }
     return arguments;
+}
+
+void forbid_new(const py::object& type, const char* remedy) {
+    type.attr("__new__") = py::module_::import("builtins").attr("staticmethod")(
+        py::cpp_function([remedy](const py::args&, const py::kwargs&) { throw py::type_error(remedy); }));
 }
 
 py::object python_of(const Json& json) { return py::module_::import("json").attr("loads")(json.dump()); }
@@ -54,6 +66,9 @@ CostImage cost_image_of(const py::array& cost) {
     const CostArray array(cost);
     CostImage image{static_cast<std::uint32_t>(array.shape(1)), static_cast<std::uint32_t>(array.shape(0)), {}};
     image.cycles.assign(array.data(), array.data() + array.size());
+    std::uint64_t sum = 0;  // of all PEs
+    for (const std::uint64_t cycles : image.cycles)
+        if (__builtin_add_overflow(sum, cycles, &sum)) throw py::value_error("cost: the sum is 2^64 or more");
     return image;
 }
 

@@ -20,8 +20,12 @@ using CostArray = py::array_t<std::uint64_t, py::array::c_style | py::array::for
 
 /// Converts keyword arguments to command-line arguments: offset=16 to "--offset=16", strict=True to "--strict",
 /// from_=(1, 2, 3) to "--from=1,2,3", and a list of lights to one --light per element. Omits arguments with the value
-/// False or None. Raises TypeError for True or False in a sequence.
+/// False or None. Raises ValueError for True or False in a sequence.
 std::vector<std::string> option_arguments(const py::dict& options);
+
+/// Makes TYPE.__new__(), whose result would be without contents, raise TypeError with `remedy`. `type`: a class whose
+/// objects only functions make.
+void forbid_new(const py::object& type, const char* remedy);
 
 /// Converts a JSON document to Python's dicts, lists, strings and numbers (by json.loads()).
 py::object python_of(const Json& json);

@@ -105,6 +105,7 @@ double device_seconds(const Result& r) { return r->ring ? trace_seconds(*r->ring
 
 void add_result(py::module_& module) {
     ResultClass result(module, "Result", "The image of a render, its counts and its measurements.");
+    forbid_new(result, "raya.render() makes results");
     result.def_property_readonly("image", image_of, "float32 [H, W, 3]: linear red, green, blue; row 0 is the top.")
         .def_property_readonly(
             "png", [](const Result& r) { return py::bytes(plain_png(r->image())); }, "bytes: an 8-bit PNG, sRGB.")

@@ -69,7 +69,10 @@ std::size_t job_words(const Scene& scene) {
     return pack_job(scene, {{1, 1}, Sampling::kCentres, spa.bounces, cycles_of_events(), spa.format}).words().size();
 }
 
-void save(const Scene& scene, const std::filesystem::path& path) { write_whole_file(path, write_nff(scene)); }
+void save(const Scene& scene, const std::filesystem::path& path) {
+    forget_input(path);  // a loaded scene may replace its file
+    write_whole_file(path, write_nff(scene));
+}
 
 void add_generators(py::module_& module) {
     py::module_ generators = module.def_submodule("generate", "Functions that generate scenes, as raya generate does.");
@@ -98,8 +101,8 @@ void add_generators(py::module_& module) {
 }  // namespace
 
 void add_scenes(py::module_& module) {
-    py::class_<Scene>(module, "Scene", "An immutable scene: objects, surfaces, lights and a view.")
-        .def_readonly("name", &Scene::name)
+    py::class_<Scene> scene(module, "Scene", "An immutable scene: objects, surfaces, lights and a view.");
+    scene.def_readonly("name", &Scene::name)
         .def_property_readonly(
             "width", [](const Scene& s) { return s.view.width; }, "Width of the image in pixels.")
         .def_property_readonly(
@@ -147,10 +150,10 @@ void add_scenes(py::module_& module) {
                  return fmt::format("<raya.Scene {}: {} objects, {}x{}>", s.name, s.object_count(), s.view.width,
                                     s.view.height);
              })
-        .def(py::pickle([](const Scene& s) { return py::make_tuple(s.name, write_nff(s)); },
-                        [](const py::tuple& state) {
-                            return parse_nff(state[1].cast<std::string>(), state[0].cast<std::string>());
-                        }));
+        .def("__reduce__", [](const Scene& s) {
+            return py::make_tuple(py::module_::import("raya").attr("_unpickled"), py::make_tuple(write_nff(s), s.name));
+        });
+    forbid_new(scene, "raya.load() and raya.parse() make scenes");
     module.def(
         "load", loaded, py::arg("path"), py::arg("strict") = false,
         "Reads an NFF file or a mesh. Skips unknown content with a warning unless strict. Raises ValueError with file, "

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "host/base/log.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
@@ -57,18 +58,15 @@ cl::Device choose_device_with_stacks(const std::string& name) {
     }
 }
 
-void refuse_sequences(const RenderCommand& command) {
-    if (command.frames.given())
-        throw UserError("--frames, --turn and --camera-path render many images; call render() for each of them");
-}
-
 RenderCommand parse_options(CLI::App& program, const py::dict& options) {
     RenderCommand command;
     CLI::App* render = program.add_subcommand("render");
     add_render_command_options(*render, command);
     render->callback([&] {
-        refuse_sequences(command);
         refuse_options_of_other_machines(*render, machine_named(command.render.machine));
+        for (CLI::Option* option : render->get_options())
+            if (file_use_of(*option) == FileUse::kWritten && option->count() > 0 && option->as<std::string>() == "-")
+                throw UserError(option->get_name() + " -: name a file; Result has the report and the images");
         check_files(*render);
         check_render(*render, command);
     });
@@ -126,6 +124,14 @@ std::string study_settings(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
+void PythonSession::check_process() {
+    static const pid_t first = ::getpid();
+    if (::getpid() != first)
+        throw DeviceError(
+            "OpenCL does not work in a process that was forked after raya had opened a device; remedy: start it with "
+            "multiprocessing.get_context('spawn')");
+}
+
 PythonSession::PythonSession(const std::string& device)
     : device_(choose_device_with_stacks(device)), session_(device_) {}
 
@@ -137,6 +143,7 @@ void add_study_settings(py::module_& module) {
 PythonSession& PythonSession::shared(const std::string& device) {
     // The map is never destroyed, because drivers may be unloaded before the program destroys static objects.
     static auto* const sessions = new std::map<std::string, PythonSession>;
+    check_process();
     const SignalHandlers handlers;
     return sessions->try_emplace(device, device).first->second;
 }
@@ -147,6 +154,7 @@ std::shared_ptr<Render> PythonSession::render(const Scene& scene, const py::dict
     const PixelSubset pixels = pop_pixels(options);
     CLI::App program;
     RenderCommand command = parse_options(program, options);
+    forget_promised_outputs();
     command.pixels = pixels;
     command.render.scene = scene.name;
     command.record_costs = stores_costs || !command.cost.empty();
@@ -158,8 +166,14 @@ std::shared_ptr<Render> PythonSession::render(const Scene& scene, const py::dict
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         if (!progress.is_none()) progress(fraction);
     };
+    check_process();
+    if (renderer_ == std::this_thread::get_id())
+        throw UserError("render() in the progress function of a render of the same session; remedy: another Session");
     const py::gil_scoped_release no_gil;
     const std::lock_guard lock(mutex_);
+    renderer_ = std::this_thread::get_id();
+    const auto reset = [](std::atomic<std::thread::id>* renderer) { *renderer = std::thread::id(); };
+    const std::unique_ptr<std::atomic<std::thread::id>, decltype(reset)> end(&renderer_, reset);
     const SignalHandlers handlers;
     RenderRun run(command, SceneInput{scene, {}, {}}, device_, session_);
     return std::make_shared<Render>(render_image(command, run).value());

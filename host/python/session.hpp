@@ -2,11 +2,13 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
+#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 
 #include "host/cl/commands.hpp"
 #include "host/cli/render_command.hpp"
@@ -31,9 +33,13 @@ class PythonSession {
     static PythonSession& shared(const std::string& device);
 
   private:
+    /// Throws DeviceError in a process that was forked from the first one.
+    static void check_process();
+
     cl::Device device_;
     Session session_;
     std::mutex mutex_;
+    std::atomic<std::thread::id> renderer_{};  // the thread that renders
 };
 
 /// Smart pointer that holds a render in the Python class Result.

@@ -109,7 +109,7 @@ class NffWriter {
 Scene read_nff(const std::filesystem::path& path, std::vector<SceneRemark>* remarks) {
     std::string text;
     try {
-        text = read_file(path, Pipes::kRead);
+        text = read_input(path, Pipes::kRead);
         return parse_nff(text, input_name(path), remarks);
     } catch (const UnreadableFile& error) {
         throw UserError(fmt::format("{}: cannot read the scene: {}", input_name(path), error.what()));

@@ -88,6 +88,9 @@ void add_polygon(Scene& scene, Polygon polygon, const RemarkOrRefuse& report) {
     // be cut into triangles.
     if (check.fault == OutlineFault::kNoArea || polygon.vertices.size() == 3)
         return report("the polygon " + check.reason, "polygon without area, left out");
+    if (polygon.vertices.size() > kMaxCutCorners)
+        return report("the polygon " + check.reason,
+                      fmt::format("polygon that is not flat and has more than {} corners, left out", kMaxCutCorners));
     report("the polygon " + check.reason, "polygon that is not flat, cut into triangles");
     for (const Polygon& triangle : triangles_of(polygon)) add_polygon(scene, triangle, report);
 }

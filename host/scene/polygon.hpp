@@ -20,7 +20,9 @@ int dropped_axis(const Vec3& normal);
 /// `normal`: the polygon's normal, of any length and either sign. Every triangle has the orientation of the polygon,
 /// and every vertex is used, even one on a straight edge. A self-intersecting outline has no correct triangulation; if
 /// it has no ear, its remaining vertices are cut into a fan. Source: ear clipping (G. H. Meisters, "Polygons have
-/// ears", Amer. Math. Monthly 82, 1975), in the two coordinates other than dropped_axis().
+/// ears", Amer. Math. Monthly 82, 1975), in the two coordinates other than dropped_axis(); its time grows with the
+/// square of the number of vertices or faster. Throws UserError for more than kMaxCutCorners vertices.
+inline constexpr std::size_t kMaxCutCorners = 10'000;
 std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& vertices, const Vec3& normal);
 
 /// Returns the triangles of triangulate() as polygons, with the normals and the surface of `polygon`.

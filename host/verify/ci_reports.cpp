@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "host/base/json.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
 
@@ -16,11 +17,12 @@ std::string trimmed(const std::string& text) {
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-// Returns the text with XML's special characters replaced, and without control characters, which XML 1.0 does not
-// allow.
+// Returns the text with XML's special characters replaced, and without what XML 1.0 does not allow: control characters
+// and bytes that are not UTF-8, which Json::dump() replaces.
 std::string xml_text(const std::string& text) {
     std::string all;
-    for (const char c : text) switch (c) {
+    const Json valid = Json::parse(Json(text).dump(), {"a text"});
+    for (const char c : valid.text()) switch (c) {
             case '&':
                 all += "&amp;";
                 break;
@@ -68,7 +70,7 @@ std::string junit_case(const Check& check) {
 
 std::string contents_of(const std::filesystem::path& path) {
     try {
-        return path.empty() ? "" : read_file(path);
+        return path.empty() ? "" : read_input(path);
     } catch (const UnreadableFile& error) {
         throw UserError(fmt::format("--expect {}: cannot be read: {}", path.string(), error.what()));
     }

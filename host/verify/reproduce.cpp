@@ -1,6 +1,7 @@
 #include "host/verify/reproduce.hpp"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <map>
@@ -92,6 +93,13 @@ std::pair<std::size_t, std::string> capture_wrong_step(const CheckRun& failing, 
                          "devices of this computer; start with a failing check of number or geometry");
 }
 
+// Returns the nearest existing folder in which the folder is, or would be.
+fs::path existing_folder_above(const fs::path& folder) {
+    fs::path above = fs::absolute(folder / "").parent_path().parent_path();
+    while (!fs::exists(above)) above = above.parent_path();
+    return above;
+}
+
 }  // namespace
 
 void check_case_folder(const fs::path& folder) {
@@ -99,17 +107,17 @@ void check_case_folder(const fs::path& folder) {
     if (exists && !(fs::is_directory(folder) && fs::is_empty(folder)))
         throw UserError(
             fmt::format("--reproduce {}: is not an empty folder; remedy: name a new folder", folder.string()));
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw UserError(fmt::format("--reproduce {}: cannot be made: {}", folder.string(), error.message()));
-    if (!exists) fs::remove(folder);
+    const fs::path above = existing_folder_above(folder);
+    if (!fs::is_directory(above) || ::access(above.c_str(), W_OK | X_OK) != 0)
+        throw UserError(fmt::format("--reproduce {}: cannot be made: no permission to write to '{}'", folder.string(),
+                                    above.string()));
 }
 
 std::string reproduce(const std::string& selector, const DeviceChecks& device, const VerifySettings& settings,
                       const Check& check, const fs::path& folder) {
     check_case_folder(folder);
     const CheckRun failing{"", selector, settings_of_one(settings, check.layer + " " + check.name)};
-    const TemporaryFolder scratch(fs::absolute(folder / "").parent_path().string());
+    const TemporaryFolder scratch((existing_folder_above(folder) / "raya-case").string());
     const Observation seen = observe(failing);
     if (seen.passed) no_case(check, "it passes when it runs alone");
     if (seen.steps.empty()) no_case(check, "it fails before the first build of a kernel");
@@ -123,6 +131,7 @@ std::string reproduce(const std::string& selector, const DeviceChecks& device, c
     fs::permissions(scratch.path(), fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec |
                                         fs::perms::others_read | fs::perms::others_exec);
     fs::remove(folder);  // an empty folder
+    fs::create_directories(fs::absolute(folder / "").parent_path().parent_path());
     fs::rename(scratch.path(), folder);
     return fmt::format("{}: a case of '{} {}', {}; make -C {} && {}/repro\n", folder.string(), check.layer, check.name,
                        seen.steps.at(step - 1).name, folder.string(), folder.string());

@@ -56,7 +56,6 @@ std::string with_build_option(const std::string& option) {
 
 Observation observe(const CheckRun& v, std::size_t step, const std::filesystem::path& folder, bool ends_at_step) {
     std::list<EnvironmentVariable> environment;
-    environment.emplace_back("RAYA_BINARIES", "off");
     for (const auto& [name, value] : v.environment) environment.emplace_back(name, value);
     Json request = settings_json(v.settings, v.selector, 0);
     request["capture"] = {{"step", step}, {"folder", folder.string()}};

@@ -69,7 +69,6 @@ TEST_CASE("render --checkpoint, --resume: refuse missing, invalid and conflictin
         torus.insert(torus.end(), records.begin(), records.end());
         refused(torus, {"--checkpoint with --machine torus", records.front()});
     }
-    refused({"--checkpoint", folder / "s.rst", "--frames", "1:2", "--turn", "90"}, {"--checkpoint", "single image"});
 }
 
 TEST_CASE("render --checkpoint: refuses a file that is not a checkpoint, and leaves it unchanged",

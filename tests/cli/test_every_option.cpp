@@ -129,7 +129,7 @@ TEST_CASE("every option: odd values cause no internal error", "[cli][every]") {
 TEST_CASE("render: refuses odd values before it opens a device", "[cli][every]") {
     const ScratchFolder folder;
     const std::set<std::string> accept_any_text = {"--output", "--device", "--kernel-dir"};
-    const std::set<std::string> accept_negative = {"--exposure", "--turn"};
+    const std::set<std::string> accept_negative = {"--exposure"};
     const auto commands = all_commands();
     const auto render =
         std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.path == Arguments{"render"}; });

@@ -149,7 +149,7 @@ TEST_CASE("help render: has the groups of options in this order", "[cli][help]")
     const auto& render = *std::find_if(program.commands.begin(), program.commands.end(),
                                        [](const CommandText& command) { return command.name == "render"; });
     CHECK(groups_of(render) == Arguments{"Files", "Image", "Camera and light", "Machine and mapping",
-                                         "Kernels and device", "Frames", "Checkpoints", "Torus machine", "Diagnostics",
+                                         "Kernels and device", "Checkpoints", "Torus machine", "Diagnostics",
                                          "General options"});
     const std::vector<std::pair<std::string, std::string>> expected_groups = {{"--output", "Files"},
                                                                               {"--strict", "Files"},

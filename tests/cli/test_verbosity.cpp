@@ -120,7 +120,6 @@ TEST_CASE("messages: escape control characters in file names", "[cli][verbosity]
     std::vector<Arguments> runs = {
         {"info", scene, "-v"},
         with_size({"render", scene, "-v", "-o", folder / (unusual + ".ppm"), "--report", report}),
-        with_size({"render", scene, "--frames", "1:2", "--turn", "9", "-o", folder / (unusual + ".ppm")}),
         {"page", report, "-o", folder / (unusual + ".html")},
         {"explore", scene, "--size", "16", "-o", folder / (unusual + ".html")},
         {"info", folder / (unusual + "missing.nff")},
@@ -139,8 +138,7 @@ TEST_CASE("messages: escape control characters in file names", "[cli][verbosity]
 
 TEST_CASE("messages: use the singular after the number 1", "[cli][verbosity]") {
     const ScratchFolder folder;
-    const std::string scene = scene_file("planes"), path = folder / "path.txt";
-    std::ofstream(path) << "angle 40\n";
+    const std::string scene = scene_file("planes");
     const Arguments small = {"--size", "4", "--bounces", "1", "--format", "fp32", "--lanes", "1"};
     const auto with_options = [&](Arguments arguments) {
         arguments.insert(arguments.end(), small.begin(), small.end());
@@ -150,8 +148,6 @@ TEST_CASE("messages: use the singular after the number 1", "[cli][verbosity]") {
         with_options({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--antialias", "filter", "-v"}),
         with_options({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--accel", "bvh"}),
         with_options({"render", scene, "-o", folder / "x.ppm", "--pes", "1", "--accel", "grid:1x1x1"}),
-        with_options({"render", scene, "-o", folder / "y.ppm", "--pes", "1", "--camera-path", path}),
-        with_options({"render", scene, "-o", folder / "x.ppm", "--camera-path", path, "--frames", "1:2"}),
         with_options({"bench", scene, "--pes", "1", "--samples", "1"}),
         {"verify", "--only", "machine bus", "--lanes", "1"}};
     for (const Arguments& arguments : runs) {
@@ -173,7 +169,7 @@ TEST_CASE("-q with -v: refused in either order", "[cli][verbosity]") {
 TEST_CASE("-q, -v: have the same effect before and after the command", "[cli][verbosity]") {
     for (const Arguments& arguments : {Arguments{"devices", "-v"}, Arguments{"-v", "devices"}}) {
         const RunOutcome run = run_without_error(arguments);
-        CHECK_THAT(run.out, Catch::Contains("platform"));
+        CHECK_THAT(run.out, Catch::Contains(", driver "));
     }
     const ScratchFolder folder;
     Arguments arguments = render_16x16(folder, {});
@@ -197,11 +193,10 @@ TEST_CASE("verify -q: prints failures and the last line", "[cli][verify][verbosi
     CHECK_THAT(lines_of(failing_run.out).back(), Catch::Contains(" 2 failed, "));
 }
 
-TEST_CASE("explore, study, render --frames: print nothing with -q", "[cli][verbosity]") {
+TEST_CASE("explore, study: print nothing with -q", "[cli][verbosity]") {
     const ScratchFolder folder;
     std::vector<Arguments> commands = {
-        {"explore", scene_file("planes"), "--size", "16", "-o", folder / "x.html", "--quiet"},
-        render_16x16(folder, {"--frames", "1:2", "--turn", "90", "-q"})};
+        {"explore", scene_file("planes"), "--size", "16", "-o", folder / "x.html", "--quiet"}};
     if (RAYA_STUDIES) commands.push_back({"study", "fig7", "--size", "32", "-o", folder / "fig7", "-q"});
     for (const Arguments& arguments : commands) {
         const RunOutcome run = run_without_error(arguments);

@@ -55,7 +55,6 @@ std::vector<WritingCommand> commands(const std::string& folder) {
          render({"-o", file("x.ppm"), "--checkpoint", file("s.rst"), "--checkpoint-every", "0", "--pes", "4", "--group",
                  "1"}),
          false},
-        {"frames", render({"-o", file("x.ppm"), "--frames", "1:2", "--turn", "90"}), false},
         {"cost", render({"-o", file("x.png"), "--cost", file("x.exr")}), true, true},
         {"render --page", render({"-o", file("x.pfm"), "--page", file("x.html")}), true, true},
         {"explore", {"explore", scene_file("centre"), "--size", "16", "-o", file("x.html")}, true, true},

@@ -1,6 +1,7 @@
 """`raya study --shard`, --merge, --missing and --check: merged results equal those of one process, byte for byte, and every loss and damage of a shard
 is found and repaired by the same command."""
 import filecmp
+import hashlib
 import json
 import os
 import re
@@ -8,13 +9,14 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 raya = pytest.importorskip("raya", reason="the module is not built; configure with -DRAYA_PYTHON=ON")
-from raya.lab import __main__ as program, store, worker  # noqa: E402
+from raya.lab import __main__ as program, shards, store, worker  # noqa: E402
 from raya.lab.store import Store  # noqa: E402
 
 STUDY = '''"""Squares
@@ -109,7 +111,7 @@ def test_stored_results_are_exact(tmp_path):
         assert list(value) == list(VALUE)
         for name, member in VALUE.items():
             assert type(value[name]) is type(member) and np.asarray(value[name]).tobytes() == np.asarray(member).tobytes(), name
-    assert store.bytes_of(value) == store.bytes_of(VALUE)
+    assert store.bytes_of("n", value) == store.bytes_of("n", VALUE) != store.bytes_of("m", VALUE)
 
 
 def test_each_damage_of_a_result_is_detected(tmp_path):
@@ -146,7 +148,7 @@ def test_merged_results_are_those_of_one_process(study, count):
     assert computed() == 8  # each result in one shard
     folders = [f"s{number}" for number in range(count, 0, -1)]
     assert run("--missing", *folders) == 0
-    assert run("--merge", *folders, "-o", "merged") == 0 and computed() == 0
+    assert run(study, "--merge", *folders, "-o", "merged") == 0 and computed() == 0
     assert equal_folders("out", "merged") and {"manifest.json", "squares.csv", "index.html"} <= set(os.listdir("out"))
 
 
@@ -182,11 +184,11 @@ def test_a_damaged_shard_is_found_and_repaired(study, capsys, name):
     assert run("--missing", "s1", "s2", "s3") == 4
     assert capsys.readouterr().out.startswith(f"2/3 {problem}")
     with pytest.raises(ValueError, match=f"shard 2/3 is {problem}"):
-        run("--merge", "s1", "s2", "s3", "-o", "merged")
+        run(study, "--merge", "s1", "s2", "s3", "-o", "merged")
     assert not Path("merged").exists() and computed() == 0
     shard(study, 2)
     assert computed() == repairs and run("--missing", "s1", "s2", "s3") == 0
-    assert run("--merge", "s1", "s2", "s3", "-o", "merged") == 0 and equal_folders("out", "merged")
+    assert run(study, "--merge", "s1", "s2", "s3", "-o", "merged") == 0 and equal_folders("out", "merged")
 
 
 @pytest.mark.parametrize("ending", [signal.SIGKILL, "driver"])
@@ -221,7 +223,7 @@ def test_shards_of_different_runs_are_refused(study):
     with pytest.raises(ValueError, match="s1-copy and s1: both contain shard 1/3"):
         run("--missing", "s1", "s1-copy")
     with pytest.raises(ValueError, match="none: contains no shard"):
-        run("--merge", "none", "-o", "merged")
+        run(study, "--merge", "none", "-o", "merged")
     with pytest.raises(ValueError, match="study table2: has no ensembles to divide"):
         run("table2", "--shard", "1/2", "-o", "t")
     assert not Path("t").exists()
@@ -236,20 +238,82 @@ def test_document_names_the_studies_that_shards_divide():
 def test_merge_refuses_another_program_study_or_scene(study, monkeypatch):
     shutil.copy(Path(__file__).parents[2] / "scenes/glass.nff", "a.nff")
     shard(study, 1, 1, "a.nff")
-    with pytest.raises(ValueError, match="s1: contains a shard of study squares.py, not of fig7"):
+    with pytest.raises(ValueError, match="s1: it is of study squares.py, not of fig7"):
         run("fig7", "--merge", "s1", "-o", "merged")
     with monkeypatch.context() as patch:
         patch.setattr(program.manifest, "program_version", lambda: "raya 9.9.9")
         with pytest.raises(ValueError, match="this is raya 9.9.9; remedy: merge with that version"):
-            run("--merge", "s1", "-o", "merged")
+            run(study, "a.nff", "--merge", "s1", "-o", "merged")
     Path("a.nff").rename("b.nff")
     with pytest.raises(ValueError, match="a.nff: .*remedy: name the study and its scenes"):
-        run("--merge", "s1", "-o", "merged")
+        run(study, "--merge", "s1", "-o", "merged")
     assert run(study, "b.nff", "--merge", "s1", "-o", "merged") == 0
     shutil.copy(Path(__file__).parents[2] / "scenes/mirrors.nff", "a.nff")
     with pytest.raises(ValueError, match="a.nff: differs from the file a.nff of s1"):
-        run("--merge", "s1", "-o", "merged2")
-    assert not Path("merged2").exists()
+        run(study, "a.nff", "--merge", "s1", "-o", "merged2")
+    Path(study).write_text("open('ran', 'w')\n")  # the hash of the study is compared before the study runs
+    with pytest.raises(ValueError, match="squares.py: differs from the file squares.py of s1"):
+        run(study, "b.nff", "--merge", "s1", "-o", "merged2")
+    assert not Path("merged2").exists() and not Path("ran").exists()
+
+
+def change_header(**members):
+    """Changes members of s2/shard.json, with a new digest, as somebody could who passes on a shard."""
+    file = Path("s2/shard.json")
+    shards.write_header(file.parent, {**json.loads(file.read_text()), **members})
+
+
+FOREIGN = [
+    {"command": {"study": "evil.py", "scenes": [], "device": "", "no_tuned": False}}, {"study": "evil.py"}, {"output": "stolen"},
+    {"settings": {"size": 64, "views": 20, "seed": 1, "network": None, "strict": False, "output": "stolen"}}, {"settings": []}, {"shards": 10**12},
+    {"shard": 0}, {"shard": "2"}, {"study": ["x"]}, {"version": 7}, {"inputs": [7]}, {"inputs": [{"name": "x"}]}, {"inputs": "x"}, {"results": ["../x"]},
+    {"results": ["/etc/passwd"]}, {"results": [7]}, {"results": {"x": 1}}, {"results": ["0" * 64 + ".result"]},
+    {"settings": {"size": None, "views": None, "seed": "1 --output=stolen", "network": None, "strict": False}},
+    {"settings": {"size": None, "views": None, "seed": 1, "network": [1], "strict": False}}]
+
+
+@pytest.mark.parametrize("members", FOREIGN, ids=str)
+def test_a_foreign_shard_is_data(study, members):
+    for number in (1, 2, 3):
+        shard(study, number)
+    Path("evil.py").write_text("open('ran', 'w')\n" + STUDY)
+    computed()
+    change_header(**members)
+    if "settings" in members or "study" in members:  # otherwise the shards would be of different runs
+        for other in ("s1", "s3"):
+            header = json.loads(Path(other, "shard.json").read_text())
+            shards.write_header(Path(other), {**header, **{name: members[name] for name in members if name in ("settings", "study")}})
+    before = sorted(os.listdir())
+    with pytest.raises(ValueError) as error:
+        run(study, "--merge", "s1", "s2", "s3", "-o", "merged")
+    assert "\n" not in str(error.value) and len(str(error.value)) < 3000
+    assert sorted(os.listdir()) == before and computed() == 0
+
+
+def test_exchanged_and_unpacked_results_are_damaged(study):
+    for number in (1, 2, 3):
+        shard(study, number)
+    one, other = results(2)[:2]
+    content = one.read_bytes()
+    one.write_bytes(other.read_bytes())
+    with pytest.raises(ValueError, match=f"damaged: s2/{one.name}"):
+        run(study, "--merge", "s1", "s2", "s3", "-o", "merged")
+    body = json.dumps({"square": {"type": "<u8", "shape": [10**12]}}).encode()
+    for body in (len(body).to_bytes(8, "little") + body + bytes(64), b"", bytes(8), b"\xff" * 64, (2).to_bytes(8, "little") + b"[]"):
+        one.write_bytes(hashlib.sha256(one.name.encode() + body).digest() + body)
+        with pytest.raises(ValueError, match=f"damaged: s2/{one.name}"):
+            run(study, "--merge", "s1", "s2", "s3", "-o", "merged")
+    one.unlink()
+    os.mkfifo(one)
+    with pytest.raises(ValueError, match=f"damaged: s2/{one.name}"):
+        run(study, "--merge", "s1", "s2", "s3", "-o", "merged")
+    one.unlink()
+    one.write_bytes(content)
+    assert run(study, "--merge", "s1", "s2", "s3", "-o", "merged") == 0
+    Path("s2/shard.json").unlink()
+    os.mkfifo("s2/shard.json")
+    with pytest.raises(ValueError, match="s2/shard.json: is not a regular file"):
+        run(study, "--merge", "s1", "s2", "s3", "-o", "merged")
 
 
 def test_manifest_is_complete_and_has_no_path_or_time(study):
@@ -295,6 +359,10 @@ def test_check_names_what_differs(study, capsys):
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 3 and lines[0].endswith(" instead of another device") and lines[1].endswith(" instead of 0.1")
     Path("out/squares.csv").write_text(Path("out/squares.csv").read_text().replace("3,9", "3,8"))
+    change(**recorded)
+    assert run("--check", "out/manifest.json") == 4
+    assert capsys.readouterr().out.splitlines() == ["out/squares.csv: has changed since the manifest was written",
+                                                   "out/manifest.json: other results: of the data files, 2 equal, 1 different"]
     csv_hash = program.manifest.hash_of(Path("out/squares.csv"))
     change(**{**recorded, "outputs": [{**one, "sha256": csv_hash} if one["name"] == "squares.csv" else one for one in recorded["outputs"]]})
     assert run("--check", "out/manifest.json") == 4
@@ -303,10 +371,10 @@ def test_check_names_what_differs(study, capsys):
     change(**{**recorded, "settings": {**recorded["settings"], "seed": 2}})
     assert run("--check", "out/manifest.json") == 4
     lines = capsys.readouterr().out.splitlines()
-    assert "squares.json: settings.first: 2 instead of 1" in lines[1] and lines[2].startswith("drawings and documents that differ: ")
+    assert "squares.json: settings.first: 2 instead of 1" in lines[2] and lines[3].startswith("drawings and documents that differ: ")
     change(**{**recorded, "outputs": recorded["outputs"][:-1] + [{"name": "lost.csv", "sha256": "0"}]})
     assert run("--check", "out/manifest.json") == 4
-    assert capsys.readouterr().out.splitlines()[:2] == ["lost.csv: absent", "squares.md: not in the manifest"]
+    assert capsys.readouterr().out.splitlines()[1:3] == ["lost.csv: absent", "squares.md: not in the manifest"]
 
 
 def test_check_refuses_damaged_manifests_and_other_inputs(study):
@@ -327,7 +395,7 @@ def test_check_refuses_damaged_manifests_and_other_inputs(study):
     with pytest.raises(ValueError, match="out/manifest.json: --seed 0"):
         run("--check", file)
     file.write_text(whole)
-    with pytest.raises(ValueError, match="out/manifest.json: it is the manifest of study squares.py, not of fig7"):
+    with pytest.raises(ValueError, match="out/manifest.json: it is of study squares.py, not of fig7"):
         run("fig7", "--check", file)
     Path(study).write_text(STUDY + "# another\n")
     with pytest.raises(ValueError, match="squares.py: differs from the file squares.py of out/manifest.json"):
@@ -340,3 +408,33 @@ def test_measured_times_are_not_compared(study, capsys):
     assert not any(one["sha256"] for one in json.loads(Path("out/manifest.json").read_text())["outputs"])
     assert run("--check", "out/manifest.json") == 0
     assert capsys.readouterr().out == "out/manifest.json: the same results: of the data files, 0 equal, 0 different, 2 with measured times not compared\n"
+
+
+def test_a_study_that_exits_and_names_with_paths_are_errors(study):
+    Path(study).write_text(STUDY.replace('def prepare(', 'raise SystemExit(3)\n\n\ndef prepare('))
+    with pytest.raises(ValueError, match="squares.py: SystemExit: 3"):
+        run(study, "-o", "out")
+    Path(study).write_text(STUDY.replace("    rows = ", "    raise SystemExit(3)\n    rows = "))
+    with pytest.raises(ValueError, match="study squares: squares.py, line .*: SystemExit: 3"):
+        run(study, "-o", "out")
+    for name in ("../x", "/tmp/x", ".x", "a/b", ""):
+        Path(study).write_text(STUDY.replace('Table("squares"', f'Table("{name}"'))
+        with pytest.raises(ValueError, match="use letters, digits"):
+            run(study, "-o", "out")
+    assert not Path("x.csv").exists()
+
+
+def test_names_of_scenes_are_neither_html_nor_formulas(study):
+    Path(study).write_text(STUDY.replace('"number": i', '"number": "=1+1<b>"'))
+    run(study, "-o", "out")
+    assert "'=1+1<b>" in Path("out/squares.csv").read_text() and "\n=1" not in Path("out/squares.csv").read_text()
+    assert "&lt;b>" in Path("out/squares.md").read_text() and "<b>" not in Path("out/squares.md").read_text()
+
+
+def test_ctrl_c_while_a_study_starts_prints_no_traceback(study):
+    for delay in (0.05, 0.3, 0.8, 1.5):
+        process = subprocess.Popen([raya.program(), "study", study, "-o", "out"], stderr=subprocess.PIPE, text=True, start_new_session=True)
+        time.sleep(delay)
+        os.killpg(process.pid, signal.SIGINT)
+        error = process.communicate(timeout=60)[1]
+        assert "Traceback" not in error, error

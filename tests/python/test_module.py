@@ -256,3 +256,48 @@ def test_type_stubs_agree_with_the_module():
             names = re.findall(r"(?:^|, )(\w+):", declared)
             assert names == [argument.arg for argument in node.args.args], node.name
     assert inspect.signature(raya.render).parameters.keys() == {"scene", "progress", "session", "options"}
+
+
+def test_no_output_overwrites_a_scene(tmp_path):
+    file = tmp_path / "s.nff"
+    file.write_bytes((SCENES / "centre.nff").read_bytes())
+    for scene in (str(file), raya.load(file)):
+        with pytest.raises(ValueError, match="would overwrite the input"):
+            raya.render(scene, report=str(file), **SMALL)
+    assert file.read_bytes() == (SCENES / "centre.nff").read_bytes()
+    raya.load(file).save(file)  # its own file
+    for _ in range(2):  # a new report may replace an old one
+        raya.render(raya.load(file), report=str(tmp_path / "r.json"), **SMALL)
+
+
+def test_render_in_a_child_or_in_itself_is_an_error(centre, small):
+    with pytest.raises(ValueError, match="in the progress function of a render"):
+        raya.render(centre, progress=lambda _: raya.render(centre, **SMALL), **SMALL)
+    assert raya.render(centre, **SMALL).hash == small.hash
+    reader, writer = os.pipe()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # Python 3.12 warns of fork() with threads
+        child = os.fork()
+    if child == 0:
+        try:
+            raya.render(centre, **SMALL)
+        except raya.DeviceError as error:
+            os.write(writer, str(error).encode())
+        os._exit(0)
+    os.close(writer)
+    os.waitpid(child, 0)
+    assert b"forked" in os.read(reader, 1000)
+
+
+def test_values_of_every_kind_are_accepted_or_are_value_errors(centre, small):
+    for size in (np.int64(32), (32, 32), np.array([32, 32]), "32x32"):
+        assert raya.render(centre, size=size, pes=np.uint8(32), offset=4).hash == small.hash
+    for wrong in ({"size": True}, {"size": [1, 2, 3]}, {"report": "-"}, {"pes": [True]}):
+        for _ in range(2):
+            with pytest.raises(ValueError):
+                raya.render(centre, **{**SMALL, **wrong})
+    with pytest.raises(ValueError, match="2\\^64"):
+        raya.loads(np.full((4, 4), 2**62, np.uint64), pes=4)
+    for kind in (raya.Scene, raya.Result):
+        with pytest.raises(TypeError):
+            kind.__new__(kind)

@@ -135,31 +135,6 @@ TEST_CASE("mpirun: a render that a failing device ends is resumed on any number 
     }
 }
 
-TEST_CASE("mpirun: frames equal those of a single process, and existing frames are skipped", "[ranks][.mpirun]") {
-    const ScratchFolder folder;
-    const Arguments render = {"render",   scene_file("centre"),
-                              "-o",       folder / "x.ppm",
-                              "--frames", "1:3",
-                              "--turn",   "360",
-                              "--lanes",  "4",
-                              "--size",   "24x16",
-                              "--pes",    "8"};
-    REQUIRE(run_raya(render).code == 0);
-    const Files single_files = files_in(folder);
-    REQUIRE(single_files.size() == 4);
-    for (const Mpi& mpi : installed_mpis()) {
-        Arguments arguments = {"-n", "3", mpi.program};
-        arguments.insert(arguments.end(), render.begin(), render.end());
-        for (const char* summary : {"3 frames, 3 rendered", "3 frames, 0 rendered"}) {
-            const RanksOutcome run = run_ranks(mpi, arguments);
-            INFO(run.describe());
-            CHECK(run.code == 0);
-            CHECK_THAT(run.out, Catch::Contains(summary));
-        }
-        CHECK((files_in(folder) == single_files));
-    }
-}
-
 TEST_CASE("mpirun: only rank 0 reads stdin and writes stdout", "[ranks][.mpirun]") {
     const ScratchFolder folder;
     const std::string options = " --quiet --lanes 4 --pes 8 --size 16 --background 1,0.5,0 ";

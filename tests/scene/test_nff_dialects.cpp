@@ -75,6 +75,7 @@ TEST_CASE("the error for a file of another format names the format", "[dialects]
                           {"global_settings { assumed_gamma 1 }", "a POV-Ray"},
                           {"camera{location 0}", "a POV-Ray"}}) {
         CAPTURE(text);
+        forget_input(file);
         write_whole_file(file, text);
         const std::string message =
             file + ":1: this looks like " + format +
@@ -86,9 +87,11 @@ TEST_CASE("the error for a file of another format names the format", "[dialects]
     }
     for (const std::string& text :
          {kView, kView + "s 0 0 zero 1\n", std::string("hello world\n"), std::string("# v 1\n")}) {
+        forget_input(file);
         write_whole_file(file, text);
         CHECK_THROWS_WITH(read_nff(file), !Contains("looks like"));
     }
+    forget_input(file);
     write_whole_file(file, "#include \"a\"\n" + kView + kSphere);  // "#" starts a comment in NFF
     CHECK(read_nff(file).spheres.size() == 1);
 }

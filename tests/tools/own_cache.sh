@@ -10,7 +10,7 @@ export POCL_CACHE_DIR
 mkdir -p "$POCL_CACHE_DIR"  # PoCL does not create the folder
 store=${RAYA_KERNEL_STORE-}
 [[ ! -d $store ]] || cp -rln "$store/." "$POCL_CACHE_DIR"
-export RAYA_TUNED=off RAYA_BINARIES=off  # tests must not use a developer's tuning or compiled kernels
+export RAYA_TUNED=off  # tests must not use a developer's tuning
 # Open MPI starts as root, and more ranks than there are cores: versions 4, 5 and 6.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe PRTE_MCA_mapby=:oversubscribe

@@ -31,7 +31,7 @@ case $1 in
         [[ $layer == number ]] && check='"name": "add", "status": "'$status'", "result": "bits differ"'
         echo '{"devices": [{"checks": ['"${check:+{\"layer\": \"$layer\", $check\}}"']}]}' >"$4"
         [[ ! -e $0.crash ]] || kill -SEGV $$ ;;
-    devices) printf '#  device  platform\n0  toy  Toy\n\n0: OpenCL 3.0, driver 1\n' ;;
+    devices) printf '0  toy\n   Toy, driver 1\n   OpenCL 3.0\n   cpu\n' ;;
     bench)
         code=0
         [[ ! -e $0.budget ]] || code=4

@@ -149,7 +149,6 @@ class Reports:
         render(spheres, *ring, "--mapping", "hybrid:4,10,0.5", "--exposure", "-1")
         for accel in ("grid", "bvh"):
             render(spheres, "--accel", accel, "--machine", "grande")
-        self.make("frames", "render", spheres, *ring, *quick_options[:-2], "--frames", "1:2", "--turn", "90", "-o", "t.ppm", file="t-frames.json")
         torus = ["--machine", "torus", "--nodes", "2x2x2", "--returns", "rays"]
         render(spheres, *torus, "--async", "--packets", "p.csv.gz")
         if self.mpirun:

@@ -40,14 +40,14 @@ def settings_of(arguments):
     return options
 
 
-def repeating_options(options, recorded):
-    """Returns the options that repeat the study of a manifest. Raises ValueError if the manifest has an invalid option."""
+def repeating_options(options, recorded, source):
+    """Returns the options that repeat the study that `source`, a manifest or shard, records. Raises ValueError if it has an invalid option."""
     try:
         arguments = manifest.arguments_of(recorded, options.study, options.scenes)
         repeated = settings_of([*arguments, "-o", options.output or os.devnull])
-    except (ValueError, TypeError) as error:
-        raise ValueError(f"{options.check}: {error}") from None
-    kept = {name: getattr(options, name) for name in ("output", "device", "verbosity", "check", "version")}
+    except (ValueError, TypeError, LookupError) as error:
+        raise ValueError(f"{source}: {error}") from None
+    kept = {name: getattr(options, name) for name in ("output", "device", "verbosity", "check", "merge", "version")}
     return SimpleNamespace(**{**vars(repeated), **kept})
 
 
@@ -62,6 +62,17 @@ def selected_studies(name):
         return [known[name]], []
     skip_notes = [f"study {study.name} is skipped: {study.missing()}" for study in known.values() if study.missing()]
     return [study for study in known.values() if not study.missing()], skip_notes
+
+
+def checked_selection(options):
+    """Returns selected_studies(), prints the sentences, and raises ValueError for several scenes of a study of one."""
+    chosen, skip_notes = selected_studies(options.study)
+    for line in skip_notes:
+        print(f"raya: {line}", file=sys.stderr)
+    if len(chosen) == 1 and chosen[0].one_scene and len(options.scenes) > 1:
+        raise ValueError(f"study {chosen[0].name} takes one scene, {len(options.scenes)} were given: run it for each, "
+                         "into a folder of its own")
+    return chosen, skip_notes
 
 
 def command_of(study, options):
@@ -136,6 +147,7 @@ def print_missing(options):
 
 def check_manifest(options, recorded, chosen, skip_notes, scenes):
     """Runs the study of a manifest again and prints the differences. Returns the exit code."""
+    changed = manifest.changed_files(recorded, Path(options.check).parent)
     with tempfile.TemporaryDirectory(prefix="raya-check-") as temporary:
         folder = Path(options.output or temporary)
         code = run_all(SimpleNamespace(**{**vars(options), "output": str(folder), "verbosity": min(-1, options.verbosity)}), chosen, skip_notes,
@@ -143,7 +155,8 @@ def check_manifest(options, recorded, chosen, skip_notes, scenes):
         if not (folder / manifest.NAME).exists():
             return code
         lines, counts = manifest.compare(recorded, manifest.read_manifest(folder / manifest.NAME), Path(options.check).parent, folder)
-    for line in lines:
+    counts["different"] += len(changed)
+    for line in changed + lines:
         print(line)
     measured = f", {counts['measured']} with measured times not compared" if counts["measured"] else ""
     print(f"{options.check}: {'other' if counts['different'] else 'the same'} results: of the data files, {counts['equal']} equal, "
@@ -197,27 +210,25 @@ def run_all(options, chosen, skip_notes, scenes):
 
 def main(arguments):
     options = settings_of(arguments)
-    options.version, recorded = manifest.program_version(), None
+    options.version, recorded, source = manifest.program_version(), None, options.check
     warn_as_raya(options)
     if options.missing:
         return print_missing(options)
     if options.merge:
-        options, recorded = shards.merged(options)
+        recorded, source = shards.merged(options), options.merge[0]
     elif options.check:
         recorded = manifest.read_manifest(options.check)
-        options = repeating_options(options, recorded)
-    chosen, skip_notes = selected_studies(options.study)
-    for line in skip_notes:
-        print(f"raya: {line}", file=sys.stderr)
-    if len(chosen) == 1 and chosen[0].one_scene and len(options.scenes) > 1:
-        raise ValueError(f"study {chosen[0].name} takes one scene, {len(options.scenes)} were given: run it for each, "
-                         "into a folder of its own")
+    if recorded:
+        options = repeating_options(options, recorded, source)
+    else:  # of a record, the hash of the study's file is compared first, because the selection runs that file
+        chosen, skip_notes = checked_selection(options)
     try:
         scenes = [raya.load(file, strict=options.strict).renamed(file) for file in options.scenes]
     except ValueError as error:
         raise ValueError(f"{error}; remedy: name the study and its scenes: raya study {options.study} SCENE..." if recorded else error) from None
     if recorded:
-        manifest.check_inputs(manifest.inputs_of(options.study, scenes), recorded["inputs"], options.check or options.merge[0])
+        manifest.check_inputs(manifest.inputs_of(options.study, scenes), recorded["inputs"], source)
+        chosen, skip_notes = checked_selection(options)
     if options.check:
         return check_manifest(options, recorded, chosen, skip_notes, scenes)
     if options.shard:

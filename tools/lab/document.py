@@ -246,7 +246,7 @@ def write_page(folder, page):
     text of a PNG}."""
     drawings, files = {}, {}
     for table in page.tables:
-        files[f"{table.name}.csv"] = table.rows.to_csv(index=False, na_rep="-")
+        files[f"{table.name}.csv"] = csv_of(table.rows)
     for picture in page.pictures:
         drawings[picture.name] = base64.b64encode(picture.png).decode()
         files[f"{picture.name}.png"] = picture.png
@@ -271,10 +271,22 @@ def names_of(pages):
     return {**names, **dict.fromkeys(shared, {page.name for page in pages})}
 
 
+def csv_of(rows):
+    """Returns a table as CSV. A text that a spreadsheet would take for a formula, such as a scene's name, gets an apostrophe."""
+    def safe(cell):
+        return f"'{cell}" if isinstance(cell, str) and cell[:1] in ("=", "+", "-", "@", "\t", "\r") else cell
+    return rows.apply(lambda column: column.map(safe) if column.dtype == object else column).to_csv(index=False, na_rep="-")
+
+
+def markdown_of(template, **values):
+    """Returns the Markdown of a template, in which names and texts cannot be HTML."""
+    return environment().get_template(template).render(**values).replace("<", "&lt;")
+
+
 def texts_of(page):
     """Returns {file name: content} of the page as JSON and Markdown."""
     return {f"{page.name}.json": json.dumps(json_of(page), indent=2, ensure_ascii=False) + "\n",
-            f"{page.name}.md": environment().get_template("page.md.j2").render(page=page)}
+            f"{page.name}.md": markdown_of("page.md.j2", page=page)}
 
 
 def write_document(folder, pages, drawings, skip_notes=()):
@@ -283,14 +295,11 @@ def write_document(folder, pages, drawings, skip_notes=()):
     decide([judgement for page in pages for judgement in page.claims])
     if len(pages) > 1:
         claims = pd.DataFrame([record_of(judgement) for page in pages for judgement in page.claims])
-        write_atomically(folder / "claims.csv", claims.to_csv(index=False, na_rep="-"))
+        write_atomically(folder / "claims.csv", csv_of(claims))
         for name, content in (item for page in pages for item in texts_of(page).items()):
             write_atomically(folder / name, content)
-    jinja_environment = environment()
-    body = jinja_environment.get_template("document.html.j2").render(pages=pages, drawings=drawings, skip_notes=skip_notes,
-                                                        references=REFERENCES)
+    body = environment().get_template("document.html.j2").render(pages=pages, drawings=drawings, skip_notes=skip_notes, references=REFERENCES)
     write_atomically(folder / "index.html", body)
     if len(pages) > 1:
         for name in ("index.md", "claims.md"):
-            template = jinja_environment.get_template(f"{name}.j2")
-            write_atomically(folder / name, template.render(pages=pages, skip_notes=skip_notes, references=REFERENCES))
+            write_atomically(folder / name, markdown_of(f"{name}.j2", pages=pages, skip_notes=skip_notes, references=REFERENCES))

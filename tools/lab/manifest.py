@@ -79,6 +79,20 @@ def write_manifest(folder, options, files, devices, inputs):
     write_atomically(folder / NAME, json.dumps(manifest, indent=2, ensure_ascii=False) + "\n")
 
 
+def changed_files(manifest, folder):
+    """Returns a line for each file beside a manifest that is not the one that the manifest describes."""
+    lines = []
+    for one in manifest["outputs"]:
+        file = folder / Path(one["name"]).name
+        try:
+            changed = one["sha256"] and file.is_file() and hash_of(file) != one["sha256"]
+        except (ValueError, AttributeError):  # not the JSON of a study
+            changed = True
+        if changed:
+            lines.append(f"{file}: has changed since the manifest was written")
+    return lines
+
+
 def read_manifest(path):
     """Returns a manifest. Raises ValueError if the file cannot be read or is not a manifest."""
     try:
@@ -102,7 +116,7 @@ def arguments_of(manifest, study, scenes):
     names, because it has no paths. Raises ValueError if the manifest is of another study."""
     study = study or manifest["study"]
     if Path(study).name != manifest["study"]:
-        raise ValueError(f"it is the manifest of study {manifest['study']}, not of {study}; remedy: leave the study out")
+        raise ValueError(f"it is of study {manifest['study']}, not of {study}; remedy: name that study")
     settings = manifest["settings"]
     arguments = [study, *(scenes or [one["name"] for one in manifest["inputs"] if one["name"] != manifest["study"]])]
     arguments += [f"--{name}={settings[name]}" for name in ("size", "views", "seed") if settings[name] is not None]

@@ -115,7 +115,7 @@ class Page:
 
     def describe(self, name, prose):
         """Sets title, question and method from a study's prose: its first line, the paragraph after it, and the items of its list. {names} are
-        replaced by settings and placeholders. Raises ValueError for an unknown {name} and for two files with the same name."""
+        replaced by settings and placeholders. Raises ValueError for an unknown {name}, for a name with a path, and for two files with the same name."""
         self.name = name
         self.claims = self.claims and [*self.claims, *undecided_claims(name, self.claims)]
         try:
@@ -128,6 +128,8 @@ class Page:
         self.question, *self.method = (" ".join(text.split()) for text in (question, *items))
         for kind in (self.tables, self.plots + self.pictures):
             names = [output.name for output in kind]
+            for wrong in (one for one in names if not re.fullmatch(r"\w[\w .+-]*", one)):
+                raise ValueError(f"study {name}: a table, plot or picture is named {wrong!r}; use letters, digits, - and _")
             if len(names) != len(set(names)):
                 raise ValueError(f"study {name}: two files have the same name: {', '.join(sorted(names))}")
         return self

@@ -1,29 +1,41 @@
 """Divides the cost images of a study over N processes. The folder of a shard has its results (store.py) and shard.json, which records study,
-settings, inputs and, when the shard is complete, the names of its results. seconds.csv logs the time of each render and is never read."""
+settings, inputs and, when the shard is complete, the names of its results. seconds.csv logs the time of each render and is never read. A shard may come
+from somebody else: it is data, without paths or code, and everything in it is checked before it is used."""
 import hashlib
 import json
+import re
 from pathlib import Path
-from types import SimpleNamespace
 
 from raya.lab import manifest
-from raya.lab.store import read_bytes, write_atomically
+from raya.lab.store import read_regular_file, read_value, write_atomically
 
 NAME = "shard.json"
 IDENTITY = "study", "settings", "inputs", "version", "shards"  # members that are equal in all shards of a run
+TYPES = {"study": str, "shard": int, "shards": int, "version": str, "settings": dict, "inputs": list, "results": (list, type(None)), "sha256": str}
+MAX_HEADER_BYTES, MAX_SHARDS = 1 << 26, 100_000
 
 
 def digest(header):
     return hashlib.sha256(json.dumps({name: member for name, member in header.items() if name != "sha256"}, sort_keys=True).encode()).hexdigest()
 
 
+def is_valid(header):
+    """Returns whether a shard.json has the members that header_of() writes, and no others."""
+    return (header.keys() == TYPES.keys() and all(isinstance(header[name], kind) for name, kind in TYPES.items())
+            and header["sha256"] == digest(header) and 1 <= header["shard"] <= header["shards"] <= MAX_SHARDS
+            and header["settings"].keys() == set(manifest.SETTINGS)
+            and all(one.keys() == {"name", "sha256"} and all(isinstance(text, str) for text in one.values()) for one in header["inputs"])
+            and all(re.fullmatch(r"[0-9a-f]{64}\.result", name) for name in header["results"] or []))
+
+
 def read_header(folder):
     """Returns the contents of a shard.json. Raises FileNotFoundError, or ValueError if it is damaged."""
-    data = (Path(folder) / NAME).read_bytes()
+    data = read_regular_file(Path(folder) / NAME, MAX_HEADER_BYTES)
     try:
         header = json.loads(data)
-        if header["sha256"] == digest(header):
+        if is_valid(header):
             return header
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, TypeError, AttributeError, RecursionError):
         pass
     raise ValueError(f"{Path(folder) / NAME}: is damaged")
 
@@ -33,8 +45,7 @@ def header_of(options, scenes):
     number, count = options.shard
     return {"study": Path(options.study).name, "shard": number, "shards": count, "version": options.version,
             "settings": {name: getattr(options, name) for name in manifest.SETTINGS},
-            "inputs": manifest.inputs_of(options.study, scenes),
-            "command": {name: getattr(options, name) for name in ("study", "scenes", "device", "no_tuned")}, "results": None}
+            "inputs": manifest.inputs_of(options.study, scenes), "results": None}
 
 
 def write_header(folder, header):
@@ -83,23 +94,20 @@ def problem_of(folder, header):
     """Returns why a shard is not complete; empty if it is."""
     if header["results"] is None:
         return f"incomplete: {folder}"
-    damaged = [name for name in header["results"] if read_bytes(folder / name) is None]
+    damaged = [name for name in header["results"] if read_value(folder / name) is None]
     more = f" and {len(damaged) - 1} more" if len(damaged) > 1 else ""
     return f"damaged: {folder / damaged[0]}{more}" if damaged else ""
 
 
 def merged(options):
-    """Returns (options that run the study of the shards in options.merge, header of the first shard). Raises ValueError unless all shards are complete."""
+    """Returns the contents of the first shard.json in options.merge. Raises ValueError unless all shards are complete and of this program."""
     headers, problems, notes = find(options.merge)
     count = next(iter(headers.values()))[1]["shards"]
     if problems:
         texts = [*notes, *(f"shard {number}/{count} is {problem}" for number, problem in problems.items())]
+        texts[10:] = [f"{len(texts) - 10} more"] * (len(texts) > 10)
         raise ValueError("; ".join(texts) + "; remedy: run these shards again with the same command, then merge")
-    header = headers[1][1]
+    folder, header = headers[1]
     if header["version"] != options.version:
-        raise ValueError(f"{headers[1][0]}: computed by {header['version']}, but this is {options.version}; remedy: merge with that version")
-    if options.study and Path(options.study).name != header["study"]:
-        raise ValueError(f"{headers[1][0]}: contains a shard of study {header['study']}, not of {options.study}")
-    given = {name: getattr(options, name) for name in ("study", "scenes", "device") if getattr(options, name)}
-    network = header["settings"]["network"]
-    return SimpleNamespace(**{**vars(options), **header["settings"], **header["command"], **given, "network": network and tuple(network)}), header
+        raise ValueError(f"{folder}: computed by {header['version']}, but this is {options.version}; remedy: merge with that version")
+    return header

@@ -1,19 +1,20 @@
 """Stores results of renders in files, so that the studies of a run share them, a stopped run continues, and several processes divide the work.
 
-A stored result is a dictionary of numpy arrays and JSON values. Its file has the SHA-256 of the contents in its first 32 bytes and is complete or
-absent. Its name is a hash of the request, which must identify the result: scene, settings, and version of raya.
+A stored result is a dictionary of numpy arrays and JSON values. Its file is complete or absent. The name is a hash of the request, which must identify
+the result: scene, settings, and version of raya. The first 32 bytes are a hash of name and contents, so that no file passes for another.
 """
 import hashlib
-import io
 import json
+import math
 import os
+import stat
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
 
-SUFFIX, JSON_PART = ".result", "json"
+SUFFIX, MAX_BYTES = ".result", 1 << 30
 
 
 def write_atomically(path, content):
@@ -32,31 +33,48 @@ def write_atomically(path, content):
         raise
 
 
-def bytes_of(value):
-    """Returns {name: numpy array or JSON value} as bytes, the same for equal values."""
-    arrays = {name: member for name, member in value.items() if isinstance(member, np.ndarray)}
-    rest = json.dumps({name: member for name, member in value.items() if name not in arrays})
-    buffer = io.BytesIO()
-    np.savez(buffer, **arrays, **{JSON_PART: np.frombuffer(rest.encode(), np.uint8)})
-    return hashlib.sha256(buffer.getvalue()).digest() + buffer.getvalue()
+def read_regular_file(path, limit):
+    """Returns the bytes of a regular file. Raises FileNotFoundError, or ValueError for another kind of file and for more than `limit` bytes."""
+    with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as file:  # without O_NONBLOCK, a pipe without a writer would wait
+        status = os.fstat(file.fileno())
+        if not stat.S_ISREG(status.st_mode):
+            raise ValueError(f"{path}: is not a regular file")
+        if status.st_size > limit:
+            raise ValueError(f"{path}: has more than {limit} bytes")
+        return file.read(limit)
 
 
-def read_bytes(path):
-    """Returns the contents of a stored result without the hash; None if the file is absent or damaged."""
-    try:
-        data = path.read_bytes()
-    except FileNotFoundError:
-        return None
-    return data[32:] if hashlib.sha256(data[32:]).digest() == data[:32] else None
+def bytes_of(name, value):
+    """Returns the contents of the file `name` for {member: numpy array or JSON value}, the same for equal values: the SHA-256 of the name and of what
+    follows; the length of a JSON, in 8 bytes; the JSON, with type and shape of each array; the numbers of the arrays."""
+    arrays = [member for member in value.values() if isinstance(member, np.ndarray)]
+    header = json.dumps({key: {"type": one.dtype.str, "shape": one.shape} if isinstance(one, np.ndarray) else {"value": one}
+                         for key, one in value.items()}).encode()
+    body = len(header).to_bytes(8, "little") + header + b"".join(array.tobytes() for array in arrays)
+    return hashlib.sha256(name.encode() + body).digest() + body
 
 
 def read_value(path):
     """Returns a stored result; None if the file is absent or damaged."""
-    data = read_bytes(path)
-    if data is None:
+    try:
+        data = read_regular_file(path, MAX_BYTES)
+        start = 40 + int.from_bytes(data[32:40], "little")
+        if hashlib.sha256(path.name.encode() + data[32:]).digest() != data[:32]:
+            return None
+        value = {}
+        for key, one in json.loads(data[40:start]).items():
+            if "value" in one:
+                value[key] = one["value"]
+                continue
+            kind, shape = np.dtype(one["type"]), tuple(one["shape"])
+            count = math.prod(shape)
+            if kind.kind not in "biuf" or min(shape, default=0) < 0 or start + count * kind.itemsize > len(data):
+                return None
+            value[key] = np.frombuffer(data, kind, count, start).reshape(shape)
+            start += count * kind.itemsize
+        return value if start == len(data) else None
+    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
         return None
-    with np.load(io.BytesIO(data), allow_pickle=False) as parts:
-        return {**{name: parts[name] for name in parts.files if name != JSON_PART}, **json.loads(parts[JSON_PART].tobytes())}
 
 
 class Store:
@@ -76,7 +94,7 @@ class Store:
             return self._read(name) or self._compute(name, compute)
         if is_new and number % self._shard[1] == self._shard[0] - 1:
             self.names.append(name)
-            if read_bytes(self._folder / name) is None:
+            if read_value(self._folder / name) is None:
                 self._compute(name, compute)
         return None
 
@@ -88,7 +106,7 @@ class Store:
         start = time.monotonic()
         value = compute()
         self.computed += 1
-        write_atomically(self._folder / name, bytes_of(value))
+        write_atomically(self._folder / name, bytes_of(name, value))
         if self._shard:
             with open(self._folder / "seconds.csv", "a", encoding="utf-8") as log:
                 log.write(f"{name},{time.monotonic() - start:.6f}\n")

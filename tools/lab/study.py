@@ -50,7 +50,7 @@ def study_of_file(path):
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise ValueError(f"{path}: {type(error).__name__}: {error}") from error
     if not callable(getattr(module, "run", None)) or not module.__doc__:
         raise ValueError(f"{path}: not a study: it needs a docstring (title, question, method) and run(lab, scenes)")

@@ -38,7 +38,7 @@ def run_study(study, scenes, folder, options):
         page = chosen_study.run(laboratory, scenes)
     except (raya.InputError, raya.DeviceError, OSError):
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise ValueError(f"study {chosen_study.name}: {error_location(error, chosen_study.run)}{type(error).__name__}: {error}") from error
     if not isinstance(page, Page):
         raise ValueError(f"study {chosen_study.name}: run() returns {type(page).__name__}, not a Page")
@@ -80,7 +80,9 @@ class Worker:
             context = get_context("spawn")
             self._pipe, child_pipe = context.Pipe()
             self._process = context.Process(target=serve, args=(child_pipe,), daemon=True)
+            handler = signal.signal(signal.SIGINT, signal.SIG_IGN)  # inherited: Ctrl-C while the child starts is for the parent
             self._process.start()
+            signal.signal(signal.SIGINT, handler)
             child_pipe.close()
         try:
             self._pipe.send(arguments)

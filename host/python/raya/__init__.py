@@ -53,6 +53,11 @@ from raya._engine import (
 )
 
 
+def _unpickled(text, name):
+    """Returns a pickled scene. pickle cannot name functions of the engine."""
+    return parse(text, name)
+
+
 @contextlib.contextmanager
 def _callback(progress):
     """Context manager that yields the progress callback for the engine: if `progress` is True, a function that draws a
