@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "host/base/child_process.hpp"
+#include "host/base/clock.hpp"
 #include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/base/temporary_folder.hpp"
@@ -23,7 +24,6 @@ namespace raya {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 // After 4 s the program starts again; then the drivers have as much time. A driver that takes longer is left out only
 // if another one answers.
@@ -50,7 +50,7 @@ extern "C" void restart(int signal) {
 }
 
 void replace_handlers(void (*old_handler)(int), void (*new_handler)(int)) {
-    for (const int crash : {SIGABRT, SIGSEGV, SIGBUS, SIGILL, SIGFPE}) {
+    for (const int crash : kCrashSignals) {
         struct sigaction action {};
         if (::sigaction(crash, nullptr, &action) == 0 && action.sa_handler == old_handler)
             std::signal(crash, new_handler);
@@ -86,8 +86,8 @@ void leave_out_bad_drivers() {
     for (Driver& driver : asked) {
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
         std::string line;
-        const bool answers = driver.process.read(line, std::max(left, std::chrono::milliseconds(1))) ==
-                             ChildProcess::Read::kLine;
+        const bool answers =
+            driver.process.read(line, std::max(left, std::chrono::milliseconds(1))) == ChildProcess::Read::kLine;
         (answers ? good : bad).push_back(driver.file);
     }
     if (good.empty() || bad.empty()) return;
@@ -95,9 +95,10 @@ void leave_out_bad_drivers() {
     for (const fs::path& file : good) fs::create_symlink(fs::absolute(file), folder / file.filename().string());
     ::setenv(kDrivers, folder.path().c_str(), 1);
     for (const fs::path& file : bad)
-        warn(fmt::format("warning: the OpenCL driver {} hangs or crashes when it is asked for its devices, and is left "
-                         "out; remedy: remove or update it, or set OCL_ICD_VENDORS",
-                         file.string()));
+        warn(
+            fmt::format("warning: the OpenCL driver {} hangs or crashes when it is asked for its devices, and is left "
+                        "out; remedy: remove or update it, or set OCL_ICD_VENDORS",
+                        file.string()));
 }
 
 }  // namespace

@@ -1,7 +1,12 @@
 // OpenCL drivers that hang or crash while they are asked for their devices: raya starts again without them.
 #pragma once
+#include <array>
+#include <csignal>
 
 namespace raya {
+
+/// The signals with which a crash ends a program.
+inline constexpr std::array<int, 5> kCrashSignals = {SIGABRT, SIGSEGV, SIGBUS, SIGILL, SIGFPE};
 
 /// Task of a worker (child_process.hpp) that looks for devices, and ends by a signal or not at all if a driver is bad.
 inline constexpr const char* kDiscoveryTask = "discovery";

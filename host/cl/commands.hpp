@@ -189,7 +189,6 @@ class Session {
     /// its kernels. A null pointer ends the recording.
     void record_builds(std::vector<KernelBuild>* builds) { builds_ = builds; }
 
-
     /// Returns the thread of announce_compiling() (base/progress.hpp), or an empty thread if messages are not enabled.
     /// Keep the thread while kernels are compiled and launched for the first time.
     [[nodiscard]] std::jthread compile_notice() const;

@@ -129,7 +129,7 @@ std::vector<cl::Device> devices_of(const cl::Platform& platform) {
     } catch (const cl::Error& error) {
         if (error.err() != CL_DEVICE_NOT_FOUND) throw device_error(error.what(), error.err(), "looking for devices");
     }
-    for (const cl::Device& device : devices) device_info(device);
+    for (const cl::Device& device : devices) device_info(device);  // a driver may hang or fail only here
     return devices;
 }
 
@@ -146,7 +146,8 @@ std::vector<cl::Device> all_devices() {
     std::vector<cl::Device> all;
     std::vector<std::string> errors;
     for (const cl::Platform& platform : all_platforms()) try {
-            for (const cl::Device& device : devices_of(platform))  // a driver with two ICD files reports its devices twice
+            for (const cl::Device& device :
+                 devices_of(platform))  // a driver with two ICD files reports its devices twice
                 if (std::none_of(all.begin(), all.end(), [&](const cl::Device& known) { return known() == device(); }))
                     all.push_back(device);
         } catch (const DeviceError& error) {

@@ -45,8 +45,6 @@ constexpr std::size_t kStackBytes = std::size_t{128} << 20;
 // Stack on which signal handlers run. LLVM would replace a smaller stack by its own.
 using AlternateStack = std::array<std::byte, 80 << 10>;
 
-constexpr std::array<int, 5> kCrashSignals = {SIGABRT, SIGSEGV, SIGBUS, SIGILL, SIGFPE};
-
 /// Writes `text` to stderr. Async-signal-safe.
 void write_message(const char* text) {
     if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // stderr is closed: the message is lost

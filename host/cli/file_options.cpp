@@ -62,9 +62,8 @@ void check_files(const CLI::App& command, const std::vector<NamedFile>& more_out
             if (option->count() > 0 && file_use_of(*option) == use)
                 for (const std::string& file : option->results()) add(NamedFile{option->get_name(), file});
     };
-    for_each_file(FileUse::kRead, [](const NamedFile& input) {
-        register_input(input.file, input.option + " " + input.file);
-    });
+    for_each_file(FileUse::kRead,
+                  [](const NamedFile& input) { register_input(input.file, input.option + " " + input.file); });
     for_each_file(FileUse::kKernelFolder, add_kernels);
     for_each_file(FileUse::kWrittenFolder, check_output_folder);
     std::vector<NamedFile> outputs;

@@ -96,8 +96,8 @@ void write_main_image(const RenderCommand& command, const Image& image, ImageAtt
 
 void write_report(const RenderCommand& command, const RenderReport& report) {
     if (command.needs_report()) write_report_and_page({command.report, command.page}, to_json(report));
-    if (!is_quiet() && command.summary) fmt::print("{}", printable(summary_text(report)));
-    if (!command.profile || !command.prints_profile) return;
+    if (!is_quiet() && command.prints) fmt::print("{}", printable(summary_text(report)));
+    if (!command.profile || !command.prints) return;
     const auto& measured = report.measured;
     fmt::print("\n{}\n", profile_table(measured.build_s, measured.builds, measured.commands));
     if (report.ranks.empty()) fmt::print("{}", roofline_table(*measured.roofline));

@@ -32,8 +32,7 @@ struct RenderCommand {
     CheckpointOptions checkpoint;
     TraceOptions trace;
     bool profile = false, counters = false;
-    bool summary = true;          // print the report's summary
-    bool prints_profile = true;   // print the table of --profile
+    bool prints = true;           // print the report's summary and the table of --profile
     ProgressCallback progress{};  // empty: progress bar on a terminal
     PixelSubset pixels{};         // torus: pixels for which primary rays are traced
     bool counts = false;          // count all events, even if nothing else needs them, see needs_counts()

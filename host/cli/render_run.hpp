@@ -40,7 +40,7 @@ class RenderProgress {
     ProgressCallback callback_;
 };
 
-/// A command's scene, session and progress. Several renders may use them, one after the other.
+/// A command's scene, session and progress.
 class RenderRun {
   public:
     /// Reads the scene on rank 0. Throws UserError.
@@ -50,7 +50,6 @@ class RenderRun {
     RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session);
 
     /// Returns the session on the device. The first call loads tuned values and image encoders, and opens the device.
-    /// All images of a sequence share the session and its programs.
     Session& session();
     const cl::Device& device() const { return device_; }  // valid after the first call of session()
 

@@ -84,9 +84,9 @@ class Records {
     std::FILE* file_;
 };
 
-/// Opens files for assimp: regular files in the mesh's folder or in folders below it, also by their links. Reports them,
-/// and the first that cannot be opened. After a missing material file of an OBJ file, assimp tries another name and the
-/// same names again.
+/// Opens files for assimp: regular files in the mesh's folder or in folders below it, also by their links. Reports
+/// them, and the first that cannot be opened. After a missing material file of an OBJ file, assimp tries another name
+/// and the same names again.
 class ReportingFiles : public Assimp::IOSystem {  // assimp 6 makes DefaultIOSystem final
   public:
     ReportingFiles(Records& records, const std::filesystem::path& mesh)

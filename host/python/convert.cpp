@@ -51,8 +51,9 @@ std::vector<std::string> option_arguments(const py::dict& options) {
 }
 
 void forbid_new(const py::object& type, const char* remedy) {
-    type.attr("__new__") = py::module_::import("builtins").attr("staticmethod")(
-        py::cpp_function([remedy](const py::args&, const py::kwargs&) { throw py::type_error(remedy); }));
+    type.attr("__new__") = py::module_::import("builtins")
+                               .attr("staticmethod")(py::cpp_function(
+                                   [remedy](const py::args&, const py::kwargs&) { throw py::type_error(remedy); }));
 }
 
 py::object python_of(const Json& json) { return py::module_::import("json").attr("loads")(json.dump()); }

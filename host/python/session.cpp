@@ -160,7 +160,7 @@ std::shared_ptr<Render> PythonSession::render(const Scene& scene, const py::dict
     command.record_costs = stores_costs || !command.cost.empty();
     command.keep_packets = stores_packets;
     command.counts = true;
-    command.summary = command.prints_profile = false;
+    command.prints = false;
     command.progress = [&progress](double fraction) {
         const py::gil_scoped_acquire gil;
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();

@@ -65,9 +65,10 @@ int dropped_axis(const Vec3& normal) {
 
 std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& vertices, const Vec3& normal) {
     if (vertices.size() > kMaxCutCorners)
-        throw UserError(fmt::format("a polygon with {} corners would have to be cut into triangles; the most is {}; cut "
-                                    "it in the program that made it",
-                                    vertices.size(), kMaxCutCorners));
+        throw UserError(
+            fmt::format("a polygon with {} corners would have to be cut into triangles; the most is {}; cut "
+                        "it in the program that made it",
+                        vertices.size(), kMaxCutCorners));
     const std::vector<Vec2> flat = flattened(vertices, normal);
     std::vector<int> remaining;
     for (std::size_t i = 0; i < vertices.size(); ++i) remaining.push_back(static_cast<int>(i));

@@ -39,10 +39,10 @@ cl_int answer(const Value& value, size_t bytes, size_t capacity, void* to, size_
 }
 
 cl_int CL_API_CALL platform_info(cl_platform_id, cl_platform_info query, size_t size, void* value, size_t* needed) {
-    const std::string text = query == CL_PLATFORM_EXTENSIONS           ? "cl_khr_icd"
-                             : query == CL_PLATFORM_ICD_SUFFIX_KHR     ? "BAD"
-                             : query == CL_PLATFORM_VERSION            ? "OpenCL 1.2 bad"
-                                                                       : "Bad driver";
+    const std::string text = query == CL_PLATFORM_EXTENSIONS       ? "cl_khr_icd"
+                             : query == CL_PLATFORM_ICD_SUFFIX_KHR ? "BAD"
+                             : query == CL_PLATFORM_VERSION        ? "OpenCL 1.2 bad"
+                                                                   : "Bad driver";
     return answer(*text.c_str(), text.size() + 1, size, value, needed);
 }
 

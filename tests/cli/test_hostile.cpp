@@ -70,7 +70,8 @@ TEST_CASE("meshes: files outside the mesh's folder are refused, pipes are not op
     REQUIRE(::mkfifo((folder / "mesh/pipe.mtl").c_str(), 0600) == 0);
     const auto render = [&](const std::string& library) {
         write_text(folder / "mesh/x.obj", "mtllib " + library + "\n" + kTriangle);
-        return Arguments{"render", folder / "mesh/x.obj", "-o", outputs / "x.pfm", "--size", "8", "--pes", "8", "--quiet"};
+        return Arguments{"render", folder / "mesh/x.obj", "-o", outputs / "x.pfm", "--size", "8", "--pes", "8",
+                         "--quiet"};
     };
     for (const char* outside : {"../m.mtl", "link.mtl"})
         check_refused(outputs, render(outside), 2, {outside, "is not in the mesh's folder"});
@@ -133,8 +134,12 @@ TEST_CASE("a bad driver is named, and the others are used", "[cli][hostile]") {
 
 TEST_CASE("verify: refuses times that are no times; --reproduce leaves no folders", "[cli][hostile]") {
     const ScratchFolder outputs;
-    for (const Arguments& time : {Arguments{"--soak", "-1s"}, {"--soak", "nan"}, {"--timeout", "nan"},
-                                  {"--timeout", "-1"}, {"--timeout", "inf"}, {"--repeat", "0"}})
+    for (const Arguments& time : {Arguments{"--soak", "-1s"},
+                                  {"--soak", "nan"},
+                                  {"--timeout", "nan"},
+                                  {"--timeout", "-1"},
+                                  {"--timeout", "inf"},
+                                  {"--repeat", "0"}})
         check_refused(outputs, Arguments{"verify", "--only", "rows", time[0], time[1]}, 2, {time[0]});
     const RunOutcome run =
         run_raya({"verify", "--only", "machine mapping: rows", "--reproduce", outputs / "one/two/three"});

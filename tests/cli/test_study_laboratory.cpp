@@ -108,7 +108,8 @@ TEST_CASE("study: shards merge to the results of one process, and a manifest rep
     run_with(fig8, {"--shard", "2/2", "-o", outputs / "s2"}, 0);
     CHECK(run_with({"study", "--missing", outputs / "s2"}, {}, 4) == "1/2 absent\n");
     const ScratchFolder empty;
-    check_refused(empty, {"study", "fig8", "--merge", outputs / "s2", "-o", empty / "merged"}, 2, {"shard 1/2 is absent"});
+    check_refused(empty, {"study", "fig8", "--merge", outputs / "s2", "-o", empty / "merged"}, 2,
+                  {"shard 1/2 is absent"});
     const std::string computed = run_with(fig8, {"--shard", "1/2", "-o", outputs / "s1"}, 0);
     CHECK_THAT(computed, Catch::Contains("s1: shard 1/2 of study fig8: 14 of 14 results computed now"));
     run_with({"study", "fig8", "--merge", outputs / "s1", outputs / "s2", "-o", outputs / "merged"}, {}, 0);
@@ -145,7 +146,8 @@ TEST_CASE("study: refuses wrong names, sizes, scenes and devices, and leaves no 
     check_refused(outputs, study_arguments("table2", outputs, {"--shard", "1/2"}), 2, {"has no ensembles to divide"});
     for (const char* option : quick(1, {"--merge", "--missing", "--check"}))
         check_refused(outputs, {"study", option, outputs / "none", "--seed", "2"}, 2, {option, "excludes --seed"});
-    check_refused(outputs, {"study", "fig8", "--merge", outputs / "none", "-o", outputs / "x"}, 2, {"none: contains no shard"});
+    check_refused(outputs, {"study", "fig8", "--merge", outputs / "none", "-o", outputs / "x"}, 2,
+                  {"none: contains no shard"});
     check_refused(outputs, {"study", "--missing", outputs / "none"}, 2, {"none: contains no shard"});
     check_refused(outputs, {"study", "--check", outputs / "none"}, 2, {"none: is not a manifest", "No such file"});
     check_refused(outputs, {"study", "fig8", "-o", ""}, 2, {"--output", "must not be empty"});

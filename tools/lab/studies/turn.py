@@ -3,8 +3,8 @@
 Is the load balanced equally well in all frames while the camera turns? Is the offset that is best for the first frame also good for the others?
 
 - Source: Kohata & Ito 1993, Fig. 8, which shows u(p) of one picture.
-- {frames} frames, between which the camera turns by {step_degrees} degrees about the upward axis through the point that it looks at, as in
-  `raya render --frames 1:{frames} --turn 360`. A PE for each column; no antialiasing.
+- {frames} frames, between which the camera turns by {step_degrees} degrees about the upward axis through the point that it looks at. A PE for each
+  column; no antialiasing.
 - The load imbalance u = (max load - mean load) / mean load is computed for every offset, from the pixels' modelled cycles in each frame.
 - Two methods choose an offset: the one with the lowest u in frame 1, or the one with the lowest mean u of the odd frames. Both are tested in the
   even frames. There they are compared with p = sqrt(P), and with the best offset of each single frame, a lower bound for every fixed offset.
