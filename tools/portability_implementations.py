@@ -9,17 +9,18 @@ FETCHED = "implementations"  # folder in the build folder to which tools/portabi
 
 
 class Implementation:
-    """An OpenCL implementation, on which run() starts programs. slow: it runs fewer cases. unavailable: reason why it cannot run, with a remedy, or
-    None. needs_device: its driver may be installed on a machine without its device. budget: maximum seconds to compile a kernel.
+    """An OpenCL implementation, on which run() starts programs. slow: it runs fewer cases, with `lanes` lanes. unavailable: reason why it cannot run, with
+    a remedy, or None. needs_device: its driver may be installed on a machine without its device. budget: maximum seconds to compile a kernel.
     from_spirv: it gets the kernels as SPIR-V.
 
     reports_faults: the implementation detects faults in kernels and reports them only on stderr, with exit code 0. raya prints nothing to stderr
     without an error, so every line there is a fault. (Oclgrind's --log is not used, because each OpenCL context truncates that file.)
     """
 
-    def __init__(self, name, variables=None, prefix=(), slow=False, unavailable=None, reports_faults=False, needs_device=False, budget=60):
+    def __init__(self, name, variables=None, prefix=(), slow=False, unavailable=None, reports_faults=False, needs_device=False, budget=60, lanes=1):
         self.name, self.prefix, self.slow, self.unavailable, self.reports_faults = name, list(prefix), slow, unavailable, reports_faults
         self.variables, self.needs_device, self.budget, self.from_spirv = dict(variables or {}), needs_device, budget, False
+        self.lanes = lanes
 
     def with_spirv(self):
         """Returns the same implementation with kernels as SPIR-V."""
@@ -99,6 +100,14 @@ def known_implementations(build):
     if not any(word in p.stem.lower() for p in other_drivers for word in ("nvidia", "amd", "rocm", "intel", "gpu")):
         found.append(Implementation("GPU", unavailable="no GPU's driver is installed"))
     return found
+
+
+def emulated(sysroot):
+    """Returns PoCL in a Debian of another architecture, whose programs Linux starts in qemu-user: one lane, and two numbers for its vectors."""
+    # qemu's default CPU of arm64 has features that LLVM does not know together.
+    cpu = {"QEMU_CPU": "neoverse-n1"} if sysroot.endswith("/arm64") else {}
+    return [Implementation(f"PoCL, {lanes} lane{'s' if lanes > 1 else ''}", {"OCL_ICD_VENDORS": str(icd("pocl")), "RAYA_NUMBER_LANES": str(lanes), **cpu},
+                           prefix=["chroot", sysroot], slow=True, budget=600, lanes=lanes) for lanes in (1, 4, 8)]
 
 
 def mark_missing_devices(implementations, raya):

@@ -37,7 +37,7 @@ struct GridLists {
 
 void put_sphere(GridLists& lists, const std::vector<std::uint32_t>& words, const raya_objects& objects,
                 std::uint32_t number) {
-    const auto first = words.begin() + objects.spheres_at + std::ptrdiff_t{number} * RAYA_SPHERE_WORDS;
+    const auto first = words.begin() + objects.spheres_at + static_cast<std::ptrdiff_t>(number) * RAYA_SPHERE_WORDS;
     lists.rows.insert(lists.rows.end(), first, first + RAYA_ROW_WORDS);
     lists.numbers.push_back(number);
 }

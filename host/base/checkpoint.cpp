@@ -2,16 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <bit>
-#include <cstring>
+#include <algorithm>
 
 #include "host/base/encoding.hpp"
 #include "host/error.hpp"
 
 namespace raya {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "checkpoints need a little-endian host");
 
 constexpr std::size_t kHashDigits = 32;
 
@@ -37,9 +34,8 @@ CheckpointWriter::CheckpointWriter(const StateSettings& settings, const Rendered
     bytes_ += header.dump() + "\n";
 }
 
-void CheckpointWriter::put_bytes(std::uint64_t count, const void* values, std::size_t value_bytes) {
-    bytes_.append(reinterpret_cast<const char*>(&count), sizeof count);
-    bytes_.append(static_cast<const char*>(values), count * value_bytes);
+void CheckpointWriter::put_numbers(std::span<const std::byte> numbers, std::size_t number_bytes) {
+    bytes_ += little_endian(numbers, number_bytes);
 }
 
 std::string CheckpointWriter::finish() {
@@ -69,16 +65,16 @@ std::uint64_t CheckpointReader::integer(const char* name, std::uint64_t max) con
 
 std::uint64_t CheckpointReader::take_count(std::size_t value_bytes, std::optional<std::uint64_t> expected) {
     std::uint64_t count = 0;
-    take_bytes(1, &count, sizeof count);
+    take_numbers(std::as_writable_bytes(std::span(&count, 1)), sizeof count);
     if (count > bytes_.size() / value_bytes || (expected && count != *expected)) throw UserError("damaged");
     return count;
 }
 
-void CheckpointReader::take_bytes(std::uint64_t count, void* values, std::size_t value_bytes) {
-    const std::size_t size = count * value_bytes;
-    if (size > bytes_.size()) throw UserError("damaged");
-    if (size > 0) std::memcpy(values, bytes_.data(), size);
-    bytes_.remove_prefix(size);
+void CheckpointReader::take_numbers(std::span<std::byte> numbers, std::size_t number_bytes) {
+    if (numbers.size() > bytes_.size()) throw UserError("damaged");
+    const std::string native = little_endian(std::as_bytes(std::span(bytes_.substr(0, numbers.size()))), number_bytes);
+    std::ranges::copy(std::as_bytes(std::span(native)), numbers.begin());
+    bytes_.remove_prefix(numbers.size());
 }
 
 }  // namespace raya

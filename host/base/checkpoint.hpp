@@ -2,14 +2,16 @@
 //
 //     raya state 3
 //     {"of": {NAME: VALUE, ...}, "fraction": ..., "seconds": ..., NAME: INTEGER, ...}
-//     vectors: the number of elements (64 bits), then the elements
+//     vectors: the number of elements (64 bits), then the elements; numbers are little-endian on every host
 //     hash of all bytes before it, 32 hexadecimal digits
 //
 // A checkpoint does not depend on the number of ranks, so a render can be resumed with other ranks.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -41,13 +43,15 @@ class CheckpointWriter {
     template <class T>
     void put(const std::vector<T>& values) {
         static_assert(std::is_trivially_copyable_v<T>);
-        put_bytes(values.size(), values.data(), sizeof(T));
+        const std::uint64_t count = values.size();
+        put_numbers(std::as_bytes(std::span(&count, 1)), sizeof count);
+        put_numbers(std::as_bytes(std::span(values)), alignof(T));  // a structure's members have the same type
     }
     /// Returns the bytes of the file.
     std::string finish();
 
   private:
-    void put_bytes(std::uint64_t count, const void* values, std::size_t value_bytes);
+    void put_numbers(std::span<const std::byte> numbers, std::size_t number_bytes);
 
     std::string bytes_;
 };
@@ -67,21 +71,22 @@ class CheckpointReader {
     template <class T>
     void take(std::vector<T>& values) {
         static_assert(std::is_trivially_copyable_v<T>);
-        take_bytes(take_count(sizeof(T), values.size()), values.data(), sizeof(T));
+        take_count(sizeof(T), values.size());
+        take_numbers(std::as_writable_bytes(std::span(values)), alignof(T));
     }
     /// Returns a vector of any number of elements.
     template <class T>
     std::vector<T> take_any() {
         static_assert(std::is_trivially_copyable_v<T>);
         std::vector<T> values(take_count(sizeof(T), {}));
-        take_bytes(values.size(), values.data(), sizeof(T));
+        take_numbers(std::as_writable_bytes(std::span(values)), alignof(T));
         return values;
     }
 
   private:
     /// Returns the number of elements of the next vector.
     std::uint64_t take_count(std::size_t value_bytes, std::optional<std::uint64_t> expected);
-    void take_bytes(std::uint64_t count, void* values, std::size_t value_bytes);
+    void take_numbers(std::span<std::byte> numbers, std::size_t number_bytes);
 
     std::string_view bytes_;
     Json header_;

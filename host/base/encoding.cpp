@@ -3,7 +3,9 @@
 #include <xxhash.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <new>
@@ -44,6 +46,18 @@ std::string hex_digits(std::span<const unsigned char> bytes) {
     for (const unsigned char byte : bytes)
         for (const int digit : {byte >> 4, byte & 15}) text += "0123456789abcdef"[digit];
     return text;
+}
+
+std::string little_endian(std::span<const std::byte> numbers, std::size_t number_bytes) {
+    std::string bytes(reinterpret_cast<const char*>(numbers.data()), numbers.size());
+    if constexpr (std::endian::native == std::endian::big)
+        for (std::size_t at = 0; at < bytes.size(); at += number_bytes)
+            std::ranges::reverse(std::span(bytes).subspan(at, number_bytes));
+    return bytes;
+}
+
+std::string words_hash(std::span<const std::uint32_t> words) {
+    return bytes_hash(little_endian(std::as_bytes(words), sizeof words[0]));
 }
 
 std::string bytes_hash(std::string_view bytes) {

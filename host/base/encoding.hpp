@@ -1,5 +1,7 @@
 // Encodings of text and bytes: replacement, base64, hexadecimal, XXH3, gzip.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,8 +18,15 @@ std::string base64(std::string_view bytes);
 /// Returns `bytes` as lower-case hexadecimal digits, two per byte.
 std::string hex_digits(std::span<const unsigned char> bytes);
 
+/// Returns the bytes of `numbers`, each of `number_bytes` bytes, in little-endian order, and the reverse: on a
+/// big-endian host, the bytes of each number are reversed.
+std::string little_endian(std::span<const std::byte> numbers, std::size_t number_bytes);
+
 /// Returns the 128-bit XXH3 hash of `bytes` as 32 lower-case hexadecimal digits.
 std::string bytes_hash(std::string_view bytes);
+
+/// Returns bytes_hash() of the words in little-endian byte order.
+std::string words_hash(std::span<const std::uint32_t> words);
 
 /// Incremental gzip compression. The same text always gives the same bytes: the gzip header contains no date and no
 /// name. Memory: the compressed bytes and about 300 KB.

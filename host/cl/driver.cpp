@@ -1,6 +1,5 @@
 #include "host/cl/driver.hpp"
 
-#include <dlfcn.h>
 #include <fmt/core.h>
 #include <pthread.h>
 #include <sys/resource.h>
@@ -15,11 +14,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 #include "host/base/interruption.hpp"
 #include "host/base/log.hpp"
@@ -33,7 +30,6 @@ namespace fs = std::filesystem;
 namespace {
 
 std::atomic<const char*> current_operation{nullptr};
-std::atomic<bool> enlarges_stacks{false};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
 std::array<char, 300> crash_prefix{};  // "rank 1 on node7: ", or empty
@@ -42,7 +38,7 @@ unsigned int crash_delay_us = 0;
 // Size of a thread's stack in bytes: more than the largest stack frame measured for a work-group, 88 MB (1,024
 // work-items of 16 lanes with a grid and 31 bounces).
 constexpr std::size_t kStackBytes = std::size_t{128} << 20;
-// Stack on which signal handlers run. LLVM would replace a smaller stack by its own.
+// Stack on which signal handlers of the first thread run. LLVM would replace a smaller stack by its own.
 using AlternateStack = std::array<std::byte, 80 << 10>;
 
 /// Writes `text` to stderr. Async-signal-safe.
@@ -110,19 +106,6 @@ std::size_t thread_stack_bytes() {
     return std::clamp<rlim_t>(memory.rlim_cur / 16 / cores, kStackBytes / 16, kStackBytes);
 }
 
-using ThreadStart = std::pair<void* (*)(void*), void*>;  // a thread's routine and its argument
-
-void* run_thread(void* start) {
-    const auto [routine, argument] = *std::unique_ptr<ThreadStart>(static_cast<ThreadStart*>(start));
-    AlternateStack signal_stack;
-    const stack_t alternate{signal_stack.data(), 0, signal_stack.size()};
-    stack_t previous{};
-    ::sigaltstack(&alternate, &previous);
-    void* const result = routine(argument);
-    ::sigaltstack(&previous, nullptr);
-    return result;
-}
-
 constexpr const char* kCacheVariable = "POCL_CACHE_DIR";
 
 std::string environment_value(const char* name) {
@@ -173,27 +156,6 @@ fs::path private_cache_folder(const std::string& reason) {
 
 }  // namespace
 
-// Replaces the C library's pthread_create() in the program and, because the program exports it, in all libraries. PoCL
-// runs kernels in threads that it creates with default attributes, and puts the private memory of a whole work-group on
-// the stack. Such a frame may be larger than the default guard page and would write into the next thread's stack.
-extern "C" __attribute__((visibility("default"))) int pthread_create(pthread_t* thread,
-                                                                     const pthread_attr_t* attributes,
-                                                                     void* (*routine)(void*), void* argument) noexcept {
-    static auto* const next = reinterpret_cast<decltype(&::pthread_create)>(::dlsym(RTLD_NEXT, "pthread_create"));
-    if (attributes != nullptr || !enlarges_stacks) return next(thread, attributes, routine, argument);
-    auto start = std::make_unique<ThreadStart>(routine, argument);
-    pthread_attr_t large_stack;
-    ::pthread_attr_init(&large_stack);
-    ::pthread_attr_setstacksize(&large_stack, thread_stack_bytes());
-    ::pthread_attr_setguardsize(&large_stack, thread_stack_bytes());
-    int error = next(thread, &large_stack, run_thread, start.get());
-    if (error != 0)
-        error = next(thread, nullptr, run_thread, start.get());  // too little address space for `large_stack`
-    ::pthread_attr_destroy(&large_stack);
-    if (error == 0) start.release();
-    return error;
-}
-
 DriverCall::DriverCall(const char* operation) : outer_operation_(current_operation.exchange(operation)) {}
 DriverCall::~DriverCall() { current_operation.store(outer_operation_); }
 
@@ -216,7 +178,15 @@ void install_crash_handlers() {
     ::getrlimit(RLIMIT_STACK, &stack);
     stack.rlim_cur = std::min<rlim_t>(stack.rlim_max, thread_stack_bytes());
     ::setrlimit(RLIMIT_STACK, &stack);
-    enlarges_stacks = true;
+    // PoCL runs kernels in threads that it creates with default attributes, and puts the private memory of a whole
+    // work-group on the stack. Such a frame may be larger than the default guard page and would write into the next
+    // thread's stack.
+    pthread_attr_t large_stack;
+    ::pthread_attr_init(&large_stack);
+    ::pthread_attr_setstacksize(&large_stack, thread_stack_bytes());
+    ::pthread_attr_setguardsize(&large_stack, thread_stack_bytes());
+    ::pthread_setattr_default_np(&large_stack);
+    ::pthread_attr_destroy(&large_stack);
 }
 
 void remove_crash_handlers() {

@@ -17,11 +17,11 @@ class DriverCall {
     const char* outer_operation_;  // of the enclosing DriverCall; null: none
 };
 
-/// Installs handlers of crash signals and of exit(). If a driver then aborts, crashes (also by a stack overflow) or
-/// calls exit() in any thread, raya prints the operation and remedies on stderr, deletes files in progress and exits
-/// with the code of a DeviceError. A crash outside of drivers ends the program by its signal. A signal that has another
-/// handler, such as a sanitizer's, keeps that handler. Threads created later with default attributes get stacks that
-/// suffice for the largest work-groups.
+/// Installs handlers of crash signals and of exit(). If a driver then aborts, crashes (also by an overflow of the first
+/// thread's stack) or calls exit() in any thread, raya prints the operation and remedies on stderr, deletes files in
+/// progress and exits with the code of a DeviceError. A crash outside of drivers ends the program by its signal. A
+/// signal that has another handler, such as a sanitizer's, keeps that handler. Threads created later with default
+/// attributes get stacks that suffice for the largest work-groups.
 void install_crash_handlers();
 
 /// For a rank of an MPI job: sets the prefix of its crash messages ("rank 1 on node7: ") and the time in seconds that

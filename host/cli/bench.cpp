@@ -90,7 +90,8 @@ std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session
 
 // If the torus is the only variant, refuses the options of ring machines, because they would have no effect.
 void refuse_unused_options(const CLI::App& parser, const BenchCommand& command) {
-    if (std::ranges::count(command.variants, "torus") < std::max(1L, std::ssize(command.variants))) return;
+    if (command.variants.empty() || std::ranges::count(command.variants, "torus") < std::ssize(command.variants))
+        return;
     for (const char* option : {"--machine", "--pes", "--offset", "--mapping", "--fold", "--pe-memory"})
         if (parser.count(option) > 0)
             throw UserError(

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,13 @@
 
 namespace raya {
 namespace {
+
+/// Returns the little-endian word at byte `at`.
+std::uint32_t word_at(const std::string& bytes, std::size_t at) {
+    std::uint32_t word = 0;
+    for (std::size_t k = 4; k-- > 0;) word = word << 8 | static_cast<unsigned char>(bytes[at + k]);
+    return word;
+}
 
 struct PlyElement {
     std::string name;
@@ -81,8 +87,7 @@ std::string fault_of_stl(std::istream& in) {
     std::string header(kHeader, '\0');
     in.read(header.data(), kHeader);
     if (!header.starts_with("solid")) return "";
-    std::uint32_t facets = 0;
-    std::memcpy(&facets, header.data() + kHeader - sizeof facets, sizeof facets);
+    const std::uint32_t facets = word_at(header, kHeader - 4);
     in.clear();
     const auto size = static_cast<std::size_t>(in.seekg(0, std::ios::end).tellg());
     if (size == kHeader + std::size_t{facets} * kFacet) return "";  // a binary file may begin with "solid", too
@@ -96,9 +101,7 @@ std::string fault_of_gltf(std::istream& in, bool is_binary) {
     std::string bytes(std::istreambuf_iterator<char>(in), {});
     if (is_binary) {
         if (bytes.size() < kHeader || !bytes.starts_with("glTF")) return "glTF: the file is not a .glb";
-        std::uint32_t size = 0;
-        std::memcpy(&size, bytes.data() + 12, sizeof size);
-        bytes = bytes.substr(kHeader, size);
+        bytes = bytes.substr(kHeader, word_at(bytes, 12));
     }
     const auto json = nlohmann::json::parse(bytes, nullptr, false);
     if (!json.is_object()) return "glTF: the JSON is broken or no object";

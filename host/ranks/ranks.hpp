@@ -57,7 +57,7 @@ class Ranks {
     void broadcast(std::vector<T>& values) {
         std::uint64_t size = values.size();
         broadcast(size);
-        values.resize(size);
+        values.resize(static_cast<std::size_t>(size));
         broadcast_bytes(std::as_writable_bytes(std::span(values)));
     }
     void broadcast(std::string& text);

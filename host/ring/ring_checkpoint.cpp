@@ -18,10 +18,6 @@ namespace {
 constexpr std::uint32_t kFirstBandDivisor = 64;  // the first band is 1 / kFirstBandDivisor of a share
 constexpr std::uint32_t kMinPixelsPerLane = 16;  // minimum in the first band, so that no lane is idle
 
-std::string words_hash(const std::vector<std::uint32_t>& words) {
-    return bytes_hash({reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]});
-}
-
 // Returns the length of the next band in pixels of each PE. `last_band`: length of the last band, which took `seconds`.
 // The new length is scaled so that the band takes `target_s` seconds, but is between half and four times the last
 // length.

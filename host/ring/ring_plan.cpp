@@ -22,8 +22,7 @@ bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel
     if (device.max_loop_iterations > 0 && job.words().size() > kMaxCopiedWords) return false;
     // 32 bytes for padding to a multiple of 16 bytes, and for the work-group's own data.
     const std::size_t bytes = 4 * job.words().size() + 32;
-    return bytes <= (accel != AccelKind::kNone ? std::min(kMaxCopiedBytes, device.local_memory_bytes)
-                                               : device.local_memory_bytes);
+    return bytes <= device.local_memory_bytes && (accel == AccelKind::kNone || bytes <= kMaxCopiedBytes);
 }
 
 constexpr std::size_t kTestsPerRay = 20;  // approximate number of object tests of a ray with an accelerator

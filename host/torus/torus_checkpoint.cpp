@@ -15,13 +15,12 @@ namespace raya {
 namespace {
 
 // Collective: returns, in rank 0, a hash of the words of all nodes. It does not depend on the number of ranks.
-std::string words_hash(const NodeMemories& memories, const NodeDistribution& distribution, Ranks& ranks) {
+std::string memories_hash(const NodeMemories& memories, const NodeDistribution& distribution, Ranks& ranks) {
     constexpr std::size_t kHashDigits = 32;
     std::string digits;
     for (std::uint32_t slot = 0; slot < distribution.nodes(); ++slot) {
         const std::size_t words = memories.starts[slot + 1] - memories.starts[slot];
-        digits += bytes_hash({reinterpret_cast<const char*>(memories.words.data() + memories.starts[slot]),
-                              words * sizeof memories.words[0]});
+        digits += words_hash(std::span(memories.words).subspan(memories.starts[slot], words));
     }
     const std::vector<char> all = ranks.gather(std::span<const char>(digits), distribution.sizes_of_ranks(kHashDigits));
     if (all.empty()) return "";
@@ -53,7 +52,7 @@ TorusCheckpoints::TorusCheckpoints(const Checkpointing* checkpointing, const Tor
                                    const TorusJob& job, const NodeDistribution& distribution, Ranks& ranks)
     : checkpointing_(checkpointing), ranks_(ranks), buffers_(job.buffers), nodes_(raya_nodes(settings.torus)) {
     if (checkpointing_ != nullptr)
-        settings_ = state_settings(settings, buffers_, words_hash(job.memories, distribution, ranks));
+        settings_ = state_settings(settings, buffers_, memories_hash(job.memories, distribution, ranks));
 }
 
 bool TorusCheckpoints::resume(NodeArray& nodes, TorusRun& run) {

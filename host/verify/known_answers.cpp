@@ -14,8 +14,9 @@ constexpr std::uint32_t kOne = 0x3f800000;  // 1.0f
 
 constexpr const char* kHeading =
     "# Known answers of the number layer, made by tests/verify/make_known_answers.cpp with MPFR: do not edit.\n"
-    "# A line \"FORMAT OPERATION\" starts a section. Each further line has the bits of the operands and of the "
-    "result:\n"
+    "# A line \"FORMAT OPERATION\" starts a section. Each further line has the bits of the operands, of the "
+    "result\n"
+    "# and, if it differs, of the result of a device that replaces denormal operands and results by zeros:\n"
     "# fp32 numbers in hexadecimal without trailing zeros.\n";
 
 std::size_t operation_number(const std::string& name) {
@@ -25,9 +26,9 @@ std::size_t operation_number(const std::string& name) {
 }
 
 KnownAnswer answer_of(const std::vector<std::string>& fields, const NumberOperation& operation) {
-    if (fields.size() != operation.operands + 1)
+    if (fields.size() != operation.operands + 1 && fields.size() != operation.operands + 2)
         throw std::logic_error(fmt::format("known answers: {} fields for {}", fields.size(), operation.name));
-    KnownAnswer answer{{kOne, kOne, kOne}, word_of(fields.back())};
+    KnownAnswer answer{{kOne, kOne, kOne}, word_of(fields[operation.operands]), word_of(fields.back())};
     for (std::size_t k = 0; k < operation.operands; ++k) answer.operands[k] = word_of(fields[k]);
     return answer;
 }
@@ -64,7 +65,8 @@ std::string known_answers_text(const std::vector<FormatAnswers>& all) {
             for (const KnownAnswer& answer : answers.operations[k]) {
                 for (std::size_t i = 0; i < kNumberOperations[k].operands; ++i)
                     text += digits_of(answer.operands[i]) + ' ';
-                text += digits_of(answer.result) + '\n';
+                text += digits_of(answer.result);
+                text += (answer.flushed != answer.result ? ' ' + digits_of(answer.flushed) : "") + '\n';
             }
         }
     return text;

@@ -75,8 +75,8 @@ using NumberResults = std::vector<std::vector<std::uint32_t>>;
 struct NumberBuild {
     NumberFormat format;
     std::uint32_t lanes = 1;
-    bool trusted = true;    // use the device's division, square root and fma if the device promises correct rounding;
-                            // false: refine their results
+    bool trusted = true;     // use the device's division, square root and fma if the device promises correct rounding;
+                             // false: refine their results
     bool imprecise = false;  // simulate a device whose divisions and square roots have errors; needs `trusted` = false
     bool optimised = true;   // false: -cl-opt-disable
     KernelSources sources{};
@@ -85,10 +85,11 @@ struct NumberBuild {
     std::string name() const;
 };
 
-/// Expected results (bits) of an operation in consecutive rows, from `first_row` on.
+/// Expected results (bits) of an operation in consecutive rows, from `first_row` on. `flushed`: those of a device that
+/// replaces denormal operands and results by zeros; empty: the same.
 struct ExpectedNumbers {
     std::size_t operation;
-    std::vector<std::uint32_t> results{};
+    std::vector<std::uint32_t> results{}, flushed{};
     std::size_t first_row = 0;
 };
 
@@ -104,7 +105,8 @@ class NumberRunner {
 
     /// Computes the operations and compares the results with `expected`. The verdict of a pass has a text such as "357
     /// answers"; that of a failure states the number of wrong results of each operation and the first wrong result. Any
-    /// NaN matches any NaN. Skips rows with a denormal operand or result on devices without denormal numbers.
+    /// NaN matches any NaN. On devices that report no denormal numbers, the flushed results are right, too, with zeros
+    /// of either sign; the text states how often the device kept and flushed denormal numbers (OpenCL 3.0 C, 7.5.3).
     Verdict check(const NumberRows& rows, const std::vector<ExpectedNumbers>& expected);
 
   private:
@@ -118,7 +120,7 @@ class NumberRunner {
 /// known_answers.csv.
 struct KnownAnswer {
     std::array<std::uint32_t, 3> operands{};
-    std::uint32_t result = 0;
+    std::uint32_t result = 0, flushed = 0;  // flushed: if denormal operands and results are replaced by zeros
 };
 
 /// Known answers in one format.
@@ -127,9 +129,9 @@ struct FormatAnswers {
     std::array<std::vector<KnownAnswer>, kNumberOperations.size()> operations;  // in the order of kNumberOperations
 };
 
-/// Parses known_answers.csv. A line "FORMAT OPERATION" starts a section. Each further line has the bits of the operands
-/// and of the result, in hexadecimal without trailing zeros. # starts a comment. Throws std::logic_error for a syntax
-/// error, because the file is generated.
+/// Parses known_answers.csv. A line "FORMAT OPERATION" starts a section. Each further line has the bits of the
+/// operands, of the result and, if it differs, of the flushed result, in hexadecimal without trailing zeros. # starts a
+/// comment. Throws std::logic_error for a syntax error, because the file is generated.
 std::vector<FormatAnswers> parse_known_answers(const std::string& text);
 
 /// Inverse of parse_known_answers().

@@ -58,7 +58,7 @@ VerifySettings settings_of(const Json& json) {
             .lanes = number("lanes"),
             .group_size = number("group_size"),
             .as = json.at("as").text(),
-            .done = json.at("done").integer()};
+            .done = static_cast<std::size_t>(json.at("done").integer(SIZE_MAX))};
 }
 
 struct SelectedDevices {

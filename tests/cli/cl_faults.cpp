@@ -7,7 +7,6 @@
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 flip"   every third copy has a wrong bit in its first byte
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third call raises SIGSEGV
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 overflow"   the third call overflows the stack of its thread
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 overflows"  the third call starts two threads that overflow their stacks
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 exit"   the third call ends the program with exit code 1
 //   RAYA_FAULT="clFinish 1 slow"              the first and all later calls take 2.5 seconds longer
 //   RAYA_FAULT="clBuildProgram 0 fma(a,b,c)=(a*b+c)"  a compiler with a fault: it replaces the call of a function. With
@@ -37,7 +36,7 @@ namespace {
 struct Fault {
     std::string call;
     int number = 0;      // first failing call (from 1), period (`lost`, `astray`), query, or minimum bytes (`new`)
-    std::string action;  // "lost", "astray", "crash", "overflow", "overflows", "exit", "slow" or empty
+    std::string action;  // "lost", "astray", "crash", "overflow", "exit", "slow" or empty
     cl_int result = CL_SUCCESS;  // returned by the failing call; or the answer to the query
 
     Fault() {
@@ -70,11 +69,6 @@ cl_int inject_fault(const char* call) {
         return CL_SUCCESS;
     if (fault.action == "crash") std::raise(SIGSEGV);
     if (fault.action == "overflow") std::_Exit(overflow(1));
-    if (fault.action == "overflows") {
-        std::thread first_thread(overflow, 1), second_thread(overflow, 1);
-        first_thread.join();
-        second_thread.join();
-    }
     if (fault.action == "exit") std::_Exit(1);
     if (fault.action == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(2500));
     return fault.result;

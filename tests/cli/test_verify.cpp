@@ -226,6 +226,28 @@ TEST_CASE("verify --kernel-dir: refuses a folder without all kernels, before any
                       2, {folder, "cannot read kernel file", "--kernel-dir must be a folder like"});
 }
 
+// 4123 = 0x101B is CL_DEVICE_SINGLE_FP_CONFIG; 6: infinities, NaNs and rounding to nearest, but no denormal numbers.
+TEST_CASE("verify: a device without denormal numbers may keep or flush them, but not return others", "[cli][verify]") {
+    const ScratchFolder scratch;
+    const Arguments verify = {"verify", "--only", "number fp32"};
+    const RunOptions no_denormals = device_with_fault("clGetDeviceInfo 4123 6");
+    // Kernels that multiply denormal sums by `factor`.
+    const auto verify_with = [&](const std::string& factor) {
+        const SourcePatch patch{
+            "number/fp32.clh", "num_add(a, b) ((a) + (b))",
+            "num_add(a, b) choose(fabs((a) + (b)) < 0x1p-126f, ((a) + (b)) * num_const(" + factor + "), (a) + (b))"};
+        return Arguments{"verify", "--only", "number fp32", "--kernel-dir", write_kernels(scratch / factor, {patch})};
+    };
+    const RunOutcome keeps = run_raya(verify, no_denormals), flushes = run_raya(verify_with("0.0f"), no_denormals);
+    INFO(keeps.describe() << flushes.describe());
+    CHECK(keeps.code == 0);
+    CHECK(has_line(keeps.out, "PASS .* answers, denormal numbers [0-9]+ times kept, 0 times flushed"));
+    CHECK(flushes.code == 0);
+    CHECK(has_line(flushes.out, "PASS .* answers, denormal numbers [0-9]+ times kept, [1-9][0-9]* times flushed"));
+    CHECK(run_raya(verify_with("2.0f"), no_denormals).code == 4);
+    CHECK(run_raya(verify_with("0.0f")).code == 4);  // the device promises denormal numbers
+}
+
 TEST_CASE("verify --kernel-dir: a wrong count causes exit code 4, and the remedy names the kernels only",
           "[cli][verify]") {
     const ScratchFolder scratch;

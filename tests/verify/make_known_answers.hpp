@@ -198,7 +198,10 @@ inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const
 /// Returns the rows of one operation: goes through the candidates in order, and keeps a candidate if one of its
 /// features is in fewer than two rows so far (six for kOtherMethod and kDoubleRounding).
 template <class Oracle>
-std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t operation, const NumberFormat& format) {
+std::vector<KnownAnswer> choose_answers(Oracle& oracle, std::size_t operation, const NumberFormat& format) {
+    AnswerMaker<Oracle> maker(oracle, format);
+    FlushingOracle<Oracle> flushing{oracle};
+    AnswerMaker<FlushingOracle<Oracle>> flushing_maker(flushing, format);
     const auto wanted_rows = [](const std::string& feature) {
         return feature == kOtherMethod || feature == kDoubleRounding ? 6 : 2;
     };
@@ -219,18 +222,23 @@ std::vector<KnownAnswer> choose_answers(AnswerMaker<Oracle>& maker, std::size_t 
                                                    std::bit_cast<std::uint32_t>(c)};
         if (!wanted || !used_operands.insert(bits).second) continue;
         for (const std::string& feature : features) ++seen[feature];
-        float result = maker.result(operation, a, b, c);
-        if (std::isnan(result)) result = std::bit_cast<float>(0x7fc00000u);  // the same bits for every NaN
-        answers.push_back({bits, std::bit_cast<std::uint32_t>(result)});
+        const auto word = [](float result) {
+            return std::isnan(result) ? 0x7fc00000u
+                                      : std::bit_cast<std::uint32_t>(result);  // the same bits for every NaN
+        };
+        const bool is_number = format.is_fp32() && operation != kFromIndex;
+        const float flushed_result = is_number
+                                         ? flushed(flushing_maker.result(operation, flushed(a), flushed(b), flushed(c)))
+                                         : maker.result(operation, a, b, c);
+        answers.push_back({bits, word(maker.result(operation, a, b, c)), word(flushed_result)});
     }
     return answers;
 }
 
 template <class Oracle>
 FormatAnswers oracle_answers(Oracle& oracle, const NumberFormat& format) {
-    AnswerMaker<Oracle> maker(oracle, format);
     FormatAnswers all{format, {}};
-    for (std::size_t k = 0; k < kNumberOperations.size(); ++k) all.operations[k] = choose_answers(maker, k, format);
+    for (std::size_t k = 0; k < kNumberOperations.size(); ++k) all.operations[k] = choose_answers(oracle, k, format);
     return all;
 }
 
