@@ -35,7 +35,9 @@ CheckpointWriter::CheckpointWriter(const StateSettings& settings, const Rendered
 }
 
 void CheckpointWriter::put_numbers(std::span<const std::byte> numbers, std::size_t number_bytes) {
-    bytes_ += little_endian(numbers, number_bytes);
+    const std::size_t begin = bytes_.size();
+    bytes_.append(reinterpret_cast<const char*>(numbers.data()), numbers.size());
+    convert_little_endian(std::as_writable_bytes(std::span(bytes_).subspan(begin)), number_bytes);
 }
 
 std::string CheckpointWriter::finish() {
@@ -72,8 +74,8 @@ std::uint64_t CheckpointReader::take_count(std::size_t value_bytes, std::optiona
 
 void CheckpointReader::take_numbers(std::span<std::byte> numbers, std::size_t number_bytes) {
     if (numbers.size() > bytes_.size()) throw UserError("damaged");
-    const std::string native = little_endian(std::as_bytes(std::span(bytes_.substr(0, numbers.size()))), number_bytes);
-    std::ranges::copy(std::as_bytes(std::span(native)), numbers.begin());
+    std::ranges::copy(std::as_bytes(std::span(bytes_.substr(0, numbers.size()))), numbers.begin());
+    convert_little_endian(numbers, number_bytes);
     bytes_.remove_prefix(numbers.size());
 }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <new>
 #include <stdexcept>
+#include <vector>
 
 namespace raya {
 namespace {
@@ -48,16 +49,20 @@ std::string hex_digits(std::span<const unsigned char> bytes) {
     return text;
 }
 
-std::string little_endian(std::span<const std::byte> numbers, std::size_t number_bytes) {
-    std::string bytes(reinterpret_cast<const char*>(numbers.data()), numbers.size());
+void convert_little_endian([[maybe_unused]] std::span<std::byte> numbers, [[maybe_unused]] std::size_t number_bytes) {
     if constexpr (std::endian::native == std::endian::big)
-        for (std::size_t at = 0; at < bytes.size(); at += number_bytes)
-            std::ranges::reverse(std::span(bytes).subspan(at, number_bytes));
-    return bytes;
+        for (std::size_t at = 0; at < numbers.size(); at += number_bytes)
+            std::ranges::reverse(numbers.subspan(at, number_bytes));
 }
 
 std::string words_hash(std::span<const std::uint32_t> words) {
-    return bytes_hash(little_endian(std::as_bytes(words), sizeof words[0]));
+    std::vector<std::uint32_t> converted;
+    if constexpr (std::endian::native == std::endian::big) {
+        converted.assign(words.begin(), words.end());
+        convert_little_endian(std::as_writable_bytes(std::span(converted)), sizeof words[0]);
+        words = converted;
+    }
+    return bytes_hash({reinterpret_cast<const char*>(words.data()), words.size_bytes()});
 }
 
 std::string bytes_hash(std::string_view bytes) {

@@ -18,9 +18,8 @@ std::string base64(std::string_view bytes);
 /// Returns `bytes` as lower-case hexadecimal digits, two per byte.
 std::string hex_digits(std::span<const unsigned char> bytes);
 
-/// Returns the bytes of `numbers`, each of `number_bytes` bytes, in little-endian order, and the reverse: on a
-/// big-endian host, the bytes of each number are reversed.
-std::string little_endian(std::span<const std::byte> numbers, std::size_t number_bytes);
+/// Converts numbers of `number_bytes` bytes each between the host's byte order and little-endian order, in place.
+void convert_little_endian(std::span<std::byte> numbers, std::size_t number_bytes);
 
 /// Returns the 128-bit XXH3 hash of `bytes` as 32 lower-case hexadecimal digits.
 std::string bytes_hash(std::string_view bytes);
