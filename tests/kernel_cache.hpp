@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "host/base/temporary_folder.hpp"
+#include "host/base/child_process.hpp"
 
 namespace raya {
 

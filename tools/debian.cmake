@@ -13,7 +13,6 @@ endfunction()
 
 file(GLOB pages ${staged}/usr/share/man/man1/*.1)
 run(gzip -9n ${pages})
-file(RENAME ${staged}/usr/share/zsh/site-functions ${staged}/usr/share/zsh/vendor-completions)
 
 # Licences of raya, and of the headers whose code is in the program.
 file(READ ${CPACK_RAYA_SOURCES}/LICENSE licence)

@@ -28,10 +28,13 @@ if(TARGET raya_python)
     install(DIRECTORY tools/lab DESTINATION ${package} COMPONENT wheel PATTERN __pycache__ EXCLUDE)
 endif()
 
-install(DIRECTORY ${page_folder}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-install(FILES ${completion_folder}/raya DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-install(FILES ${completion_folder}/_raya DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
-install(FILES ${completion_folder}/raya.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+# Manual pages from the help of the installed program.
+find_program(HELP2MAN help2man)
+if(HELP2MAN)
+    install(CODE "execute_process(COMMAND_ERROR_IS_FATAL ANY COMMAND ${PROJECT_SOURCE_DIR}/tools/manual_pages
+        \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/raya \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1)")
+endif()
+install(FILES tools/raya.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME raya)
 
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/raya/scenes FILES_MATCHING PATTERN "*.nff" PATTERN "README.md")
 # Documents are installed in the folder structure of the sources, so that their links work.

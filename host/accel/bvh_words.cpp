@@ -7,7 +7,6 @@
 #include <span>
 
 #include "host/accel/bvh.hpp"
-#include "host/accel/bvh_items.hpp"
 #include "host/base/parallel.hpp"
 #include "host/error.hpp"
 #include "host/scene/packer.hpp"

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
 
 #include "host/base/encoding.hpp"
 #include "host/error.hpp"
@@ -13,9 +14,10 @@ namespace {
 constexpr std::size_t kHashDigits = 32;
 
 // Throws UserError for the first setting that differs. Hashes are last, so that a named option is reported if possible.
-void check_settings(const Json& saved_settings, const StateSettings& settings) {
+void check_settings(const std::map<std::string, std::string>& saved_settings, const StateSettings& settings) {
     for (const auto& [name, value] : settings) {
-        const std::string& saved = saved_settings.at(name).text();
+        if (!saved_settings.contains(name)) throw UserError(fmt::format("damaged header: '{}' is missing", name));
+        const std::string& saved = saved_settings.at(name);
         if (saved == value) continue;
         if (name.starts_with("another")) throw UserError("was rendered with " + name);
         if (value == "yes" || value == "no")
@@ -26,12 +28,10 @@ void check_settings(const Json& saved_settings, const StateSettings& settings) {
 
 }  // namespace
 
-CheckpointWriter::CheckpointWriter(const StateSettings& settings, const RenderedPart& part, const Json& integers)
-    : bytes_(kStateMagic) {
+CheckpointWriter::CheckpointWriter(const StateSettings& settings, const RenderedPart& part) : bytes_(kStateMagic) {
     Json header = {{"of", Json::object()}, {"fraction", part.fraction}, {"seconds", part.seconds}};
     for (const auto& [name, value] : settings) header["of"][name] = value;
-    for (const std::string& name : integers.keys()) header[name] = integers.at(name);
-    bytes_ += header.dump() + "\n";
+    bytes_ += json_dump(header) + "\n";
 }
 
 void CheckpointWriter::put_numbers(std::span<const std::byte> numbers, std::size_t number_bytes) {
@@ -52,17 +52,19 @@ CheckpointReader::CheckpointReader(std::string_view bytes, const StateSettings& 
         throw UserError("damaged");
     bytes_ = bytes.substr(kStateMagic.size(), bytes.size() - kStateMagic.size() - kHashDigits);
     const std::size_t end = bytes_.find('\n');
-    header_ = Json::parse(std::string(bytes_.substr(0, end)), {"damaged header"});
+    const auto saved_settings =
+        read_json(std::string(bytes_.substr(0, end)), {"damaged header"}, [&](const Json& header) {
+            part_ = {json_number(header.at("fraction")), json_number(header.at("seconds"))};
+            std::map<std::string, std::string> settings_of_header;
+            for (const auto& [name, value] : header.at("of").items()) settings_of_header[name] = json_text(value);
+            return settings_of_header;
+        });
     bytes_.remove_prefix(end == std::string_view::npos ? bytes_.size() : end + 1);
-    check_settings(header_.at("of"), settings);
+    check_settings(saved_settings, settings);
 }
 
-RenderedPart CheckpointReader::part() const {
-    return {header_.at("fraction").number(), header_.at("seconds").number()};
-}
-
-std::uint64_t CheckpointReader::integer(const char* name, std::uint64_t max) const {
-    return header_.at(name).integer(max);
+void CheckpointReader::check_end() const {
+    if (!bytes_.empty()) throw UserError("damaged");
 }
 
 std::uint64_t CheckpointReader::take_count(std::size_t value_bytes, std::optional<std::uint64_t> expected) {

@@ -1,7 +1,7 @@
 // Checkpoints: the state of a partial render as the bytes of a file.
 //
-//     raya state 3
-//     {"of": {NAME: VALUE, ...}, "fraction": ..., "seconds": ..., NAME: INTEGER, ...}
+//     raya state 4
+//     {"of": {NAME: VALUE, ...}, "fraction": ..., "seconds": ...}
 //     vectors: the number of elements (64 bits), then the elements; numbers are little-endian on every host
 //     hash of all bytes before it, 32 hexadecimal digits
 //
@@ -28,7 +28,7 @@ namespace raya {
 using StateSettings = std::vector<std::pair<std::string, std::string>>;
 
 /// First bytes of a checkpoint.
-inline constexpr std::string_view kStateMagic = "raya state 3\n";
+inline constexpr std::string_view kStateMagic = "raya state 4\n";
 
 /// Progress of a render: completed fraction, 0..1, and measured time of all runs so far, seconds.
 struct RenderedPart {
@@ -37,8 +37,7 @@ struct RenderedPart {
 
 class CheckpointWriter {
   public:
-    /// `integers`: an object of integers, the scalars of the state.
-    CheckpointWriter(const StateSettings& settings, const RenderedPart& part, const Json& integers);
+    CheckpointWriter(const StateSettings& settings, const RenderedPart& part);
 
     template <class T>
     void put(const std::vector<T>& values) {
@@ -64,8 +63,7 @@ class CheckpointReader {
     /// the first setting that differs. `bytes` must outlive the reader.
     CheckpointReader(std::string_view bytes, const StateSettings& settings);
 
-    RenderedPart part() const;
-    std::uint64_t integer(const char* name, std::uint64_t max = UINT64_MAX) const;
+    const RenderedPart& part() const { return part_; }
 
     /// Replaces the elements of `values`. The file must have the same number of elements.
     template <class T>
@@ -83,13 +81,16 @@ class CheckpointReader {
         return values;
     }
 
+    /// Throws UserError if vectors are left.
+    void check_end() const;
+
   private:
     /// Returns the number of elements of the next vector.
     std::uint64_t take_count(std::size_t value_bytes, std::optional<std::uint64_t> expected);
     void take_numbers(std::span<std::byte> numbers, std::size_t number_bytes);
 
     std::string_view bytes_;
-    Json header_;
+    RenderedPart part_;
 };
 
 /// Callbacks for the checkpoints of a render. With several ranks, only rank 0 calls `due`, `save` and `resume`.

@@ -66,7 +66,7 @@ ChildProcess::ChildProcess(const char* task, const Json& settings) {
         {"task", task}, {"lines", ends[1]}, {"verbosity", verbosity() - kErrorsOnly}, {"settings", settings}};
     pipe_ = ends[0];
     try {
-        child_ = start_child(kOwnProgram, {"raya", kWorker, request.dump()}, ends[1]);
+        child_ = start_child(kOwnProgram, {"raya", kWorker, json_dump(request)}, ends[1]);
     } catch (...) {
         for (const int end : ends) ::close(end);
         throw;
@@ -118,8 +118,8 @@ int ChildProcess::wait() {
 std::optional<WorkerRequest> worker_request(int argc, const char* const* argv) {
     if (argc != 3 || std::string_view(argv[1]) != kWorker) return {};
     WorkerRequest request = read_json(argv[2], {kWorker}, [](const Json& json) {
-        set_verbosity(kErrorsOnly + static_cast<int>(json.at("verbosity").integer(kDetailed - kErrorsOnly)));
-        return WorkerRequest{json.at("task").text(), static_cast<int>(json.at("lines").integer(INT_MAX)),
+        set_verbosity(kErrorsOnly + static_cast<int>(json_integer(json.at("verbosity"), kDetailed - kErrorsOnly)));
+        return WorkerRequest{json_text(json.at("task")), static_cast<int>(json_integer(json.at("lines"), INT_MAX)),
                              json.at("settings")};
     });
     ::fcntl(request.pipe, F_SETFD, FD_CLOEXEC);
@@ -127,7 +127,7 @@ std::optional<WorkerRequest> worker_request(int argc, const char* const* argv) {
 }
 
 void send_line(int pipe, const Json& object) {
-    const std::string text = object.dump() + "\n";
+    const std::string text = json_dump(object) + "\n";
     for (std::size_t sent = 0; sent < text.size();) {
         const ssize_t count = ::write(pipe, text.data() + sent, text.size() - sent);
         if (count < 0 && errno != EINTR) return;

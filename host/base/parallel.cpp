@@ -1,12 +1,18 @@
 #include "host/base/parallel.hpp"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <system_error>
 #include <thread>
 #include <vector>
+
+#ifdef __linux__
+#endif
 
 namespace raya {
 
@@ -37,6 +43,15 @@ void parallel_for(std::size_t count, unsigned threads, const std::function<void(
     take_indices();
     helpers.clear();
     if (exception) std::rethrow_exception(exception);
+}
+
+void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+#ifdef __linux__
+    constexpr std::uintptr_t kSmallPage = 4096;
+    const auto begin = (reinterpret_cast<std::uintptr_t>(memory) + kSmallPage - 1) / kSmallPage * kSmallPage;
+    const auto end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / kSmallPage * kSmallPage;
+    if (end > begin) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // only a request
+#endif
 }
 
 }  // namespace raya

@@ -18,7 +18,6 @@
 #include "host/base/clock.hpp"
 #include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
-#include "host/base/temporary_folder.hpp"
 
 namespace raya {
 namespace {

@@ -47,7 +47,7 @@ void Capture::write_file(const std::string& name, const std::string& bytes) cons
     if (step_ == captured_step_) write_whole_file(folder_ / name, bytes);
 }
 
-void Capture::begin_build(const std::string& name, const std::string& source, const std::string& options) {
+void Capture::build_begins(const std::string& name, const std::string& source, const std::string& options) {
     ++step_;
     building_ = {name, source, options};
     launched_.clear();
@@ -56,7 +56,7 @@ void Capture::begin_build(const std::string& name, const std::string& source, co
     start_step("build of " + name);
 }
 
-void Capture::end_build(const cl::Program& program) {
+void Capture::build_ended(const cl::Program& program, const std::string&, const std::string&, double) {
     programs_[program()] = std::move(building_);
     report_({{"done", step_}, {"outputs", Json::object()}});
 }
@@ -87,8 +87,7 @@ std::vector<Capture::Argument> Capture::arguments_of(cl_kernel kernel) const {
     return arguments;
 }
 
-void Capture::begin_launch(const cl::CommandQueue& queue, const cl::Kernel& kernel, const std::string& name,
-                           std::size_t groups, std::size_t group_size) {
+void Capture::launch_begins(const cl::CommandQueue& queue, const cl::Kernel& kernel, const CommandRecord& launch) {
     ++step_;
     launched_ = arguments_of(kernel());
     queue.finish();
@@ -103,17 +102,17 @@ void Capture::begin_launch(const cl::CommandQueue& queue, const cl::Kernel& kern
             if (!a.value.empty()) write_file(a.name + ".in", a.value);
         }
         write_file("launch.json", Json{{"program", program.name},
-                                       {"kernel", name},
+                                       {"kernel", launch.target_name},
                                        {"options", program.options},
-                                       {"groups", groups},
-                                       {"group_size", group_size},
+                                       {"groups", launch.groups},
+                                       {"group_size", launch.group_size},
                                        {"arguments", arguments}}
                                       .dump(4));
     }
-    start_step("launch of " + name);
+    start_step("launch of " + launch.target_name);
 }
 
-void Capture::end_launch(const cl::CommandQueue& queue) {
+void Capture::launch_ended(const cl::CommandQueue& queue, const cl::Kernel&, CommandRecord&) {
     queue.finish();
     Json outputs = Json::object();
     for (const Argument& a : launched_) {

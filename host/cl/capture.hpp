@@ -1,5 +1,5 @@
-// Capture of one program build or kernel launch as files, from which a self-contained test case is made
-// (host/verify/reproduce.hpp).
+// Observers of program builds and kernel launches, and one of them: the capture of a build or launch as files, from
+// which a self-contained test case is made (host/verify/reproduce.hpp).
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,8 +12,25 @@
 
 #include "host/base/json.hpp"
 #include "host/cl/opencl.hpp"
+#include "host/cl/profile.hpp"
 
 namespace raya {
+
+/// Observes the builds and launches of a session (Session::observe()). The functions do nothing unless overridden.
+class SessionObserver {
+  public:
+    virtual ~SessionObserver() = default;
+
+    virtual void build_begins(const std::string& /*name*/, const std::string& /*source*/,
+                              const std::string& /*options*/) {}
+    virtual void build_ended(const cl::Program& /*program*/, const std::string& /*name*/,
+                             const std::string& /*options*/, double /*seconds*/) {}
+    /// Before and after the launch is enqueued; may wait for the queue. launch_ended() may add figures to the record.
+    virtual void launch_begins(const cl::CommandQueue& /*queue*/, const cl::Kernel& /*kernel*/,
+                               const CommandRecord& /*launch*/) {}
+    virtual void launch_ended(const cl::CommandQueue& /*queue*/, const cl::Kernel& /*kernel*/,
+                              CommandRecord& /*launch*/) {}
+};
 
 /// Correct words of a buffer, as far as they are known.
 struct KnownWords {
@@ -38,27 +55,27 @@ struct KnownWords {
 /// work-groups, arguments), and for each buffer or value among the arguments NAME.in, for each buffer also NAME.out,
 /// and NAME.expected and NAME.mask if correct words are known (KnownWords). Of a captured build: kernel.cl and
 /// launch.json only.
-class Capture {
+class Capture final : public SessionObserver {
   public:
     /// Captures step number `step`, if not 0, into the existing folder `folder`.
     Capture(std::size_t step, std::filesystem::path folder, std::function<void(const Json&)> report);
-    ~Capture();
+    ~Capture() override;
     Capture(const Capture&) = delete;
     Capture& operator=(const Capture&) = delete;
 
     /// Returns the existing Capture, or a null pointer.
     static Capture* active();
 
-    // Called by Program, Session and Kernel:
-    void begin_build(const std::string& name, const std::string& source, const std::string& options);
-    void end_build(const cl::Program& program);
+    void build_begins(const std::string& name, const std::string& source, const std::string& options) override;
+    void build_ended(const cl::Program& program, const std::string& name, const std::string& options,
+                     double seconds) override;
+    void launch_begins(const cl::CommandQueue& queue, const cl::Kernel& kernel, const CommandRecord& launch) override;
+    void launch_ended(const cl::CommandQueue& queue, const cl::Kernel& kernel, CommandRecord& launch) override;
+    // Called by Session and Kernel:
     /// Fills the new buffer, so that its contents are the same in all runs.
     void add_buffer(const cl::CommandQueue& queue, const cl::Buffer& buffer, const std::string& name,
                     std::size_t bytes);
     void set_argument(const cl::Kernel& kernel, std::size_t index, std::size_t bytes, const void* value);
-    void begin_launch(const cl::CommandQueue& queue, const cl::Kernel& kernel, const std::string& name,
-                      std::size_t groups, std::size_t group_size);
-    void end_launch(const cl::CommandQueue& queue);
     void expect(const std::string& buffer, const KnownWords& words);
 
   private:

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdlib>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -10,7 +11,6 @@
 #include <utility>
 
 #include "host/base/log.hpp"
-#include "host/base/progress.hpp"
 #include "host/cl/error_names.hpp"
 
 namespace raya {
@@ -40,6 +40,25 @@ SharedContext& shared_context(const cl::Device& device) {
     return shared->second;
 }
 
+// Adds the counts of the host's events during each launch to its record.
+class LaunchCounter final : public SessionObserver {
+  public:
+    explicit LaunchCounter(const HostCounters& counters) : counters_(counters) {}
+
+    void launch_begins(const cl::CommandQueue& queue, const cl::Kernel&, const CommandRecord&) override {
+        queue.finish();
+        before_ = counters_.read();
+    }
+    void launch_ended(const cl::CommandQueue& queue, const cl::Kernel&, CommandRecord& launch) override {
+        queue.finish();
+        launch.host_counts = counters_.read() - before_;
+    }
+
+  private:
+    const HostCounters& counters_;
+    HostCounts before_;
+};
+
 }  // namespace
 
 Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
@@ -52,6 +71,16 @@ Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
         staging_ = std::make_unique<Staging>(context_, *queue_, memory_kind(pinned_),
                                              pinned_ ? kPinnedHalfBytes : kPlainHalfBytes);
     });
+    if (const char* log = std::getenv("RAYA_KERNEL_LOG")) {
+        own_observers_.push_back(std::make_unique<KernelBuilds>(log));
+        observe(*own_observers_.back());
+    }
+}
+
+template <class Call>
+void Session::for_each_observer(const Call& call) const {
+    for (SessionObserver* observer : observers_) call(*observer);
+    if (Capture::active() != nullptr) call(*Capture::active());
 }
 
 Session::~Session() {
@@ -79,13 +108,13 @@ Program Session::build(const std::string& name, const std::string& source,
     const auto built = shared.programs.find({all_options, source});
     if (built != shared.programs.end()) return built->second;
     const SpanLog::Span building = span("build " + name);
+    const std::string joined_options = fmt::format("{}", fmt::join(all_options, " "));
+    for_each_observer([&](SessionObserver& observer) { observer.build_begins(name, source, joined_options); });
     const Clock::time_point start = Clock::now();
-    Capture* const capture = Capture::active();
-    if (capture != nullptr) capture->begin_build(name, source, fmt::format("{}", fmt::join(all_options, " ")));
     Program program(context_, device_, name, source, all_options);
-    if (capture != nullptr) capture->end_build(program.handle());
-    if (logs_builds_) log_kernel_build("build", name, program.options(), start);
-    if (builds_ != nullptr) builds_->push_back({program.handle(), name, program.options(), seconds_since(start)});
+    const double seconds = seconds_since(start);
+    for_each_observer(
+        [&](SessionObserver& observer) { observer.build_ended(program.handle(), name, program.options(), seconds); });
     log_message(kDetailed, fmt::format("build {}: options {}", name, program.options()));
     log_message(kDetailed, program.log());
     return shared.programs.emplace(std::pair(all_options, source), program).first->second;
@@ -155,27 +184,22 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
             fmt::format("{}: {} allows groups of 1..{} for this kernel; remedy: --group {}, or fewer lanes (--lanes)",
                         operation, info_.name, max_size, max_size));
     }
-    const bool records_launch = (logs_builds_ || builds_ != nullptr) && launched_.emplace(kernel(), group_size).second;
-    const std::string name = records_launch ? fmt::format("{}, groups of {}", record.target_name, group_size) : "";
-    if (records_launch || host_counters_ != nullptr) finish();
-    const HostCounts counts_before = host_counters_ != nullptr ? host_counters_->read() : HostCounts{};
-    const Clock::time_point start = Clock::now();
-    Capture* const capture = Capture::active();
-    if (capture != nullptr) capture->begin_launch(*queue_, kernel, record.target_name, groups, group_size);
+    guarded(operation, [&] {
+        for_each_observer([&](SessionObserver& observer) { observer.launch_begins(*queue_, kernel, record); });
+    });
     submit(operation, std::move(record), [&](cl::Event* event) {
         queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
                                      nullptr, event);
-        if (host_counters_ != nullptr) queue_->finish();
     });
-    if (capture != nullptr) guarded(operation, [&] { capture->end_launch(*queue_); });
-    if (host_counters_ != nullptr) pending_.back().record.host_counts = host_counters_->read() - counts_before;
-    if (!records_launch) return;
-    finish();
-    const cl::Program program = kernel.getInfo<CL_KERNEL_PROGRAM>();
-    if (logs_builds_) log_kernel_build("launch", name, program.getBuildInfo<CL_PROGRAM_BUILD_OPTIONS>(device_), start);
-    if (builds_ == nullptr) return;
-    for (KernelBuild& build : *builds_)
-        if (build.program() == program()) build.launch_s += seconds_since(start);
+    guarded(operation, [&] {
+        for_each_observer(
+            [&](SessionObserver& observer) { observer.launch_ended(*queue_, kernel, pending_.back().record); });
+    });
+}
+
+void Session::count_host_events(const HostCounters& counters) {
+    own_observers_.push_back(std::make_unique<LaunchCounter>(counters));
+    observe(*own_observers_.back());
 }
 
 CommandRecord Session::finished_record(const PendingCommand& pending) const {

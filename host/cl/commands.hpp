@@ -70,10 +70,11 @@ class Session {
     Program build(const std::string& name, const std::string& source, const std::vector<std::string>& options) const;
 
     /// Returns a reference to the maximum amount of work of a launch with this label, in units that the kernel defines;
-    /// LaunchGuard (kernels.hpp) lowers the maximum. It is UINT32_MAX, which means no limit, until the device has ended
-    /// loops of such a launch early.
+    /// LaunchLoop (host/array/launch_loop.hpp) lowers the maximum. UINT32_MAX, which means no limit, unless the device
+    /// may end loops early.
     std::uint32_t& launch_limit(const std::string& label) {
-        return launch_limits_.try_emplace(label, UINT32_MAX).first->second;
+        constexpr std::uint32_t kCautiousLimit = 2048;  // a test takes some 25 iterations, of 65,535
+        return launch_limits_.try_emplace(label, info_.ends_loops_early ? kCautiousLimit : UINT32_MAX).first->second;
     }
 
     /// Runs `groups` work-groups of `group_size` work-items each (one dimension). Does not wait.
@@ -178,16 +179,16 @@ class Session {
         recorded_launches_ = launches;
     }
 
+    /// From now on, `observer`, which must outlive the session or ignore(), observes builds and launches.
+    void observe(SessionObserver& observer) { observers_.push_back(&observer); }
+    void ignore(const SessionObserver& observer) { std::erase(observers_, &observer); }
+
     /// From now on, the session waits for the device before and after each kernel launch, and the launch's record has
     /// the counts of `counters`, which must outlive the session.
-    void count_host_events(const HostCounters& counters) { host_counters_ = &counters; }
+    void count_host_events(const HostCounters& counters);
 
     /// Enables the messages of compile_notice().
     void announce_compiling() { announces_compiling_ = true; }
-
-    /// From now on, adds an entry to `builds` for each program that is built, with the time of the first launches of
-    /// its kernels. A null pointer ends the recording.
-    void record_builds(std::vector<KernelBuild>* builds) { builds_ = builds; }
 
     /// Returns the thread of announce_compiling() (base/progress.hpp), or an empty thread if messages are not enabled.
     /// Keep the thread while kernels are compiled and launched for the first time.
@@ -226,6 +227,9 @@ class Session {
     /// `host`: memory to use on a device that uses the host's memory, or nullptr.
     cl::Buffer allocate(const std::string& name, std::size_t count, std::size_t element_bytes, const void* host) const;
     std::unique_ptr<HostMemory> host_memory(const std::string& name, std::size_t bytes) const;
+    /// Calls call(observer) for all observers, and for the Capture if there is one.
+    template <class Call>
+    void for_each_observer(const Call& call) const;
     void launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes);
     void write_bytes(const std::string& label, const cl::Buffer& target, const std::string& name, std::size_t offset,
                      std::size_t bytes, const void* source);
@@ -268,13 +272,10 @@ class Session {
     std::vector<PendingCommand> pending_;
     Profile profile_;
     std::map<std::string, std::uint32_t> launch_limits_;
-    bool logs_builds_ = logs_kernel_builds();
-    std::vector<KernelBuild>* builds_ = nullptr;
-    // (kernel, group size) of all launches; empty unless builds are recorded or logged.
-    std::set<std::pair<cl_kernel, std::size_t>> launched_;
+    std::vector<SessionObserver*> observers_;
+    std::vector<std::unique_ptr<SessionObserver>> own_observers_;
     bool announces_compiling_ = false;
     SpanLog* spans_ = nullptr;
-    const HostCounters* host_counters_ = nullptr;
     std::size_t recorded_launches_ = 0;  // number of further launches whose arguments are recorded
 };
 

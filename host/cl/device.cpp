@@ -13,7 +13,7 @@
 #include "host/cl/bad_drivers.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
-#include "host/cl/spirv.hpp"
+#include "host/cl/kernel_source.hpp"
 
 namespace raya {
 namespace {
@@ -34,14 +34,6 @@ std::string pci_address_of(const cl::Device& device) {
     if (::clGetDeviceInfo(device(), CL_DEVICE_PCI_BUS_INFO_KHR, sizeof pci, &pci, nullptr) != CL_SUCCESS) return {};
     if (pci.pci_domain + pci.pci_bus + pci.pci_device + pci.pci_function == 0) return {};  // PoCL 7 for CPUs
     return fmt::format("{:04x}:{:02x}:{:02x}.{:x}", pci.pci_domain, pci.pci_bus, pci.pci_device, pci.pci_function);
-}
-
-/// Returns DeviceInfo::max_loop_iterations for a device of this name. Mesa's llvmpipe has a limit that no query reports
-/// (tests/portability/nested_loops.cl). On other devices the kernels detect loops that ended early
-/// (kernels/shared/loop_canary.clh).
-std::uint32_t max_loop_iterations_of(const std::string& device_name) {
-    constexpr std::uint32_t kLlvmpipeIterations = 65535;
-    return device_name.find("llvmpipe") != std::string::npos ? kLlvmpipeIterations : 0;
 }
 
 std::string full_name(const DeviceInfo& device) { return device.platform + " " + device.name; }
@@ -181,7 +173,7 @@ DeviceInfo device_info(const cl::Device& device) {
         info.separate_memory = info.type != "cpu" && device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_FALSE;
         info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
         info.max_group_size = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
-        info.max_loop_iterations = max_loop_iterations_of(info.name);
+        info.ends_loops_early = info.name.find("llvmpipe") != std::string::npos;
         info.native_float_width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
         info.preferred_float_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>();
         info.correctly_rounded_divide_sqrt = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;

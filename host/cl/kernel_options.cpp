@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "host/error.hpp"
-#include "kernels/shared/trace_progress.h"
 
 namespace raya {
 namespace {
@@ -16,17 +15,6 @@ namespace {
 constexpr std::array<std::uint32_t, 4> kLanes = {1, 4, 8, 16};
 constexpr std::uint32_t kMaxGroupSize = 1024;
 constexpr std::uint32_t kMaxBounces = 31;  // the kernels store the pending rays of a tree as bits of one word
-
-void check_tuning(const KernelTuning& values) {
-    const auto check = [](const char* name, std::uint32_t value, std::uint32_t min, std::uint32_t max) {
-        if (value != 0 && (value < min || value > max))
-            throw UserError(fmt::format("{} {}: must be {}..{}", name, value, min, max));
-    };
-    check("sphere batch", values.sphere_batch, 1, 32);
-    check("trees", values.trees, 1, 8);
-    check("beams", values.beams, 1, 8);
-    check("registers", values.registers, 16, 255);
-}
 
 }  // namespace
 
@@ -39,22 +27,15 @@ void check_kernel_options(const KernelOptions& options, const DeviceInfo& device
             fmt::format("--group {}: must be 1..{} work-items on {}", options.group_size, max_size, device.name));
     if (options.bounces > kMaxBounces)
         throw UserError(fmt::format("--bounces {}: must be 0..{}", options.bounces, kMaxBounces));
-    check_tuning(options.tuning);
+    if (options.sphere_batch > 32) throw UserError(fmt::format("sphere batch {}: must be 1..32", options.sphere_batch));
 }
 
 std::uint32_t max_group_size_of(const DeviceInfo& device) {
     return static_cast<std::uint32_t>(std::min<std::size_t>(kMaxGroupSize, device.max_group_size));
 }
 
-bool supports_register_limit(const DeviceInfo& device) { return device.platform.find("NVIDIA") != std::string::npos; }
-
-std::uint32_t trees_of(const KernelOptions& options) {
-    const bool tuned = options.tuning.trees && options.accel == RAYA_ACCEL_GRID;
-    return tuned ? options.tuning.trees : RAYA_DEFAULT_TREES(options.accel, options.lanes);
-}
-
 std::uint32_t default_lanes(const DeviceInfo& device) {
-    if (device.type != "cpu" || is_llvmpipe(device)) return 1;
+    if (device.type != "cpu" || device.ends_loops_early) return 1;
     std::uint32_t lanes = 4;
     for (const std::uint32_t width : kLanes)
         if (width <= device.native_float_width) lanes = std::max(lanes, width);
@@ -64,7 +45,7 @@ std::uint32_t default_lanes(const DeviceInfo& device) {
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus, std::uint32_t pes) {
     constexpr std::size_t kGpuGroupSize = 128, kLlvmpipeGroupSize = 8, kWorkItemsPerUnit = 512;
     const bool cpu = device.type == "cpu";
-    if (cpu && (torus || !is_llvmpipe(device))) return 1;
+    if (cpu && (torus || !device.ends_loops_early)) return 1;
     std::size_t group = cpu ? kLlvmpipeGroupSize : kGpuGroupSize;
     if (!cpu && pes > 0)
         group = std::clamp<std::size_t>(std::bit_floor(kWorkItemsPerUnit * device.compute_units / pes), 32, 256);
@@ -106,12 +87,72 @@ std::vector<std::string> build_options(const KernelOptions& options, const Devic
     if (options.filter) define("FILTER", 1);
     if (options.costs) define("COSTS", 1);
     if (options.packets) define("RAY_PACKETS", 1);
-    if (options.tuning.sphere_batch) define("SPHERE_BATCH", options.tuning.sphere_batch);
-    if (options.tuning.trees && options.accel == RAYA_ACCEL_GRID) define("TREES", options.tuning.trees);
-    if (options.tuning.beams && options.accel == RAYA_ACCEL_GRID) define("BEAMS", options.tuning.beams);
-    if (options.tuning.registers && supports_register_limit(device))
-        all.push_back(fmt::format("-cl-nv-maxrregcount={}", options.tuning.registers));
+    if (options.sphere_batch) define("SPHERE_BATCH", options.sphere_batch);
     return all;
+}
+
+namespace {
+
+TunedSource& current_source() {
+    static TunedSource source;
+    return source;
+}
+
+}  // namespace
+
+TunedValues default_values(const DeviceInfo& device, const TuningKey& key, std::uint32_t pes) {
+    constexpr std::uint32_t kSphereBatch = 16;  // fastest on llvmpipe (docs/tuning.md)
+    const bool ring_without_accel = !key.torus && key.accel == RAYA_ACCEL_NONE;
+    return {.lanes = default_lanes(device),
+            .group = default_group_size(device, key.torus, ring_without_accel ? pes : 0),
+            .batch = ring_without_accel && key.fp32 && device.ends_loops_early ? kSphereBatch : 0};
+}
+
+KernelChoice with_values(KernelChoice kernels, const TunedValues& values) {
+    kernels.lanes = values.lanes;
+    kernels.group_size = values.group;
+    kernels.local_words = kernels.local_words && values.local_words != 0;
+    kernels.sphere_batch = values.batch;
+    return kernels;
+}
+
+ScopedTunedSource::ScopedTunedSource(TunedSource source) : previous_source_(std::move(current_source())) {
+    current_source() = std::move(source);
+}
+ScopedTunedSource::~ScopedTunedSource() { current_source() = std::move(previous_source_); }
+
+KernelChoice chosen_kernels(KernelChoice kernels, const DeviceInfo& device, const TuningKey& key, std::uint32_t pes) {
+    if (kernels.lanes == 0 && kernels.group_size == 0) {
+        const auto tuned = current_source() ? current_source()(device, key) : std::nullopt;
+        kernels = with_values(kernels, tuned ? tuned->values : default_values(device, key, pes));
+        kernels.origin = tuned ? tuned->origin : "defaults";
+        return kernels;
+    }
+    const TunedValues defaults = default_values(device, key, pes);
+    if (!kernels.lanes) kernels.lanes = defaults.lanes;
+    if (!kernels.group_size) kernels.group_size = defaults.group;
+    if (!kernels.sphere_batch) kernels.sphere_batch = defaults.batch;
+    kernels.origin = "options";
+    return kernels;
+}
+
+Kernels::Kernels(Session& session, const KernelOptions& options, const KernelSources& sources)
+    : session_(session),
+      options_(options),
+      sources_(sources),
+      build_options_(build_options(options, session.device())) {
+    build_options_.insert(build_options_.end(), sources.more_options.begin(), sources.more_options.end());
+}
+
+const Program& Kernels::program(const std::string& file) {
+    const auto found = programs_.find(file);
+    if (found != programs_.end()) return found->second;
+    const Program program = session_.build(file, kernel_source(file, sources_), build_options_);
+    return programs_.emplace(file, program).first->second;
+}
+
+Program Kernels::build(const std::string& name, const std::string& text) const {
+    return session_.build(name, expand_kernel_source(text, name, sources_), build_options_);
 }
 
 }  // namespace raya

@@ -1,16 +1,30 @@
 #include "host/cl/kernel_source.hpp"
 
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
+#include "host/base/child_process.hpp"
 #include "host/base/whole_file.hpp"
+#include "host/cl/program.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -102,6 +116,131 @@ void check_kernel_folder(const KernelSources& sources) {
 
 void check_patches(const KernelSources& sources) {
     for (const SourcePatch& patch : sources.patches) kernel_file(patch.file, sources);  // throws on failure
+}
+
+namespace {
+
+constexpr const char* kIlOption = "--il";
+
+// A file in memory, which a compiler reads or writes.
+class MemoryFile {
+  public:
+    MemoryFile()
+        : descriptor_(::memfd_create("raya", MFD_CLOEXEC)), path_(fmt::format("/proc/self/fd/{}", descriptor_)) {}
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+    ~MemoryFile() { ::close(descriptor_); }
+
+    const std::string& path() const { return path_; }  // valid in this process, and in a child process before exec
+    std::string content() const { return read_file(path_); }
+
+  private:
+    int descriptor_;
+    std::string path_;
+};
+
+// Runs a program with stdin from `in`, stdout to `out` and stderr to `log`. Throws DeviceError unless it succeeds.
+void run_compiler(std::vector<std::string> arguments, const MemoryFile& in, const MemoryFile& out,
+                  const MemoryFile& log, const std::string& operation) {
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    ::posix_spawn_file_actions_init(&files);
+    ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, in.path().c_str(), O_RDONLY, 0);
+    ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out.path().c_str(), O_WRONLY, 0);
+    ::posix_spawn_file_actions_addopen(&files, STDERR_FILENO, log.path().c_str(), O_WRONLY, 0);
+    pid_t child = -1;
+    const int error = ::posix_spawnp(&child, argv[0], &files, nullptr, argv.data(), environ);
+    ::posix_spawn_file_actions_destroy(&files);
+    if (error != 0)
+        throw DeviceError(
+            fmt::format("{0}: --il cannot run {1}: {2}; remedy: install clang-{3} and llvm-spirv-{3} (tools/setup "
+                        "--gpu), or omit --il",
+                        operation, arguments[0], std::strerror(error), llvm_version()));
+    int status = 0;
+    while (::waitpid(child, &status, 0) != child)
+        if (errno != EINTR) throw DeviceError(fmt::format("{}: lost {}", operation, arguments[0]));
+    if (status != 0)
+        throw DeviceError(fmt::format("{}: {} ended with {}\n  options: {}\n  build log:\n{}", operation, arguments[0],
+                                      ending_text(status), fmt::join(arguments, " "), log.content()));
+}
+
+// Returns the source as SPIR-V. Compiles without optimisation, because of defects of llvm-spirv
+// (docs/porting.md); the driver optimises. The version is 1.0; with -g, which needs it, 1.1.
+std::string compiled_to_spirv(const std::string& source, const std::string& options, cl_uint address_bits,
+                              const std::string& operation) {
+    MemoryFile text, bitcode, spirv, log;
+    std::ofstream(text.path()) << source;
+    std::vector<std::string> clang = {std::string("clang-") + llvm_version(),
+                                      "-x",
+                                      "cl",
+                                      "-target",
+                                      address_bits == 32 ? "spir" : "spir64",
+                                      "-O2",
+                                      "-Xclang",
+                                      "-disable-llvm-passes",
+                                      "-emit-llvm",
+                                      "-c",
+                                      "-o",
+                                      "-",
+                                      "-"};
+    std::istringstream words(options);
+    for (std::string word; words >> word;) clang.push_back(word);
+    run_compiler(clang, text, bitcode, log, operation);
+    run_compiler({std::string("llvm-spirv-") + llvm_version(), "--spirv-max-version=1.1", "-o", "-", "-"}, bitcode,
+                 spirv, log, operation);
+    return spirv.content();
+}
+
+}  // namespace
+
+bool remove_il_option(std::string& options) {
+    std::istringstream words(options);
+    std::string others;
+    bool found = false;
+    for (std::string word; words >> word;) {
+        found = found || word == kIlOption;
+        if (word != kIlOption) others += (others.empty() ? "" : " ") + word;
+    }
+    if (found) options = others;
+    return found;
+}
+
+void use_il() {
+    const std::string options = user_build_options();
+    ::setenv("RAYA_BUILD_OPTIONS", (options + (options.empty() ? "" : " ") + kIlOption).c_str(), 1);
+}
+
+bool uses_il() {
+    std::string options = user_build_options();
+    return remove_il_option(options);
+}
+
+std::string il_versions(const cl::Device& device) {
+    std::size_t size = 0;  // devices without the extension cl_khr_il_program return an error
+    if (::clGetDeviceInfo(device(), CL_DEVICE_IL_VERSION_KHR, 0, nullptr, &size) != CL_SUCCESS || size == 0) return {};
+    std::string versions(size, '\0');
+    if (::clGetDeviceInfo(device(), CL_DEVICE_IL_VERSION_KHR, size, versions.data(), nullptr) != CL_SUCCESS) return {};
+    return versions.substr(0, versions.find('\0'));
+}
+
+cl::Program spirv_program(const cl::Context& context, const cl::Device& device, const std::string& source,
+                          const std::string& options, const std::string& operation) {
+    const cl_platform_id platform = cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>())();
+    void* create = nullptr;
+    if (!il_versions(device).empty())
+        for (const char* function : {"clCreateProgramWithILKHR", "clCreateProgramWithIL"})
+            if (create == nullptr) create = ::clGetExtensionFunctionAddressForPlatform(platform, function);
+    if (create == nullptr)
+        throw DeviceError(fmt::format("{}: {} does not accept SPIR-V; remedy: omit --il, or choose another device",
+                                      operation, device.getInfo<CL_DEVICE_NAME>()));
+    const std::string spirv = compiled_to_spirv(source, options, device.getInfo<CL_DEVICE_ADDRESS_BITS>(), operation);
+    cl_int error = CL_SUCCESS;
+    const cl_program program =
+        reinterpret_cast<decltype(&::clCreateProgramWithILKHR)>(create)(context(), spirv.data(), spirv.size(), &error);
+    if (error != CL_SUCCESS) throw cl::Error(error, "clCreateProgramWithIL");
+    return cl::Program(program);
 }
 
 }  // namespace raya

@@ -9,7 +9,7 @@
 
 #include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
-#include "host/cl/spirv.hpp"
+#include "host/cl/kernel_source.hpp"
 
 namespace raya {
 namespace {
@@ -53,15 +53,35 @@ std::string user_build_options() {
     return options != nullptr ? options : "";
 }
 
-bool logs_kernel_builds() {
-    const char* const file = std::getenv("RAYA_KERNEL_LOG");
-    return file != nullptr && *file != 0;
+void KernelBuilds::write_log(double seconds, const char* step, const std::string& name,
+                             const std::string& options) const {
+    if (log_ == nullptr) return;
+    std::ofstream(log_, std::ios::app) << fmt::format("{:.4f}\t{}\t{}\t{}\n", seconds, step, name, options)
+                                       << std::flush;
 }
 
-void log_kernel_build(const char* step, const std::string& name, const std::string& options, Clock::time_point start) {
-    const double seconds = seconds_since(start);
-    std::ofstream(std::getenv("RAYA_KERNEL_LOG"), std::ios::app)
-        << fmt::format("{:.4f}\t{}\t{}\t{}\n", seconds, step, name, options) << std::flush;
+void KernelBuilds::build_ended(const cl::Program& program, const std::string& name, const std::string& options,
+                               double seconds) {
+    all.push_back({program, name, options, seconds});
+    write_log(seconds, "build", name, options);
+}
+
+void KernelBuilds::launch_begins(const cl::CommandQueue& queue, const cl::Kernel& kernel, const CommandRecord& launch) {
+    is_first_ = launched_.emplace(kernel(), launch.group_size).second;
+    if (is_first_) queue.finish();
+    start_ = Clock::now();
+}
+
+void KernelBuilds::launch_ended(const cl::CommandQueue& queue, const cl::Kernel& kernel, CommandRecord& launch) {
+    if (!is_first_) return;
+    queue.finish();
+    const double seconds = seconds_since(start_);
+    const cl::Program program = kernel.getInfo<CL_KERNEL_PROGRAM>();
+    for (KernelBuild& build : all)
+        if (build.program() == program()) build.launch_s += seconds;
+    if (log_ != nullptr)
+        write_log(seconds, "launch", fmt::format("{}, groups of {}", launch.target_name, launch.group_size),
+                  program.getBuildInfo<CL_PROGRAM_BUILD_OPTIONS>(queue.getInfo<CL_QUEUE_DEVICE>()));
 }
 
 Program::Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -15,7 +17,6 @@
 #include "host/cl/error_names.hpp"
 #include "host/cl/memory.hpp"
 #include "host/cl/opencl.hpp"
-#include "host/cl/profile.hpp"
 
 namespace raya {
 
@@ -132,18 +133,34 @@ std::size_t local_bytes_of(const LocalMemory<T>& local) {
 /// Returns the value of the environment variable RAYA_BUILD_OPTIONS, which is appended to the options of every program.
 std::string user_build_options();
 
-/// Appends the time of a build or a first launch, from `start` to now, to the file that the environment variable
-/// RAYA_KERNEL_LOG names: a line "seconds <tab> step <tab> name <tab> options". tools/kernel_builds sums these times.
-void log_kernel_build(const char* step, const std::string& name, const std::string& options, Clock::time_point start);
-
-/// Returns true if RAYA_KERNEL_LOG is set.
-bool logs_kernel_builds();
-
 /// An OpenCL program with its build time and the time of the first launches of its kernels.
 struct KernelBuild {
     cl::Program program;
     std::string name, options;         // name as in Program; options as passed to the compiler
     double build_s = 0, launch_s = 0;  // seconds of the build, and of the first launches
+};
+
+/// Records builds, and the first launch of each kernel with each group size, for which PoCL compiles the kernel.
+class KernelBuilds final : public SessionObserver {
+  public:
+    /// `log`: null, or a file to which each time is appended as a line "seconds <tab> build or launch <tab> name <tab>
+    /// options"; tools/kernel_builds sums these times.
+    explicit KernelBuilds(const char* log = nullptr) : log_(log) {}
+
+    void build_ended(const cl::Program& program, const std::string& name, const std::string& options,
+                     double seconds) override;
+    void launch_begins(const cl::CommandQueue& queue, const cl::Kernel& kernel, const CommandRecord& launch) override;
+    void launch_ended(const cl::CommandQueue& queue, const cl::Kernel& kernel, CommandRecord& launch) override;
+
+    std::vector<KernelBuild> all;
+
+  private:
+    void write_log(double seconds, const char* step, const std::string& name, const std::string& options) const;
+
+    const char* log_;
+    std::set<std::pair<cl_kernel, std::uint64_t>> launched_;  // (kernel, group size)
+    bool is_first_ = false;                                   // of the current launch
+    Clock::time_point start_;
 };
 
 /// A built OpenCL program, made by Session::build().

@@ -9,22 +9,19 @@
 #include <optional>
 
 #include "host/base/log.hpp"
-#include "host/base/progress.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/cli/bench_baseline.hpp"
 #include "host/cli/bench_build.hpp"
 #include "host/cli/bench_rows.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/scene_input.hpp"
-#include "host/cli/tuned_option.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 #include "host/report/render_report.hpp"
 
 namespace raya {
@@ -37,7 +34,7 @@ struct BenchCommand {
     std::uint32_t samples = 7;  // number of time samples of each row
     ReportFiles files;          // of --report and --page
     BaselineOptions compare;
-    bool denormals = false, build = false;
+    bool build = false;
     std::optional<double> limit_s;  // maximum seconds to compile a kernel
 };
 
@@ -72,18 +69,9 @@ std::vector<BenchRow> rows_of(const BenchCommand& command, Session& session, con
 
 std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session, const Scene& scene,
                                    const RingSettings& settings, const std::vector<NumberFormat>& formats) {
-    RingSettings flushed_settings = settings;
-    flushed_settings.kernels.sources.more_options.emplace_back("-cl-denorms-are-zero");
     std::vector<BenchRow> rows;
-    for (const NumberFormat& format : formats) {
+    for (const NumberFormat& format : formats)
         std::ranges::move(rows_of(command, session, scene, settings, format), std::back_inserter(rows));
-        if (!command.denormals) continue;
-        for (BenchRow& row : rows_of(command, session, scene, flushed_settings, format)) {
-            row.flushed = true;
-            row.result.kernel += ", flushed";
-            rows.push_back(std::move(row));
-        }
-    }
     check_rows(rows);
     return rows;
 }
@@ -122,7 +110,6 @@ void print_tables(const BenchCommand& command, Session& session, const std::vect
                   const std::vector<NumberFormat>& formats) {
     print_rows(rows);
     print_tuned(rows);
-    if (command.denormals) print_denormals(rows);
     if (command.variants.empty())
         print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
                          command.samples);
@@ -136,7 +123,7 @@ void bench(const CLI::App& parser, BenchCommand command) {
     if (command.samples < 1 || command.samples > 1000)
         throw UserError(fmt::format("--samples {}: must be 1..1000", command.samples));
     if (!command.files.page.empty()) check_page_name("--page", command.files.page);
-    const Baseline baseline = read_baseline(command.compare);
+    const BenchReport baseline = read_baseline(command.compare);
     const std::vector<NumberFormat> formats =
         parse_formats(command.render.format.empty() ? "fp32,spa22" : command.render.format);
     command.render.format.clear();
@@ -153,7 +140,7 @@ void bench(const CLI::App& parser, BenchCommand command) {
     }
     session.announce_compiling();
     std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
-    check_comparable(command.compare, baseline.report, bench_report(rows, session.device()));
+    check_comparable(command.compare, baseline, bench_report(rows, session.device()));
     bar->stage("taking samples");
     take_samples(rows, command.samples);
     bar.reset();
@@ -170,32 +157,6 @@ void bench(const CLI::App& parser, BenchCommand command) {
     write_and_compare(command.compare, command.files, baseline, std::move(measured));
 }
 
-std::vector<ShortHelp> bench_short_help() {
-    const char *const options = "Options", *const more = "More options";
-    return {{"--variants", options, "Time whole renders instead of the trace kernel"},
-            {"--format", options, "Formats to compare; default: fp32,spa22"},
-            {"--lanes", options, "Rays per work-item; default: 1, 4, 8 and 16 in turn"},
-            {"--size", options, "Size in pixels, 1..16384 a side; default: the scene's"},
-            {"--machine", options, "spa, grande, spa1, cap, pixel-machine or links"},
-            {"--samples", options, "Number of time samples of each row, 1..1000"},
-            {"--device", options, "OpenCL device: its number, type or part of its name"},
-            {"--report", options, "Write the rows as JSON; -: stdout"},
-            {"--compare", options, "Compare with an earlier report: exit code 4 if slower"},
-            {"--tolerance", options, "Tolerance of --compare in percent, 0..100"},
-            {"--page", options, "Write rates, comparison and roofline as an HTML page"},
-            {"--accel", more, "Acceleration structure in each PE's memory"},
-            {"--pes", more, "Number of PEs; default: the machine's"},
-            {"--mapping", more, "Pixels to PEs: cyclic, column, rows, blocks, ..."},
-            {"--bounces", more, "Reflections and refractions, 0..31; default: 8"},
-            {"--group", more, "Work-items per work-group, 1..1024"},
-            {"--no-tuned", more, "Ignore the values that raya tune stored"},
-            {"--denormals", more, "Also time every row with denormals flushed to 0"},
-            {"--build", more, "Measure only compilation"},
-            {"--limit", more, "Maximum seconds to compile a kernel, for --build"},
-            {"--kernel-dir", more, "Read the kernels from this folder"},
-            {"--il", more, "Build the kernels from SPIR-V"}};
-}
-
 }  // namespace
 
 void add_bench_command(CLI::App& program) {
@@ -206,7 +167,6 @@ void add_bench_command(CLI::App& program) {
                             {"raya bench scenes/centre.nff --size 128 --samples 3 --variants none,bvh",
                              "Time whole renders of a scene, without accelerator and with a BVH"}});
     const auto options = std::make_shared<BenchCommand>();
-    add_short_help(*command, bench_short_help());
     OptionGroup group(*command, "Workload");
     add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE",
              std::string(kSceneHelp) + "; default: 30 spheres and a plane, 512 x 512");
@@ -215,35 +175,35 @@ void add_bench_command(CLI::App& program) {
         *command, "--variants", options->variants,
         "Time whole renders instead of the trace kernel, for a comma-separated list of variants; none, grid and bvh "
         "are the ring machine with that --accel; packets is bvh with neighbouring rays together, in fp32 and tiles; "
-        "torus is 4x4x4 nodes without a memory limit; raya compares the other variants with the first")
+        "torus is 4x4x4 nodes without a memory limit; raya compares the other variants with the first",
+        "Time whole renders instead of the trace kernel")
         ->delimiter(',')
         ->allow_extra_args(false)  // so that the scene may follow
         ->type_name("none,grid,bvh,packets,torus")
         ->excludes(command->get_option("--accel"));
-    CLI::Option* denormals = command->add_flag(
-        "--denormals", options->denormals,
-        "Also time every row with denormal numbers flushed to 0; if these rows are faster, denormals cost time");
     CLI::Option* build =
-        command
-            ->add_flag("--build", options->build,
-                       "Measure only compilation: compile each kernel of the variants in each format from source, "
-                       "and measure the seconds of the build and of the first launch")
-            ->excludes(denormals);
+        command->add_flag("--build", options->build,
+                          "Measure only compilation: compile each kernel of the variants in each format from source, "
+                          "and measure the seconds of the build and of the first launch");
+    attach_note(build, kBriefNote, "Measure only compilation");
     add_value(*command, "--limit", options->limit_s,
               "With --build: maximum seconds to compile a kernel; exit code 4 if a kernel takes longer")
         ->type_name("SECONDS")
         ->needs(build);
     add_value(*command, "--samples", options->samples,
-              "Number of time samples of each row, 1..1000; the best and the median are printed")
+              "Number of time samples of each row, 1..1000; the best and the median are printed",
+              "Number of time samples of each row, 1..1000")
         ->type_name("N")
         ->capture_default_str();
     group.next("Report and comparison");
     add_file(*command, FileUse::kWritten, "--report", options->files.report, "FILE.json",
-             "Write the rows as JSON, for a later --compare; -: stdout; the tables then go to stderr");
+             "Write the rows as JSON, for a later --compare; -: stdout; the tables then go to stderr",
+             "Write the rows as JSON; -: stdout");
     add_file(
         *command, FileUse::kWritten, "--page", options->files.page, "FILE.html",
         "Write rates, comparison and roofline as an HTML page; raya page makes the same page from a report. Measures "
-        "the device's peak for each pair of a format and a number of lanes; each pair takes some seconds")
+        "the device's peak for each pair of a format and a number of lanes; each pair takes some seconds",
+        "Write rates, comparison and roofline as an HTML page")
         ->excludes(build);
     add_baseline_options(*command, options->compare, build);
     command->get_option("--format")

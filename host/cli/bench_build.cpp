@@ -19,8 +19,8 @@ std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingS
     // Drivers cache kernels by source and options. No earlier build has this option, so the driver compiles anew.
     const std::string unique_option = fmt::format("-DRAYA_BUILT={}", Clock::now().time_since_epoch().count());
     settings.kernels.sources.more_options.push_back(unique_option);
-    std::vector<KernelBuild> recorded_builds;
-    session.record_builds(&recorded_builds);
+    KernelBuilds recorded;
+    session.observe(recorded);
     std::vector<BenchBuild> builds;
     for (const NumberFormat& format : formats) {
         for (const std::string& variant : variants) {
@@ -31,7 +31,7 @@ std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingS
                     variant_settings.antialias.method = method;
                     lanes = render_row(session, scene, variant_settings, format, variant).result.lanes;
                 }
-            for (KernelBuild& build : recorded_builds) {
+            for (KernelBuild& build : recorded.all) {
                 std::string& options = build.options;
                 if (const auto position = options.find(unique_option); position != options.npos)
                     options.erase(position > 0 ? position - 1 : position,
@@ -44,10 +44,10 @@ std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingS
                                   .launch_s = build.launch_s,
                                   .build_options = options});
             }
-            recorded_builds.clear();
+            recorded.all.clear();
         }
     }
-    session.record_builds(nullptr);
+    session.ignore(recorded);
     return builds;
 }
 

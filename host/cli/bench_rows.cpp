@@ -12,7 +12,7 @@
 #include "host/cl/measure.hpp"
 #include "host/error.hpp"
 #include "host/image/image.hpp"
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 #include "host/report/render_report.hpp"
 #include "host/report/table.hpp"
 #include "host/ring/mapping.hpp"
@@ -21,7 +21,7 @@
 #include "host/ring/schedule.hpp"
 #include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_renderer.hpp"
-#include "host/tune/trial.hpp"
+#include "host/tune/tune.hpp"
 #include "host/version.hpp"
 
 namespace raya {
@@ -45,35 +45,27 @@ BenchMeasurement make_measurement(const std::string& kernel, const Scene& scene,
             .hash = {}};
 }
 
-// Renders one image and returns a row with the image's event counts. `events`, `seconds` and `work` are functions that
-// return figures of a render: the event counts, the measured seconds, and the operations and bytes of the kernel.
-// `work` is null if the row measures several kernels.
+// Renders one image and returns a row with the image's event counts. `seconds`: returns the measured seconds of a
+// render.
 template <class Renderer, class Seconds>
 BenchRow row_of(BenchMeasurement measurement, const NumberFormat& format, std::shared_ptr<Renderer> renderer,
-                const EventCounts& (*events)(const decltype(renderer->render())&), Seconds seconds,
-                std::optional<KernelWork> (*work)(const RingSettings&, const decltype(renderer->render())&) = nullptr,
-                const RingSettings& settings = {}) {
-    const auto result = renderer->render();
+                const Seconds& seconds) {
+    const RenderResult result = renderer->render();
     measurement.lanes = result.lanes;
     measurement.group_size = result.group_size;
-    measurement.rays = ray_count(events(result));
+    measurement.rays = ray_count(result.events);
     measurement.hash = pixel_hash(result.image);
     measurement.build_options = result.build_options;
     return {.format = format,
             .result = std::move(measurement),
-            .events = events(result),
+            .events = result.events,
             .build_s = result.build_s,
             .tuned = result.tuned,
             .image_s = [renderer, seconds] { return seconds(renderer->render()); },
-            .work = work != nullptr ? work(settings, result) : std::nullopt};
+            .work = {}};
 }
 
-const EventCounts& events_of_ring(const RingResult& r) { return r.all.events; }
-const EventCounts& events_of_torus(const TorusResult& r) { return r.events; }
-
-std::optional<KernelWork> trace_work(const RingSettings& settings, const RingResult& result) {
-    return ring_kernel_work(settings, result).front();
-}
+double render_seconds(const RenderResult& r) { return r.render_s; }
 
 TorusSettings torus_settings_of(const RingSettings& s) {
     TorusSettings t = default_torus({s.mapping.width, s.mapping.height});
@@ -103,9 +95,11 @@ BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, 
                    std::uint32_t lanes) {
     settings.format = format;
     settings.kernels.lanes = lanes;
-    return row_of(make_measurement("trace", scene, settings, array_text(settings)), format,
-                  std::make_shared<RingRenderer>(session, scene, settings), events_of_ring, trace_seconds, trace_work,
-                  settings);
+    const auto renderer = std::make_shared<RingRenderer>(session, scene, settings);
+    BenchRow row =
+        row_of(make_measurement("trace", scene, settings, array_text(settings)), format, renderer, trace_seconds);
+    row.work = ring_kernel_work(settings, renderer->render()).front();
+    return row;
 }
 
 BenchRow render_row(Session& session, const Scene& scene, const RingSettings& settings, const NumberFormat& format,
@@ -118,8 +112,7 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
         const TorusSettings t = torus_settings_of(s);
         const std::string array = fmt::format("4x4x4 nodes, torus3d, 4x4x4 voxels, {} bounces", t.bounces);
         return row_of(make_measurement("torus", scene, s, array), format,
-                      std::make_shared<TorusRenderer>(session, scene, t), events_of_torus,
-                      [](const TorusResult& r) { return r.render_s; });
+                      std::make_shared<TorusRenderer>(session, scene, t), render_seconds);
     }
     s.accel = {.kind = static_cast<AccelKind>(key.accel)};
     if (packets) use_packets(s, s.mapping.kind != RAYA_TILES);
@@ -128,13 +121,11 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
             "--variants packets: needs --format fp32 and tiles that divide the image, not {} and {}x{} pixels",
             format_name(format), s.mapping.width, s.mapping.height));
     return row_of(make_measurement("render, " + variant, scene, s, array_text(s)), format,
-                  std::make_shared<RingRenderer>(session, scene, s), events_of_ring,
-                  [](const RingResult& r) { return r.render_s; });
+                  std::make_shared<RingRenderer>(session, scene, s), render_seconds);
 }
 
 void check_rows(const std::vector<BenchRow>& rows) {
     for (const BenchRow& row : rows) {
-        if (row.flushed) continue;
         const BenchRow& first = first_row_of_format(rows, row);
         const bool same_counts = row.result.kernel != first.result.kernel || row.events == first.events;
         if (row.result.hash == first.result.hash && row.result.rays == first.result.rays && same_counts) continue;
@@ -201,27 +192,6 @@ void print_tuned(const std::vector<BenchRow>& rows) {
     for (const BenchRow& row : rows)
         if (row.tuned != "defaults" && row.tuned != "options") files.insert(row.tuned);
     for (const std::string& file : files) fmt::print("tuned: {}\n", printable(file));
-}
-
-void print_denormals(const std::vector<BenchRow>& rows) {
-    std::vector<std::vector<std::string>> table = {
-        {"kernel", "format", "lanes", "ms best", "flushed", "ratio", "median", "flushed", "ratio"}};
-    for (const BenchRow& row : rows)
-        for (const BenchRow& flushed_row : rows) {
-            const bool is_pair = flushed_row.flushed && flushed_row.result.kernel == row.result.kernel + ", flushed" &&
-                                 flushed_row.result.format == row.result.format &&
-                                 flushed_row.result.lanes == row.result.lanes;
-            if (!is_pair) continue;
-            const auto ms = [](double s) { return fmt::format("{:.2f}", 1e3 * s); };
-            table.push_back({row.result.kernel, row.result.format, std::to_string(row.result.lanes),
-                             ms(row.result.best_s), ms(flushed_row.result.best_s),
-                             fmt::format("{:.2f}", row.result.best_s / flushed_row.result.best_s),
-                             ms(row.result.median_s), ms(flushed_row.result.median_s),
-                             fmt::format("{:.2f}", row.result.median_s / flushed_row.result.median_s)});
-        }
-    fmt::print(
-        "\ntimes with denormals kept, and flushed to 0 (-cl-denorms-are-zero); ratio above 1: denormals cost time\n{}",
-        text_table(table));
 }
 
 void add_rooflines(BenchReport& report, const std::vector<BenchRow>& rows, const cl::Device& device) {

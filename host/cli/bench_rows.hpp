@@ -19,8 +19,7 @@ struct BenchRow {
     BenchMeasurement result{};          // take_samples() adds the times
     EventCounts events{};               // event counts of one image
     double build_s = 0;                 // seconds that the kernel builds took
-    std::string tuned{};                // source of the lanes and group size (host/cl/tuned.hpp)
-    bool flushed = false;               // true with -cl-denorms-are-zero, which may change the image
+    std::string tuned{};                // source of the lanes and group size (host/cl/kernel_options.hpp)
     std::function<double()> image_s{};  // renders the image again; returns its seconds
     std::optional<KernelWork> work{};   // operations and bytes of the row's kernel; empty if it times several kernels
 };
@@ -36,7 +35,7 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
                     const std::string& variant);
 
 /// Throws DeviceError if rows of the same format differ in image or number of rays, or if rows of the same format and
-/// kernel differ in event counts. Skips rows that flush denormal numbers.
+/// kernel differ in event counts.
 void check_rows(const std::vector<BenchRow>& rows);
 
 /// Takes `samples` time samples of each row. For a sample, the row renders images for at least 20 ms; the sample is the
@@ -52,9 +51,6 @@ void print_operations(Session& session, const std::vector<NumberFormat>& formats
 
 /// Prints the names of the files of tuned values (raya tune) that the rows used.
 void print_tuned(const std::vector<BenchRow>& rows);
-
-/// Prints the times of each row with denormal numbers next to its times with denormal numbers flushed to 0.
-void print_denormals(const std::vector<BenchRow>& rows);
 
 /// Measures the device's peak for each format and number of lanes, and adds to `report` the roofline of each row that
 /// measures a single kernel, from its best sample. If a peak cannot be measured, the report contains the reason.

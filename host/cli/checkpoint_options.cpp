@@ -11,7 +11,6 @@
 #include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
-#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 
@@ -33,10 +32,11 @@ bool is_checkpoint(const std::string& file) {
 }  // namespace
 
 void add_checkpoint_options(CLI::App& command, CheckpointOptions& options) {
-    const OptionGroup group(command, "Checkpoints");
+    const OptionGroup group(command, kFiles);
     add_file(command, FileUse::kWritten, "--checkpoint", options.file, "FILE.rst",
              "Save the progress of a long render to this file, for --resume; the file is removed when the render is "
-             "complete. The image and its hash do not change; the number of MPI ranks may");
+             "complete. The image and its hash do not change; the number of MPI ranks may",
+             "Save the progress of a long render, for --resume");
     command.add_flag("--resume", options.resume,
                      "Continue the same render from the file of --checkpoint; start anew if this file does not exist");
     add_value(
@@ -103,9 +103,9 @@ void CheckpointFile::load(const std::function<RenderedPart(std::string_view byte
     }
 }
 
-void CheckpointFile::remove() const {
+void remove_checkpoint(const CheckpointOptions& options) {
     std::error_code error;  // ignored, because the file may not exist
-    if (!options_.file.empty()) fs::remove(options_.file, error);
+    if (!options.file.empty()) fs::remove(options.file, error);
 }
 
 }  // namespace raya

@@ -24,6 +24,9 @@ void add_checkpoint_options(CLI::App& command, CheckpointOptions& options);
 /// throws UserError for an existing checkpoint, because the render would overwrite hours of work.
 void check_checkpoint_options(const CLI::App& command, const CheckpointOptions& options);
 
+/// Removes the checkpoint, if there is one. Call it after all outputs of the render are written.
+void remove_checkpoint(const CheckpointOptions& options);
+
 /// Saves and loads the checkpoints of a render.
 class CheckpointFile {
   public:
@@ -31,9 +34,6 @@ class CheckpointFile {
 
     /// Returns the callbacks with which the renderer saves and loads checkpoints; null without --checkpoint.
     const Checkpointing* checkpointing() const { return options_.file.empty() ? nullptr : &callbacks_; }
-
-    /// Removes the checkpoint. Call remove() after all outputs of the render are written.
-    void remove() const;
 
   private:
     bool due();  // returns true if the next checkpoint is due

@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "host/cli/scene_input.hpp"
-
 namespace raya {
 namespace {
 
@@ -30,11 +28,6 @@ std::vector<std::string> choices_in(const std::string& text, char separator) {
         begin = end + 1;
     }
     return choices.size() > 1 ? choices : std::vector<std::string>{};
-}
-
-bool starts_with_one_of(const std::string& text, const std::vector<std::string>& prefixes) {
-    return std::any_of(prefixes.begin(), prefixes.end(),
-                       [&](const std::string& prefix) { return text.starts_with(prefix); });
 }
 
 constexpr std::size_t kIndent = 2;              // number of blanks before names below a heading
@@ -188,19 +181,10 @@ class HelpPage {
 
 }  // namespace
 
-ValueCompletion value_completion(const OptionText& option) {
-    using enum ValueCompletion::Kind;
-    if (!option.choices.empty()) return {.kind = option.repeated ? kList : kChoice, .choices = option.choices};
-    if (const auto choices = choices_in(option.placeholder, '|'); !choices.empty())
-        return {.kind = kChoice, .choices = choices};
-    if (const auto choices = choices_in(option.placeholder, ','); !choices.empty())
-        return {.kind = kList, .choices = choices};
-    if (option.placeholder.starts_with("DIR")) return {.kind = kFolder};
-    if (!starts_with_one_of(option.placeholder, {"FILE", "SCENE", "IMAGE"})) return {};
-    if (option.placeholder == "SCENE") return {.kind = kFile, .extensions = scene_extensions()};
-    const std::size_t dot = option.placeholder.find('.');
-    if (dot == std::string::npos) return {.kind = kFile};
-    return {.kind = kFile, .extensions = {option.placeholder.substr(dot, option.placeholder.find('[') - dot)}};
+std::vector<std::string> choices_of(const OptionText& option) {
+    if (!option.choices.empty()) return option.choices;
+    const std::vector<std::string> choices = choices_in(option.placeholder, '|');
+    return choices.empty() ? choices_in(option.placeholder, ',') : choices;
 }
 
 std::string description_of(const OptionText& option) {
@@ -213,13 +197,6 @@ std::vector<std::string> groups_of(const CommandText& command) {
     for (const OptionText& option : command.options)
         if (std::find(groups.begin(), groups.end(), option.group) == groups.end()) groups.push_back(option.group);
     return groups;
-}
-
-std::string brief(const std::string& help, std::size_t max_characters) {
-    std::string text = help.substr(0, std::min({help.find("; "), help.find(". "), help.find('\n')}));
-    if (text.size() <= max_characters) return text;
-    const std::size_t last_blank = text.rfind(' ', max_characters - 4);
-    return text.substr(0, last_blank == std::string::npos ? max_characters - 4 : last_blank) + " ...";
 }
 
 std::string help_text(const CommandText& command, const std::string& path, std::size_t width) {
@@ -236,21 +213,18 @@ std::string help_text(const CommandText& command, const std::string& path, std::
     return command.footer.empty() ? text : text + '\n' + page.footer_text(command.footer);
 }
 
+bool has_short_form(const CommandText& command) {
+    return std::ranges::count_if(command.options, [](const OptionText& o) { return !o.brief.empty(); }) >=
+           kMinBriefOptions;
+}
+
 CommandText short_form(CommandText command, const std::string& path) {
-    if (command.short_help.empty()) return command;
-    std::vector<OptionText> shown;
-    for (const ShortHelp& entry : command.short_help) {
-        const auto option = std::find_if(command.options.begin(), command.options.end(), [&](const OptionText& o) {
-            return std::find(o.names.begin(), o.names.end(), entry.name) != o.names.end();
-        });
-        if (option == command.options.end()) throw std::logic_error("short help of " + path + ": no " + entry.name);
-        shown.push_back(*option);
-        shown.back().group = entry.group;
-        if (!entry.help.empty()) shown.back().help = entry.help;
-    }
+    if (!has_short_form(command)) return command;
     command.footer = path + " --help-all prints all " + std::to_string(command.options.size()) +
                      " options in full.\n\n" + command.footer;
-    command.options = std::move(shown);
+    std::erase_if(command.options, [](const OptionText& o) { return o.brief.empty() && o.group != kGeneralOptions; });
+    for (OptionText& option : command.options)
+        if (!option.brief.empty()) option.help = option.brief;
     return command;
 }
 

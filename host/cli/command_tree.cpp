@@ -59,18 +59,8 @@ std::string HelpFormatter::make_help(const CLI::App* command, std::string path, 
     return help_text(mode == CLI::AppFormatMode::All ? text : short_form(text, path), path, text_width());
 }
 
-HelpFormatter::Texts HelpFormatter::texts_of(const CLI::App& command) const {
-    const auto found = texts_.find(&command);
-    return found == texts_.end() ? Texts{} : found->second;
-}
-
 void add_examples(CLI::App& command, std::vector<ExampleText> examples) {
-    dynamic_cast<HelpFormatter&>(*command.get_formatter()).texts_of(command).examples = std::move(examples);
-}
-
-void add_short_help(CLI::App& command, std::vector<ShortHelp> options) {
-    command.set_help_all_flag("--help-all", "Print the help of all options and exit");
-    dynamic_cast<HelpFormatter&>(*command.get_formatter()).texts_of(command).short_help = std::move(options);
+    dynamic_cast<HelpFormatter&>(*command.get_formatter()).examples[&command] = std::move(examples);
 }
 
 OptionText option_text(CLI::Option& option) {
@@ -82,6 +72,7 @@ OptionText option_text(CLI::Option& option) {
     text.placeholder = type.substr(0, type.find(":{"));
     text.default_value = option.get_default_str();
     text.help = option.get_description();
+    text.brief = note_of(option, kBriefNote);
     text.group = option.get_group();
     text.required = option.get_required();
     text.repeated = option.get_items_expected_max() > 1 || option.get_delimiter() != '\0';
@@ -90,17 +81,13 @@ OptionText option_text(CLI::Option& option) {
     return text;
 }
 
-namespace {
-
-CommandText command_text_of(const CLI::App& command) {
+CommandText command_text(const CLI::App& command) {
     CommandText text;
     text.name = command.get_name();
     text.summary = command.get_description();
     const auto* const formatter = dynamic_cast<const HelpFormatter*>(command.get_formatter().get());
-    const HelpFormatter::Texts stored_texts =
-        formatter == nullptr ? HelpFormatter::Texts{} : formatter->texts_of(command);
-    text.examples = stored_texts.examples;
-    text.short_help = stored_texts.short_help;
+    if (formatter != nullptr && formatter->examples.contains(&command))
+        text.examples = formatter->examples.at(&command);
     text.footer = command.get_footer();
     for (const CLI::Option* option : command.get_options()) {
         if (option->get_group().empty()) continue;
@@ -110,23 +97,8 @@ CommandText command_text_of(const CLI::App& command) {
     }
     std::stable_partition(text.options.begin(), text.options.end(),
                           [](const OptionText& option) { return option.group != kGeneralOptions; });
-    if (!text.short_help.empty())
-        for (const OptionText& option : text.options)
-            if (option.group == kGeneralOptions) text.short_help.push_back({option.names.back(), option.group, ""});
     for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
-        if (!subcommand->get_group().empty()) text.commands.push_back(command_text_of(*subcommand));
-    return text;
-}
-
-}  // namespace
-
-CommandText command_text(const CLI::App& program) {
-    CommandText text = command_text_of(program);
-    std::vector<std::string> names;
-    for (const CommandText& command : text.commands) names.push_back(command.name);
-    for (CommandText& command : text.commands)
-        for (OptionText& argument : command.arguments)
-            if (argument.placeholder == "COMMAND") argument.choices = names;
+        if (!subcommand->get_group().empty()) text.commands.push_back(command_text(*subcommand));
     return text;
 }
 

@@ -3,6 +3,7 @@
 #include <cxxabi.h>
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -10,6 +11,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
@@ -25,18 +27,51 @@
 #include "host/cl/device.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cli/command_tree.hpp"
-#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse_failure.hpp"
-#include "host/cli/verbosity_options.hpp"
-#include "host/cli/verify_as.hpp"
+#include "host/cli/verify_output.hpp"
 #include "host/error.hpp"
 #include "host/ranks/launch.hpp"
-#include "host/tune/trial.hpp"
+#include "host/tune/tune.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/version.hpp"
 
 namespace raya {
+namespace {
+
+const CLI::App& subcommand_named(const CLI::App& command, const std::string& name) {
+    for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
+        if (subcommand->get_name() == name) return *subcommand;
+    const std::vector<std::string> known_names = command_names(command);
+    if (known_names.empty())
+        throw UserError(
+            fmt::format("help: {} has no command {}; see raya help {}", command.get_name(), name, command.get_name()));
+    throw UserError(fmt::format("help: no command {}{}; commands: {}", name, did_you_mean(name, known_names),
+                                fmt::join(known_names, ", ")));
+}
+
+void print_help(const CLI::App& program, const std::vector<std::string>& names) {
+    const CLI::App* command = &program;
+    std::string path = program.get_name();
+    for (const std::string& name : names) {
+        command = &subcommand_named(*command, name);
+        path += ' ' + name;
+    }
+    fmt::print("{}", command->get_formatter()->make_help(command, path, CLI::AppFormatMode::Normal));
+}
+
+}  // namespace
+
+void add_help_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("help", "Print the help of a command, or of raya itself");
+    add_examples(*command, {{"raya help render", "Print the help of render, as raya render --help does"},
+                            {"raya help generate balls", "Print the help of one generator"}});
+    const auto names = std::make_shared<std::vector<std::string>>();
+    add_value(*command, "COMMAND", *names, "The command, such as generate balls; default: raya itself")
+        ->type_name("COMMAND");
+    command->callback([names, &program] { print_help(program, *names); });
+}
+
 namespace {
 
 constexpr int kExitInternalError = 1;
@@ -143,15 +178,15 @@ void silence_signals_of_other_ranks() {
     if (launch && launch->rank != 0) suppress_interrupt_message();
 }
 
-// Refuses several ranks for all commands except render, verify and ping, because the other commands would run once in
+// Refuses several ranks for all commands except render and ping, because the other commands would run once in
 // every process.
 void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
     if (!ranks.has_several()) return;
     for (CLI::App* command : program.get_subcommands({}))
-        if (const std::string name = command->get_name(); name != "render" && name != "verify" && name != "ping")
+        if (const std::string name = command->get_name(); name != "render" && name != "ping")
             command->preparse_callback([name](std::size_t) {
                 throw UserError(
-                    fmt::format("{} runs in one process: only render, verify and ping support several ranks; start it "
+                    fmt::format("{} runs in one process: only render and ping support several ranks; start it "
                                 "without mpirun",
                                 name));
             });
@@ -199,10 +234,8 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     add_tune_command(program);
     add_study_command(program);
     add_page_command(program);
-    add_verify_command(program, ranks);
+    add_verify_command(program);
     add_ping_command(program, ranks);
-    add_manual_command(program);
-    add_completion_command(program);
     add_help_command(program);
     program.footer(std::string(kExitCodes) + kEnvironment);  // the commands keep the footer without kEnvironment
     add_verbosity_options(program, ranks);

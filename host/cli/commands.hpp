@@ -36,10 +36,8 @@ void add_tune_command(CLI::App& program);
 /// which runs the module raya.lab.
 void add_study_command(CLI::App& program, const std::function<void(const std::string&)>& run = {});
 void add_page_command(CLI::App& program);
-void add_verify_command(CLI::App& program, Ranks& ranks);
+void add_verify_command(CLI::App& program);
 void add_ping_command(CLI::App& program, Ranks& ranks);
-void add_manual_command(CLI::App& program);
-void add_completion_command(CLI::App& program);
 void add_help_command(CLI::App& program);
 
 }  // namespace raya

@@ -9,21 +9,17 @@
 
 #include "host/base/encoding.hpp"
 #include "host/base/log.hpp"
-#include "host/base/progress.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
-#include "host/cli/quoted.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/scene_input.hpp"
-#include "host/cli/tuned_option.hpp"
 #include "host/error.hpp"
 #include "host/image/plain_png.hpp"
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 #include "host/report/page/page.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
@@ -32,6 +28,14 @@
 
 namespace raya {
 namespace {
+
+/// Returns the argument in single quotes, or unchanged if no shell interprets any of its characters.
+std::string quoted(const std::string& argument) {
+    const bool plain = !argument.empty() && std::ranges::all_of(argument, [](unsigned char c) {
+        return std::isalnum(c) || std::string_view("_-./:=+,%@").find(char(c)) != std::string_view::npos;
+    });
+    return plain ? argument : '\'' + replaced(argument, "'", "'\\''") + '\'';
+}
 
 struct ExploreCommand {
     RenderOptions render;
@@ -67,7 +71,7 @@ std::string command_of(const ExploreCommand& command, const RingSettings& settin
     add("--size", o.size);
     add("--format", o.format);
     add("--bounces", o.bounces ? fmt::format("{}", settings.bounces) : "");
-    add("--sampling", o.sampling == "centres" ? "" : o.sampling);
+    add("--sampling", o.sampling == Sampling::kCorners ? "corners" : "");
     add("--accel", o.accel);
     add("--pe-memory", o.pe_memory ? fmt::format("{}", *o.pe_memory) : "");
     for (const auto& [option, value] : o.view.given_options()) add(option.c_str(), value);
@@ -170,22 +174,6 @@ void explore(const ExploreCommand& command) {
                printable(output_name(command.page)), static_cast<double>(page.size()) / 1e3);
 }
 
-std::vector<ShortHelp> explore_short_help() {
-    const char* const options = "Options";
-    return {{"--output", options, "HTML page to write; -: stdout"},
-            {"--size", options, "Size in pixels, 1..16384 a side; default: the scene's"},
-            {"--machine", options, "spa, grande, spa1, cap, pixel-machine or links"},
-            {"--pes", options, "Number of PEs that the page shows first"},
-            {"--mapping", options, "Mapping that the page shows first"},
-            {"--offset", options, "Offset of the cyclic mapping; default: 16"},
-            {"--format", options, "Number format: fp32, spa22 (e6m15) or eXmY[t]"},
-            {"--accel", options, "Acceleration structure in each PE's memory"},
-            {"--device", options, "OpenCL device: its number, type or part of its name"},
-            {"--bounces", options, "Reflections and refractions, 0..31; default: 8"},
-            {"--from", options, "Eye point; also --at, --up, --angle; default: scene's"},
-            {"--light", options, "Replace the scene's lights; once for each light"}};
-}
-
 }  // namespace
 
 void add_explore_command(CLI::App& program) {
@@ -196,11 +184,11 @@ void add_explore_command(CLI::App& program) {
                             {"raya explore scenes/mirrors.nff --size 128 --pes 64 --mapping blocks -o mirrors.html",
                              "Write a page that opens with 64 PEs and blocks of scan lines"}});
     const auto options = std::make_shared<ExploreCommand>();
-    add_short_help(*command, explore_short_help());
     const OptionGroup group(*command, kFiles);
     add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE", kSceneHelp)->required();
     add_file(*command, FileUse::kWritten, "-o,--output", options->page, "FILE.html",
-             "HTML page to write: one file below 1 MB that needs no network; -: stdout")
+             "HTML page to write: one file below 1 MB that needs no network; -: stdout",
+             "HTML page to write; -: stdout")
         ->required();
     add_render_options(*command, options->render, false);
     command->get_option("--mapping")

@@ -7,14 +7,16 @@
 
 #include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
+#include "host/cl/device.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/scene_input.hpp"
-#include "host/cli/scene_needs.hpp"
 #include "host/error.hpp"
-#include "host/scene/view.hpp"
+#include "host/model/machine.hpp"
+#include "host/report/table.hpp"
+#include "host/scene/scene.hpp"
 #include "host/version.hpp"
 
 namespace raya {
@@ -27,10 +29,9 @@ struct InfoCommand {
 };
 
 // Options of raya render that raya info does not have, because they do not affect the memory needs of a PE.
-constexpr std::array<const char*, 17> kExecutionOptions = {
-    "--device",        "--lanes",   "--group",  "--no-tuned", "--kernel-dir", "--exchange",
-    "--sampling",      "--points",  "--inject", "--returns",  "--threshold",  "--packet-words",
-    "--link-exchange", "--packets", "--replay", "--async",    "--il"};
+constexpr std::array<const char*, 16> kExecutionOptions = {
+    "--device", "--lanes",   "--group",     "--no-tuned",     "--kernel-dir", "--exchange", "--sampling", "--points",
+    "--inject", "--returns", "--threshold", "--packet-words", "--packets",    "--replay",   "--async",    "--il"};
 
 void add_options(CLI::App& command, InfoCommand& options) {
     add_file(command, FileUse::kRead, "SCENE", options.render.scene, "SCENE", kSceneHelp)->required();
@@ -86,22 +87,6 @@ void info(const CLI::App& parser, const InfoCommand& command) {
     fmt::print("{}", command.json ? to_json(report).dump(2) + "\n" : printable(summary_text(report)));
 }
 
-std::vector<ShortHelp> info_short_help() {
-    const char* const options = "Options";
-    return {{"--json", options, ""},
-            {"--machine", options, ""},
-            {"--pe-memory", options, "Memory of a PE or node; default: the machine's"},
-            {"--pes", options, "Number of PEs; default: the machine's"},
-            {"--mapping", options, "Pixels to PEs: cyclic, column, rows, blocks, ..."},
-            {"--size", options, "Size in pixels, 1..16384 a side; default: the scene's"},
-            {"--format", options, "Number format: fp32, spa22 (e6m15) or eXmY[t]"},
-            {"--accel", options, "Acceleration structure; default: all three"},
-            {"--antialias", options, "3 x 3 filter or adaptive supersampling"},
-            {"--nodes", options, "Nodes of the torus along x, y and z"},
-            {"--voxels", options, "Voxels of the torus; default: one for each node"},
-            {"--strict", options, "Refuse what NFF does not define"}};
-}
-
 }  // namespace
 
 void add_info_command(CLI::App& program) {
@@ -112,9 +97,75 @@ void add_info_command(CLI::App& program) {
                   {"raya info scenes/polygons.nff --machine spa --pe-memory 8192 --json",
                    "Print as JSON whether a PE of 8 KB can hold the scene"}});
     const auto options = std::make_shared<InfoCommand>();
-    add_short_help(*command, info_short_help());
     add_options(*command, *options);
     command->callback([command, options] { info(*command, *options); });
+}
+
+namespace {
+
+void print_machine(const Machine& machine) {
+    std::vector<std::vector<std::string>> rows = {{"number", "value", "source"}};
+    for (const Fact& fact : machine.facts) rows.push_back({fact.what, fact.value, fact.source});
+    fmt::print("{}: {}, {}\n{}\n", machine.name, machine.title, machine.topology, text_table(rows));
+}
+
+void list_machines(const std::string& name) {
+    if (!name.empty()) return print_machine(machine_named(name));
+    for (const Machine& machine : machines()) print_machine(machine);
+    for (const CitedMachine& cited : cited_machines())
+        fmt::print("{}: cited but not modelled, because {}. {}.\n", cited.name, cited.reason, cited.facts);
+    fmt::print(
+        "\n[P] printed in the machine's paper, [D] derived from printed figures, [T] data sheet of the T805, "
+        "[?] assumed.\n");
+}
+
+}  // namespace
+
+void add_machines_command(CLI::App& program) {
+    CLI::App* command =
+        program.add_subcommand("machines", "List the modelled machines, with the source of every number");
+    add_examples(*command, {{"raya machines", "List all machines"}, {"raya machines spa", "List the numbers of spa"}});
+    const auto name = std::make_shared<std::string>();
+    command->add_option("machine", *name, "Name of one machine, as for --machine; default: all")->type_name("NAME");
+    command->callback([name] { list_machines(*name); });
+}
+
+namespace {
+
+// Lines of at most 80 characters, unless a driver's own names are longer.
+std::string device_text(std::size_t number, const DeviceInfo& info) {
+    std::string usable = unusable_reason(info).empty() ? "usable" : "not usable: " + unusable_reason(info);
+    for (const auto& [has, what] : {std::pair{info.correctly_rounded_divide_sqrt, "exact division and square root"},
+                                    {info.fused_multiply_add, "fma"},
+                                    {info.profiling, "profiling"}})
+        if (has) usable += fmt::format(", {}", what);
+    return fmt::format(
+        "{}  {}\n   {}, driver {}\n   {}{}{}\n   {}, {} units, {} KB of {} memory, {} MB of global memory\n"
+        "   {} lanes and groups of {} by default\n   {}\n\n",
+        number, info.name, info.platform, info.driver, info.version, info.il_versions.empty() ? "" : ", IL ",
+        info.il_versions, info.type, info.compute_units, info.local_memory_bytes / 1024,
+        info.local_memory_is_dedicated ? "local" : "local (in global)", info.global_memory_bytes >> 20,
+        default_lanes(info), default_group_size(info), usable);
+}
+
+void list_devices() {
+    const std::vector<cl::Device> devices = all_devices();
+    if (devices.empty()) choose_device("");  // throws the error for a computer without devices
+    for (std::size_t i = 0; i < devices.size(); ++i) fmt::print("{}", device_text(i, device_info(devices[i])));
+    fmt::print(
+        "--device and RAYA_DEVICE take a number, a type, or part of a name or version; --lanes\n"
+        "and --group replace the defaults. RAYA_BUILD_OPTIONS=-cl-opt-disable shows whether\n"
+        "the compiler's optimiser causes a wrong result.\n");
+}
+
+}  // namespace
+
+void add_devices_command(CLI::App& program) {
+    CLI::App* command =
+        program.add_subcommand("devices", "List every OpenCL device of every platform, with its main properties");
+    add_examples(*command, {{"raya devices", "List the devices with their numbers"},
+                            {"raya devices >devices.txt", "Write the list to a file"}});
+    command->callback(list_devices);
 }
 
 }  // namespace raya

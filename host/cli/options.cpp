@@ -3,9 +3,19 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
 #include <sstream>
 
+#include "host/base/log.hpp"
+#include "host/base/whole_file.hpp"
+#include "host/cl/kernel_source.hpp"
+#include "host/embedded.hpp"
 #include "host/error.hpp"
+#include "host/mesh/mesh_file.hpp"
+#include "host/ranks/ranks.hpp"
+#include "host/tune/store.hpp"
 
 namespace raya {
 
@@ -33,6 +43,12 @@ std::string note_of(CLI::Option& option, const char* name) {
     }
 }
 
+void refuse_choice(const std::string& option, const std::string& text, const std::vector<std::string>& names) {
+    if (text.empty()) throw UserError(option + " must not be empty");
+    throw UserError(fmt::format("{} {}: must be {} or {}", option, text,
+                                fmt::join(names.begin(), names.end() - 1, ", "), names.back()));
+}
+
 constexpr const char* kChoices = "choices";
 
 CLI::Option* offer_choices(CLI::Option* option, const std::vector<std::string>& choices) {
@@ -44,6 +60,129 @@ std::vector<std::string> offered_choices(CLI::Option& option) {
     std::istringstream text(note_of(option, kChoices));
     for (std::string choice; text >> choice;) choices.push_back(choice);
     return choices;
+}
+
+void add_tuned_option(CLI::App& command, bool& no_tuned) {
+    const OptionGroup group(command, kKernels);
+    command.add_flag("--no-tuned", no_tuned,
+                     "Use the defaults, not the values that raya tune stored for this device and driver, like the "
+                     "environment variable RAYA_TUNED=off; the image does not change");
+}
+
+ScopedTunedSource use_tuned(bool no_tuned, Warnings* warnings) {
+    const auto warn = [warnings](const std::string& text) {
+        Warnings local_warnings;
+        (warnings ? *warnings : local_warnings).add(text);
+    };
+    return ScopedTunedSource(no_tuned ? TunedSource{} : stored_choices(warn));
+}
+
+namespace {
+
+struct VerbosityFlags {
+    int quiet = 0, verbose = 0;
+    bool is_first_rank = true;
+
+    void apply() const {
+        if (quiet > 0 && verbose > 0) throw UserError("--quiet and --verbose: give one of them");
+        set_verbosity(is_first_rank || quiet > 0 ? verbose - quiet : 0);
+    }
+};
+
+void add_to(CLI::App& command, const std::shared_ptr<VerbosityFlags>& flags) {
+    const OptionGroup group(command, kGeneralOptions);
+    if (CLI::Option* help = command.get_option_no_throw("--help"); help != nullptr) help->group(kGeneralOptions);
+    const auto brief_options =
+        std::ranges::count_if(command.get_options(), [](CLI::Option* o) { return !note_of(*o, kBriefNote).empty(); });
+    command.set_help_all_flag("--help-all", "Print the help of all options and exit")
+        ->group(brief_options >= kMinBriefOptions ? kGeneralOptions : "");
+    command.add_flag_function(
+        "-q,--quiet",
+        [flags](std::int64_t count) {
+            flags->quiet += static_cast<int>(count);
+            flags->apply();
+        },
+        "Print no summary, no progress; twice: no warnings");
+    command.add_flag_function(
+        "-v,--verbose",
+        [flags](std::int64_t count) {
+            flags->verbose += static_cast<int>(count);
+            flags->apply();
+        },
+        "Log the host's steps on stderr; twice: also kernels' builds, and the device's times by label");
+    for (CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
+        add_to(*subcommand, flags);
+}
+
+}  // namespace
+
+void add_verbosity_options(CLI::App& program, const Ranks& ranks) {
+    const auto flags = std::make_shared<VerbosityFlags>();
+    flags->is_first_rank = ranks.is_first();
+    add_to(program, flags);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFileUseNote = "file use";
+
+// Registers the kernels in a folder as inputs.
+void add_kernels(const NamedFile& folder) {
+    constexpr std::string_view kKernels = "kernels/";
+    check_kernel_folder({.folder = folder.file});
+    for (const auto& [name, text] : embedded_files())
+        if (name.starts_with(kKernels)) {
+            const fs::path file = fs::path(folder.file) / name.substr(kKernels.size());
+            register_input(file, folder.option + " " + file.string());
+        }
+}
+
+// Refuses an output folder that contains an input of the command, because the command might overwrite the input.
+// Ignores scenes, because no command writes scenes to an output folder.
+void check_output_folder(const NamedFile& folder) {
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder.file, error))
+        if (entry.path().extension() != ".nff" && !is_mesh_file(entry.path()))
+            promise_output(entry.path(), folder.option + " " + entry.path().string());
+}
+
+}  // namespace
+
+CLI::Option* set_file_use(CLI::Option* option, FileUse use) {
+    return attach_note(option, kFileUseNote, std::to_string(static_cast<int>(use)));
+}
+
+void add_kernel_source_options(CLI::App& command, std::string& folder) {
+    add_file(command, FileUse::kKernelFolder, "--kernel-dir", folder, "DIR",
+             "Read the kernels from this folder, for kernel development");
+    command.add_flag_callback("--il", use_il,
+                              "Compile the kernels to SPIR-V with clang and llvm-spirv, and give the driver SPIR-V "
+                              "instead of source; like --il in RAYA_BUILD_OPTIONS; the image does not change");
+}
+
+FileUse file_use_of(CLI::Option& option) {
+    const std::string use = note_of(option, kFileUseNote);
+    return use.empty() ? FileUse::kNone : static_cast<FileUse>(std::stoi(use));
+}
+
+void check_files(const CLI::App& command, const std::vector<NamedFile>& more_outputs) {
+    forget_promised_outputs();  // of an earlier command in this process, or this command's own
+    const auto for_each_file = [&](FileUse use, auto add) {
+        for (CLI::Option* option : const_cast<CLI::App&>(command).get_options())
+            if (option->count() > 0 && file_use_of(*option) == use)
+                for (const std::string& file : option->results()) add(NamedFile{option->get_name(), file});
+    };
+    for_each_file(FileUse::kRead,
+                  [](const NamedFile& input) { register_input(input.file, input.option + " " + input.file); });
+    for_each_file(FileUse::kKernelFolder, add_kernels);
+    for_each_file(FileUse::kWrittenFolder, check_output_folder);
+    std::vector<NamedFile> outputs;
+    for_each_file(FileUse::kWritten, [&](const NamedFile& output) { outputs.push_back(output); });
+    outputs.insert(outputs.end(), more_outputs.begin(), more_outputs.end());
+    for (const NamedFile& output : outputs) promise_output(output.file, output.option + " " + output.file);
+    for (const NamedFile& output : outputs) check_writable(output.file);  // last, because it redirects stdout
 }
 
 }  // namespace raya

@@ -8,6 +8,14 @@
 #include <type_traits>
 #include <vector>
 
+#include "host/cl/kernel_options.hpp"
+#include "host/cli/command_text.hpp"
+#include "host/cli/scene_input.hpp"
+
+namespace CLI {
+class App;
+}
+
 namespace raya {
 
 /// The type of one value of an option: `Value` without std::optional or std::vector around it.
@@ -49,7 +57,6 @@ inline constexpr const char* kMachine = "Machine and mapping";
 inline constexpr const char* kTorusMachine = "Torus machine";
 inline constexpr const char* kKernels = "Kernels and device";
 inline constexpr const char* kDiagnostics = "Diagnostics";
-inline constexpr const char* kGeneralOptions = "General options";  // options that every command has; listed last
 
 /// Sets the heading of all options that are added to the command during this object's lifetime.
 class OptionGroup {
@@ -70,26 +77,114 @@ class OptionGroup {
     std::string previous_heading_;
 };
 
-/// Adds an option, checks its value with check_value() and stores it in `value`.
-template <class Value>
-CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const std::string& help = "") {
-    CLI::Option* option = command.add_option(name, value, help);
-    return option->check([option](const std::string& text) {
-        check_value<typename OptionValue<Value>::Type>(option->get_name(), text, option->get_description());
-        return std::string();
-    });
-}
-
 /// Attaches `text` to an option under the name `name`. Help does not show the text. note_of() returns the text, or ""
 /// if no text has this name.
 CLI::Option* attach_note(CLI::Option* option, const char* name, const std::string& text);
 std::string note_of(CLI::Option& option, const char* name);
 
-/// Sets the values that shell completion offers. They neither restrict the option's value nor appear in help. The
-/// call is not needed if the placeholder in help lists the values: "ring|bus".
+inline constexpr const char* kBriefNote = "brief";
+
+/// Adds an option, checks its value with check_value() and stores it in `value`. `brief`: help of the option in the
+/// command's short help; empty: the option is only in --help-all, if the command has options with such a text.
+template <class Value>
+CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const std::string& help = "",
+                       const std::string& brief = "") {
+    CLI::Option* option = command.add_option(name, value, help);
+    option->check([option](const std::string& text) {
+        check_value<typename OptionValue<Value>::Type>(option->get_name(), text, option->get_description());
+        return std::string();
+    });
+    return brief.empty() ? option : attach_note(option, kBriefNote, brief);
+}
+
+/// The values of an option with their names.
+template <class Value>
+using Choices = std::vector<std::pair<std::string, Value>>;
+
+/// Throws UserError "OPTION TEXT: must be A, B or C" with the names of the choices.
+[[noreturn]] void refuse_choice(const std::string& option, const std::string& text,
+                                const std::vector<std::string>& names);
+
+/// Returns the value that `text` names. Throws UserError like refuse_choice().
+template <class Value>
+Value parse_choice(const std::string& option, const std::string& text, const Choices<Value>& choices) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : choices) {
+        if (name == text) return value;
+        names.push_back(name);
+    }
+    refuse_choice(option, text, names);
+}
+
+/// Adds an option whose values are `choices`. The help shows their names and, unless the variable is a std::optional
+/// without value, the default.
+template <class Variable, class Value>
+CLI::Option* add_choice(CLI::App& command, const std::string& name, Variable& value, const Choices<Value>& choices,
+                        const std::string& help, const std::string& brief = "") {
+    CLI::Option* option = command.add_option_function<std::string>(
+        name, [&value, choices, name](const std::string& text) { value = parse_choice(name, text, choices); }, help);
+    std::string names;
+    for (const auto& [choice, choice_value] : choices) {
+        names += (names.empty() ? "" : "|") + choice;
+        if (value == choice_value) option->default_str(choice);
+    }
+    option->type_name(names);
+    return brief.empty() ? option : attach_note(option, kBriefNote, brief);
+}
+
+/// Sets the option's values for "did you mean". They neither restrict the value nor appear in help. The call is not
+/// needed if the placeholder in help lists the values: "ring|bus".
 CLI::Option* offer_choices(CLI::Option* option, const std::vector<std::string>& choices);
 
 /// Returns the values that offer_choices() set; empty if offer_choices() was not called.
 std::vector<std::string> offered_choices(CLI::Option& option);
+
+// The option --no-tuned, and the use of the values that raya tune stored for a device.
+
+void add_tuned_option(CLI::App& command, bool& no_tuned);
+
+/// Returns an object during whose lifetime renders use the stored values or, with `no_tuned`, the defaults. Prints a
+/// warning if the file of stored values is unusable, and adds it to `warnings` unless `warnings` is null. `warnings`
+/// must outlive the result.
+ScopedTunedSource use_tuned(bool no_tuned, Warnings* warnings = nullptr);
+
+// The options --quiet and --verbose of all commands.
+
+class Ranks;
+
+/// Adds both options to `program` and to all its commands, and lists them with --help and --help-all under one heading.
+/// Call add_verbosity_options() after all commands are added. Only rank 0 is verbose. Each option may be given twice;
+/// giving both options is a UserError.
+void add_verbosity_options(CLI::App& program, const Ranks& ranks);
+
+// Options whose values are files or folders, and a check that no output overwrites an input or another output.
+
+/// How a command uses the file or folder that an option names. kNone: the option names neither.
+enum class FileUse { kNone, kRead, kWritten, kKernelFolder, kWrittenFolder };
+
+/// Sets how the command uses the option's file.
+CLI::Option* set_file_use(CLI::Option* option, FileUse use);
+FileUse file_use_of(CLI::Option& option);
+
+/// Adds an option for a file or folder, as add_value() does. `type`: the placeholder of the value in help.
+template <class Value>
+CLI::Option* add_file(CLI::App& command, FileUse use, const std::string& name, Value& value, const std::string& type,
+                      const std::string& help, const std::string& brief = "") {
+    return set_file_use(add_value(command, name, value, help, brief)->type_name(type), use);
+}
+
+/// Adds --kernel-dir, whose value is stored in `folder`, and --il.
+void add_kernel_source_options(CLI::App& command, std::string& folder);
+
+/// A file and its option. The option's value is the file's name, or the file's name is derived from that value.
+struct NamedFile {
+    std::string option, file;
+};
+
+/// Throws UserError if an output is the same file as an input or another output, also through links. Throws UserError
+/// if an output is not writable. Checks the files of the command's options and `more_outputs`. The parser calls
+/// check_files() before the callback of every command. A command that derives further output names from an option calls
+/// check_files() again with these names before it writes.
+void check_files(const CLI::App& command, const std::vector<NamedFile>& more_outputs = {});
 
 }  // namespace raya

@@ -11,7 +11,6 @@
 #include "host/base/whole_file.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/report/bench_report.hpp"
@@ -29,32 +28,33 @@ struct PageCommand {
 // Removes the folders from file names in the report, because users send pages to others.
 Json without_folders(Json report) {
     const auto shorten = [](Json& object, const char* key) {
-        const Json* const path = object.find(key);
-        if (path != nullptr && path->is_text()) object[key] = std::filesystem::path(path->text()).filename().string();
+        const Json* const path = find_member(object, key);
+        if (path != nullptr && path->is_string())
+            object[key] = std::filesystem::path(json_text(*path)).filename().string();
     };
-    const Json *const scene = report.find("scene"), *const warnings = report.find("warnings");
-    if (scene != nullptr && scene->is_text() && warnings != nullptr) {
-        const std::string file = scene->text();
+    const Json *const scene = find_member(report, "scene"), *const warnings = find_member(report, "warnings");
+    if (scene != nullptr && scene->is_string() && warnings != nullptr) {
+        const std::string file = json_text(*scene);
         Json shortened = Json::array();
-        for (const std::string& text : warnings->strings())
+        for (const std::string& text : json_strings(*warnings))
             shortened.push_back(text.starts_with(file + ':') ? text.substr(file.rfind('/') + 1) : text);
         report["warnings"] = shortened;
     }
     shorten(report, "scene");
     for (const auto& [part, key] : {std::pair{"image", "file"}, {"device", "tuned"}, {"compared", "baseline"}})
-        if (report.find(part) != nullptr) shorten(report[part], key);
+        if (report.contains(part)) shorten(report[part], key);
     return report;
 }
 
 void check_kind(const Json& report) {
-    const Json* const kind = report.find("kind");
-    const std::string name = kind != nullptr && kind->is_text() ? kind->text() : "";
+    const Json* const kind = find_member(report, "kind");
+    const std::string name = kind != nullptr && kind->is_string() ? json_text(*kind) : "";
     for (const char* known : {kRenderReportKind, kBenchReportKind, kVerifyReportKind, "raya gpu_day"})
         if (name == known) return;
-    if (kind == nullptr && (report.find("measured") != nullptr || report.find("devices") != nullptr))
-        throw JsonError(
+    if (kind == nullptr && (find_member(report, "measured") != nullptr || find_member(report, "devices") != nullptr))
+        throw UserError(
             "a report of an older raya, which does not state the command that wrote it; write the report again");
-    throw JsonError("valid JSON, but not a report of raya render, bench, verify or gpu_day");
+    throw UserError("valid JSON, but not a report of raya render, bench, verify or gpu_day");
 }
 
 JsonSource report_source(const std::string& name) {
@@ -86,7 +86,7 @@ std::string page_of_report(const std::string& text, const std::string& name) {
 }
 
 void write_report_and_page(const ReportFiles& files, const Json& report) {
-    if (!files.report.empty()) write_whole_file(files.report, report.dump(2) + "\n");
+    if (!files.report.empty()) write_whole_file(files.report, json_dump(report, 2) + "\n");
     if (!files.page.empty()) write_whole_file(files.page, report_page(without_folders(report)));
 }
 

@@ -2,13 +2,15 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/accel/partition.hpp"
+#include "host/cli/options.hpp"
 #include "host/model/mapping_rule.hpp"
 #include "host/model/number_format.hpp"
-#include "host/ring/antialias.hpp"
+#include "host/ring/neighbour_exchange.hpp"
 #include "host/scene/packer.hpp"
 #include "host/torus/topology.hpp"
 
@@ -44,20 +46,48 @@ Accel parse_accel(const std::string& text);
 /// Parses a comma-separated list of formats, each as in --format.
 std::vector<NumberFormat> parse_formats(const std::string& list);
 
-// Parsers of keywords. They throw UserError with the option and its legal values.
-
-/// --antialias: "none", "filter", "supersample".
-AntialiasMethod parse_antialias(const std::string& text);
-/// --exchange: "ring", "bus", "bus-broadcast".
-ExchangeMethod parse_exchange(const std::string& text);
-/// --points: "axes", "diagonals".
-raya_u32 parse_points(const std::string& text);
-/// --sampling: "centres", "corners".
-Sampling parse_sampling(const std::string& text);
-/// --links: "torus3d", "torus2d".
-Links parse_links(const std::string& text);
+// The choices of options that are enumerations.
+inline const Choices<AntialiasMethod> kAntialiasChoices = {{"none", AntialiasMethod::kNone},
+                                                           {"filter", AntialiasMethod::kFilter},
+                                                           {"supersample", AntialiasMethod::kSupersample}};
+inline const Choices<Fold> kFoldChoices = {{"cyclic", Fold::kCyclic}, {"block", Fold::kBlock}};
 
 /// Adds --device, a selector for choose_device().
 void add_device_option(CLI::App& command, std::string& device);
+
+// Parsers of --mapping and --fold.
+
+/// A static mapping of pixels to PEs, as given on the command line:
+///
+///     cyclic, cyclic:p   the cyclic mapping with offset p; "cyclic" alone: p from --offset or the machine
+///     column             the cyclic mapping with offset 0: whole columns, Kohata & Ito's column split
+///     rows               scan lines round robin
+///     blocks             contiguous blocks of scan lines
+///     grid:AxB           A rows of B PEs; each PE has every B-th pixel of every A-th line
+///     tiles:WxH          tiles of W x H pixels round robin; W and H divide the image's sides
+///     random:seed        random pixels, the same number for each PE; "random" alone: seed 1
+struct MappingText {
+    std::string text;                 // as given on the command line
+    MappingRule rule{};               // has the cyclic fold; ring_settings() applies --fold
+    bool takes_offset_option = true;  // true for "cyclic" without p: --offset sets p
+
+    /// Returns the part of `text` before the colon.
+    std::string name() const { return text.substr(0, text.find(':')); }
+};
+
+/// Returns the forms of mappings listed above, for messages.
+const std::vector<std::string>& mapping_forms();
+
+/// Parses a static mapping. Throws UserError with the option and its legal forms.
+MappingText parse_mapping(const std::string& text);
+
+/// Returns true if the text names a dynamic or hybrid mapping, which parse_dynamic() parses.
+bool is_dynamic(const std::string& text);
+
+/// Parses "dynamic:chunk[,overhead[,root]]" or "hybrid:chunk[,overhead[,share[,root]]]". `chunk`: pixels per request;
+/// `overhead`: cycles of the PE per request; `root`: cycles of the root per request; `share`: fraction of a PE's pixels
+/// that is assigned statically, default 0.5 for hybrid. `defaults` supplies the other missing numbers. Throws UserError
+/// with the option and its legal forms.
+DynamicPlan parse_dynamic(const std::string& text, const DynamicPlan& defaults = {});
 
 }  // namespace raya

@@ -6,12 +6,54 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "host/base/encoding.hpp"
 #include "host/cli/command_tree.hpp"
-#include "host/cli/nearest.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 
 namespace raya {
+namespace {
+
+/// Returns Damerau's edit distance from `a` to `b` without repeated edits of a character (optimal string alignment).
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+    std::vector<std::vector<std::size_t>> distance(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) {
+        for (std::size_t j = 0; j <= b.size(); ++j) {
+            if (i == 0 || j == 0) {
+                distance[i][j] = i + j;
+                continue;
+            }
+            const std::size_t substitution = a[i - 1] == b[j - 1] ? 0 : 1;
+            distance[i][j] =
+                std::min({distance[i - 1][j] + 1, distance[i][j - 1] + 1, distance[i - 1][j - 1] + substitution});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                distance[i][j] = std::min(distance[i][j], distance[i - 2][j - 2] + 1);
+        }
+    }
+    return distance[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string nearest_name(const std::string& misspelling, const std::vector<std::string>& names) {
+    constexpr std::size_t kMinPrefixSize = 3;
+    std::string nearest;
+    std::size_t min_distance = misspelling.size() / 3 + 1;
+    for (const std::string& name : names) {
+        const bool has_prefix = misspelling.size() >= kMinPrefixSize && name.starts_with(misspelling);
+        const std::size_t distance = has_prefix ? 0 : edit_distance(misspelling, name);
+        if (distance >= min_distance) continue;
+        min_distance = distance;
+        nearest = name;
+    }
+    return nearest;
+}
+
+std::string did_you_mean(const std::string& misspelling, const std::vector<std::string>& names) {
+    const std::string nearest = nearest_name(misspelling, names);
+    return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
+}
+
 namespace {
 
 /// Returns the innermost selected command. Appends its path without the program's name, " generate balls", to `path`.
@@ -31,113 +73,56 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
-/// An argument that belongs to no option or command.
-struct UnparsedArgument {
-    std::string text;
-    bool after_separator = false;  // true if the argument follows "--"
-};
-
-UnparsedArgument first_unparsed(const CLI::App& program, const std::vector<std::string>& arguments) {
-    const std::vector<std::string> remaining = program.remaining(true);
-    const auto separator = std::find(arguments.begin(), arguments.end(), "--");
-    const auto first = std::find_if(arguments.begin(), arguments.end(), [&](const std::string& argument) {
-        return argument != "--" && std::find(remaining.begin(), remaining.end(), argument) != remaining.end();
+std::string failure_reason(const CLI::App& program, const CLI::App& command, const CLI::ParseError& error,
+                           const std::vector<std::string>& arguments) {
+    const bool is_required = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    const std::vector<std::string> commands = command_names(command);
+    std::vector<std::string> unparsed;
+    if (is_required || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) unparsed = program.remaining(true);
+    const auto first = std::ranges::find_if(arguments, [&](const std::string& argument) {
+        return argument != "--" && std::ranges::find(unparsed, argument) != unparsed.end();
     });
-    return first == arguments.end() ? UnparsedArgument{} : UnparsedArgument{*first, first > separator};
-}
-
-/// Rewords CLI11's message about too many or too few values.
-std::string value_error_text(std::string text) {
-    const auto replace = [&](const std::string& old_text, const std::string& new_text) {
-        const std::size_t at = text.find(old_text);
-        if (at != std::string::npos) text.replace(at, old_text.size(), new_text);
-    };
-    for (const char* const limit : {"At Most", "At most"})  // CLI11 2.2 and 2.6
-        replace(std::string(limit) + " 1 required but received", "takes one value, not");
-    replace("1 required ", "value ");
+    if (first != arguments.end() && first->starts_with("-") && first->size() > 1) {
+        const std::string name = first->substr(0, first->find('='));
+        return fmt::format("no option {}{}", name, did_you_mean(name, option_names(command)));
+    }
+    if (first != arguments.end() && commands.empty()) return fmt::format("unexpected argument '{}'", *first);
+    if (first != arguments.end() && command.get_option_no_throw("--" + *first) != nullptr)
+        return fmt::format("no command {} (did you mean --{}?)", *first, *first);
+    if (first != arguments.end())
+        return fmt::format("no command {}{}; commands: {}", *first, did_you_mean(*first, commands),
+                           fmt::join(commands, ", "));
+    if (is_required && !commands.empty())
+        return fmt::format("command missing; commands: {}", fmt::join(commands, ", "));
+    std::string text = error.what();
+    for (const auto& [old_text, new_text] :
+         {std::pair{"At Most 1 required but received", "takes one value, not"},  // CLI11 2.2
+          {"At most 1 required but received", "takes one value, not"},           // CLI11 2.6
+          {"1 required ", "value "}})
+        text = replaced(text, old_text, new_text);
     return text;
 }
 
-/// Returns raya's present name of an option that earlier versions or other programs name differently.
-std::string current_option_name(const std::string& option) {
-    if (option == "--ways") return "--variants";
-    return option == "--width" || option == "--height" || option == "--resolution" ? "--size" : option;
-}
-
-std::string failure_reason(const CLI::App& command, const UnparsedArgument& unparsed, const CLI::ParseError& error) {
-    const std::vector<std::string> commands = command_names(command);
-    const std::string& argument = unparsed.text;
-    if (unparsed.after_separator)
-        return fmt::format("unexpected argument '{}' after --; put options and commands before it", argument);
-    if (argument.starts_with("-") && argument.size() > 1) {
-        const std::string name = argument.substr(0, argument.find('='));
-        if (command.get_option_no_throw(name) != nullptr)
-            return fmt::format("{} is an option of {}; put it after {}", name, command.get_name(), command.get_name());
-        return fmt::format("no option {}{}", name, did_you_mean(current_option_name(name), option_names(command)));
-    }
-    if (!argument.empty() && commands.empty()) return fmt::format("unexpected argument '{}'", argument);
-    if (!argument.empty() && command.get_option_no_throw("--" + argument) != nullptr)
-        return fmt::format("no command {} (did you mean --{}?)", argument, argument);
-    if (!argument.empty())
-        return fmt::format("no command {}{}; commands: {}", argument, did_you_mean(argument, commands),
-                           fmt::join(commands, ", "));
-    if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && !commands.empty())
-        return fmt::format("command missing; commands: {}", fmt::join(commands, ", "));
-    return value_error_text(error.what());
-}
-
-std::string failure_text(const CLI::App& program, const CLI::ParseError& error,
-                         const std::vector<std::string>& arguments) {
-    std::string path;
-    const CLI::App& command = selected_command(program, path);
-    const bool has_unparsed = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
-                              dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
-    const UnparsedArgument unparsed = has_unparsed ? first_unparsed(program, arguments) : UnparsedArgument{};
-    return fmt::format("{}{}{}; see raya{} --help", path.empty() ? "" : path.substr(1), path.empty() ? "" : ": ",
-                       failure_reason(command, unparsed, error), path);
-}
-
-/// Returns the option in `argument` if the next argument is its value, otherwise null. Throws UserError for forms that
-/// CLI11 misreads: "--quiet=x" (CLI11 reads x as a number), "-q=x" (as -q and "-=x") and "--size=" (CLI11 uses the next
-/// argument as the value).
-const CLI::Option* option_awaiting_value(const CLI::App& command, const std::string& argument) {
-    const bool is_long = argument.starts_with("--");
-    const std::size_t equals = std::min(argument.find('='), argument.size());
-    for (std::size_t i = 1, end = 0; end < argument.size(); ++i) {
-        end = is_long ? equals : i + 1;
-        const std::string name = is_long ? argument.substr(0, end) : std::string{'-', argument[i]};
-        const CLI::Option* option = command.get_option_no_throw(name);
-        if (option == nullptr && i == 1) return nullptr;
-        if (option == nullptr) throw UserError(fmt::format("{}: no option {}", argument, name));
-        const bool takes_value = option->get_items_expected_max() > 0;
-        if (takes_value && is_long && equals + 1 == argument.size())
-            refuse_value(name, "", "must not be empty", option->get_description());
-        if (takes_value) return end == argument.size() ? option : nullptr;
-        if (end == equals && end < argument.size())
-            throw UserError(fmt::format("{}: {} takes no value", argument, name));
-    }
-    return nullptr;
-}
-
-void check_argument_values(const CLI::App& program, const std::vector<std::string>& arguments) {
+/// Throws UserError for arguments that CLI11 would read in an unexpected way: it takes the value of "--quiet=x" as a
+/// count, the next argument as the value of "--size=", and "-q=x" as -q and "-=x".
+void check_arguments(const CLI::App& program, const std::vector<std::string>& arguments) {
     constexpr std::size_t kMaxBytes = 4096;  // maximum size of an argument: Linux's PATH_MAX
     const CLI::App* command = &program;
-    const CLI::Option* valued_option = nullptr;  // option whose value is the current argument; null: none
-    bool after_separator = false;
+    std::string option;  // of the current argument, or before it
     for (const std::string& argument : arguments) {
+        const std::size_t equals = argument.find('=');
+        if (argument.starts_with("-")) option = argument.substr(0, std::min<std::size_t>(equals, 40));
         if (argument.size() > kMaxBytes)
-            throw UserError(fmt::format("{}: the value has {} bytes, maximum {}",
-                                        valued_option
-                                            ? valued_option->get_name()
-                                            : argument.substr(0, std::min<std::size_t>(argument.find('='), 40)),
-                                        argument.size(), kMaxBytes));
-        after_separator = after_separator || (valued_option == nullptr && argument == "--");
-        const bool may_be_option_or_command = valued_option == nullptr && !after_separator;
-        valued_option =
-            may_be_option_or_command && argument.starts_with("-") ? option_awaiting_value(*command, argument) : nullptr;
-        const auto next =
-            command->get_subcommands([&](const CLI::App* subcommand) { return subcommand->get_name() == argument; });
-        if (may_be_option_or_command && !next.empty()) command = next.front();
+            throw UserError(fmt::format("{}: the value has {} bytes, maximum {}", option, argument.size(), kMaxBytes));
+        for (const CLI::App* subcommand : command->get_subcommands([](const CLI::App*) { return true; }))
+            if (subcommand->get_name() == argument) command = subcommand;
+        if (!argument.starts_with("-") || equals == std::string::npos) continue;
+        const CLI::Option* const named = command->get_option_no_throw(option);
+        if (named != nullptr && named->get_items_expected_max() == 0)
+            throw UserError(option + ": the option takes no value");
+        if (named != nullptr && !option.starts_with("--"))
+            throw UserError(option + ": write a blank before the value, not =");
+        if (named != nullptr && equals + 1 == argument.size()) throw UserError(option + " must not be empty");
     }
 }
 
@@ -150,10 +135,10 @@ std::string with_suggestion(const CLI::App& program, std::string text) {
         if (!text.starts_with(start) || end == std::string::npos || end < start.size()) continue;
         const std::string value = text.substr(start.size(), end - start.size());
         // const_cast: CLI11 returns validators, which store the choices, only for a non-const option.
-        const ValueCompletion offered = value_completion(option_text(*const_cast<CLI::Option*>(option)));
+        const std::vector<std::string> choices = choices_of(option_text(*const_cast<CLI::Option*>(option)));
         if (!value.starts_with(
-                nearest_name(value, offered.choices)))  // "grid:4" starts with the choice grid, which is not misspelt
-            text.insert(end, did_you_mean(value, offered.choices));
+                nearest_name(value, choices)))  // "grid:4" starts with the choice grid, which is not misspelt
+            text.insert(end, did_you_mean(value, choices));
         break;
     }
     return text;
@@ -170,11 +155,15 @@ std::vector<std::string> command_names(const CLI::App& command) {
 
 void parse_arguments(CLI::App& program, const std::vector<std::string>& arguments) {
     try {
-        check_argument_values(program, arguments);
+        check_arguments(program, arguments);
         program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) throw;  // --help or --version, not an error
-        throw UserError(failure_text(program, error, arguments));
+        std::string path;
+        const CLI::App& command = selected_command(program, path);
+        throw UserError(fmt::format("{}{}{}; see raya{} --help", path.empty() ? "" : path.substr(1),
+                                    path.empty() ? "" : ": ", failure_reason(program, command, error, arguments),
+                                    path));
     } catch (const UserError& error) {
         const std::string text = with_suggestion(program, error.what());
         if (text == error.what()) throw;

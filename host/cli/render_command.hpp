@@ -2,25 +2,24 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "host/array/render.hpp"
 #include "host/base/log.hpp"
-#include "host/base/progress.hpp"
 #include "host/base/standard_streams.hpp"
 #include "host/cli/checkpoint_options.hpp"
 #include "host/cli/render_options.hpp"
-#include "host/cli/render_recorder.hpp"
 #include "host/cli/render_run.hpp"
 #include "host/cli/scene_input.hpp"
-#include "host/cli/tone_options.hpp"
 #include "host/cli/torus_options.hpp"
+#include "host/cli/view_options.hpp"
 #include "host/image/image_io.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/report/render_report.hpp"
-#include "host/report/scene_report.hpp"
+#include "host/report/roofline.hpp"
 #include "host/ring/ring_result.hpp"
 #include "host/torus/history.hpp"
 #include "host/torus/torus_result.hpp"
-#include "host/version.hpp"
 
 namespace raya {
 
@@ -28,7 +27,7 @@ struct RenderCommand {
     RenderOptions render;
     TorusOptions torus;
     std::string image, cost, mask, report, page;  // names of output files; empty: not requested
-    ToneOptions tone;
+    std::optional<double> exposure;               // stops: colours are multiplied by 2^exposure
     CheckpointOptions checkpoint;
     TraceOptions trace;
     bool profile = false, counters = false;
@@ -71,13 +70,21 @@ struct Render {
     std::vector<std::uint64_t> cycles{};      // with keep_packets: [superstep][node]: modelled cycles
     std::vector<std::uint64_t> link_words{};  // with keep_packets: [superstep][node][RAYA_LINKS]: number of words sent
 
-    const Image& image() const { return ring ? ring->image : torus->image; }
+    const RenderResult& result() const {
+        if (ring) return *ring;
+        return *torus;
+    }
+    const Image& image() const { return result().image; }
 };
 
 /// Renders on a ring machine or on the torus machine and writes the command's files. Returns an empty result on ranks
 /// other than 0.
 std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& run);
 std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& run);
+
+inline bool is_torus(const RenderCommand& command) {
+    return machine_named(command.render.machine).kind == MachineKind::kTorus;
+}
 
 /// Calls render_on_torus() or render_on_ring(), as the command's machine requires.
 std::optional<Render> render_image(const RenderCommand& command, RenderRun& run);
@@ -98,38 +105,20 @@ SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options
 /// Throws UserError for an unsupported name of an output file, and for options that do not apply to the output files.
 void check_output_files(const CLI::App& parser, const RenderCommand& command);
 
-/// Returns the tone mapping of the command's image if the image has 8-bit codes; empty for linear
-/// images, and if no image is written.
-std::optional<CodeConversion> code_conversion_of(const RenderCommand& command);
-
-/// Adds a small copy of `image` to the report, with the tone mapping of the command's output image.
+/// Adds a small copy of `image` to the report, with the command's exposure.
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image);
 
-/// Returns a report with the members that reports of all machines have: scene, view, image, device, measured times.
-template <class Result>
-RenderReport begin_report(const RenderCommand& command, const SceneInput& input, const DeviceInfo& device,
-                          const Result& result) {
-    RenderReport report;
-    report.raya = raya_version();
-    report.scene = input_name(command.render.scene);
-    report.view = view_json(input.scene);
-    report.skipped = input.remarks;
-    report.image = {result.image.width, result.image.height, output_name(command.image), pixel_hash(result.image),
-                    code_conversion_of(command)};
-    if (command.needs_report()) add_preview(report, command, result.image);
-    report.device = {device.name,          device.platform, device.version,    device.driver,
-                     result.build_options, result.lanes,    result.group_size, result.tuned};
-    report.measured = {result.build_s, result.render_s, result.commands, {}, {}};
-    return report;
-}
+/// What a machine contributes to the end of a render.
+struct MachineOutputs {
+    std::function<void(RenderReport&)> describe;              // sets the machine's part of the report
+    std::function<void(const ImageAttributes&)> write_files;  // writes the machine's own files
+    std::function<void(TraceFile&)> add_trace;                // adds the modelled machine to the trace
+    std::vector<KernelWork> work;                             // of the kernels, for the roofline
+};
 
-/// Returns the metadata of a render's image files.
-ImageAttributes image_attributes(const RenderReport& report, const std::string& scene);
-
-/// Writes the image with `attributes` and with the attributes of its tone mapping.
-void write_main_image(const RenderCommand& command, const Image& image, ImageAttributes attributes);
-
-/// Writes the report and its page, and prints the summary and the profile, if they are requested.
-void write_report(const RenderCommand& command, const RenderReport& report);
+/// Collective: writes the image, the machine's files, report and trace, prints the summary, and removes the checkpoint.
+/// Returns the report; nothing on ranks other than 0.
+std::optional<RenderReport> finish_render(const RenderCommand& command, RenderRun& run, const RenderSettings& settings,
+                                          const RenderResult& result, const MachineOutputs& outputs);
 
 }  // namespace raya

@@ -3,12 +3,9 @@
 #include <fmt/core.h>
 
 #include "host/accel/bvh.hpp"
-#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
-#include "host/cli/parse_mapping.hpp"
 #include "host/cli/scene_input.hpp"
-#include "host/cli/tuned_option.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
 
@@ -26,7 +23,7 @@ std::vector<std::string> mapping_names() {
     return names;
 }
 
-// Sets the shell completion of options whose placeholder in the help, such as NAME, does not list the values.
+// Sets the choices of options whose placeholder in the help, such as NAME, does not list them.
 void offer_render_choices(CLI::App& command) {
     std::vector<std::string> ring_names;
     for (const Machine& machine : machines())
@@ -37,28 +34,40 @@ void offer_render_choices(CLI::App& command) {
     offer_choices(command.get_option("--lanes"), {"1", "4", "8", "16"});
 }
 
+constexpr const char* kNoPixels =
+    "its nodes hold voxels of the scene, not pixels; leave it out: --nodes and --voxels set what a node holds";
+
 void add_antialias_options(CLI::App& command, RenderOptions& o) {
-    add_value(command, "--antialias", o.antialias,
-              "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more samples for pixels that "
-              "differ from a neighbour. PEs exchange border pixels as --exchange sets")
-        ->type_name("none|filter|supersample")
-        ->capture_default_str();
-    add_value(
-        command, "--exchange", o.exchange,
-        "How PEs get the neighbours of their pixels: ring: all PEs send a block to the next PE at once; bus: one "
-        "PE at a time sends to one other PE; bus-broadcast: one PE at a time sends to all PEs. All three give the "
-        "same image")
-        ->type_name("ring|bus|bus-broadcast")
-        ->default_str("ring");
-    add_value(command, "--threshold", o.threshold,
-              "Supersample pixels whose colour, clamped to 0..1, differs from a neighbour's by T or more, 0..1; "
-              "default: 0.125")
-        ->type_name("T");
-    add_value(command, "--points", o.points,
-              "Positions of the four samples: axes: half a pixel left, right, above and below; diagonals: half a pixel "
-              "away on both axes")
-        ->type_name("axes|diagonals")
-        ->default_str("axes");
+    attach_note(
+        add_choice(
+            command, "--antialias", o.antialias, kAntialiasChoices,
+            "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more samples for pixels that differ "
+            "from a neighbour. PEs exchange border pixels as --exchange sets",
+            "3 x 3 filter or adaptive supersampling"),
+        kRingOnlyNote, kNoNeighbours);
+    attach_note(
+        add_choice(
+            command, "--exchange", o.exchange,
+            Choices<ExchangeMethod>{{"ring", ExchangeMethod::kRing},
+                                    {"bus", ExchangeMethod::kBus},
+                                    {"bus-broadcast", ExchangeMethod::kBroadcast}},
+            "How PEs get the neighbours of their pixels: ring: all PEs send a block to the next PE at once; bus: one "
+            "PE at a time sends to one other PE; bus-broadcast: one PE at a time sends to all PEs. All three give "
+            "the same image; default: ring"),
+        kRingOnlyNote, kNoNeighbours);
+    attach_note(
+        add_value(command, "--threshold", o.threshold,
+                  "Supersample pixels whose colour, clamped to 0..1, differs from a neighbour's by T or more, 0..1; "
+                  "default: 0.125")
+            ->type_name("T"),
+        kRingOnlyNote, kNoNeighbours);
+    attach_note(
+        add_choice(
+            command, "--points", o.points,
+            Choices<raya_u32>{{"axes", RAYA_POINTS_AXES}, {"diagonals", RAYA_POINTS_DIAGONALS}},
+            "Positions of the four samples: axes: half a pixel left, right, above and below; diagonals: half a pixel "
+            "away on both axes; default: axes"),
+        kRingOnlyNote, kNoNeighbours);
 }
 
 }  // namespace
@@ -66,15 +75,16 @@ void add_antialias_options(CLI::App& command, RenderOptions& o) {
 void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) {
     add_strict_option(command, o.strict);
     OptionGroup group(command, kImageGroup);
-    add_value(command, "--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution")
+    add_value(command, "--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution",
+              "Size in pixels, 1..16384 a side; default: the scene's")
         ->type_name("N|WxH");
     add_value(command, "--bounces", o.bounces,
-              "Maximum number of reflections and refractions after the primary ray, 0..31; default: 8")
+              "Maximum number of reflections and refractions after the primary ray, 0..31; default: 8",
+              "Reflections and refractions, 0..31; default: 8")
         ->type_name("N");
-    add_value(command, "--sampling", o.sampling,
-              "Primary rays pass through pixel centres, or through pixel corners as in SPD")
-        ->type_name("centres|corners")
-        ->capture_default_str();
+    add_choice(command, "--sampling", o.sampling,
+               Choices<Sampling>{{"centres", Sampling::kCentres}, {"corners", Sampling::kCorners}},
+               "Primary rays pass through pixel centres, or through pixel corners as in SPD");
     if (antialiasing) add_antialias_options(command, o);
     add_view_options(command, o.view);
     group.next(kMachine);
@@ -82,36 +92,50 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
         command, "--machine", o.machine,
         "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
         "cap (256 PEs), pixel-machine (64), links (256): the published arrays of these names, but with spa's PEs and "
-        "no memory limit; for comparing loads")
+        "no memory limit; for comparing loads",
+        "spa (256 PEs of 32 KB), grande (a PE per image column), torus (nodes hold voxels), and others")
         ->type_name("NAME")
         ->capture_default_str();
-    add_value(command, "--pes", o.pes,
-              "Number P of processing elements, 1..W*H; default: the machine's, or A*B of a grid")
-        ->type_name("P");
-    add_value(command, "--offset", o.offset,
-              "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W) on spa and grande, 0 on "
-              "the other machines")
-        ->type_name("p");
-    add_value(
-        command, "--mapping", o.mapping,
-        "Assignment of pixels to PEs: cyclic (slots of a sheared image, --offset), cyclic:p, column (cyclic with "
-        "offset 0: whole columns), rows (scan lines round robin), blocks (contiguous scan lines), grid:AxB (A rows "
-        "of B PEs; a PE has every B-th pixel of every A-th line), tiles:WxH (tiles of W x H pixels round robin), "
-        "random:seed (default seed 1); dynamic:CHUNK[,OVERHEAD[,ROOT]]: PEs request CHUNK pixels at a time, each "
-        "request costs the PE OVERHEAD cycles and occupies the root, which answers one at a time, for ROOT cycles; "
-        "hybrid:CHUNK[,OVERHEAD[,SHARE[,ROOT]]]: PEs request pixels after rendering a fraction SHARE (0.5) of their "
-        "cyclic pixels; the loads of dynamic and hybrid are simulated; default: the machine's, cyclic on spa")
-        ->type_name("NAME");
-    add_value(command, "--fold", o.fold, "PE of slot c if P is not W: cyclic (c mod P) or block (c P div W)")
-        ->type_name("cyclic|block")
-        ->default_str("cyclic");
-    add_value(
-        command, "--accel", o.accel,
-        "Acceleration structure in each PE's memory, which does not change the hits: none: every ray is tested against "
-        "all objects; bvh: faster from a few hundred objects on; grid: a uniform grid of A x B x C voxels along x, y, "
-        "z, by default a few voxels per object; default: none; on grande bvh if it is faster, from about 100 spheres "
-        "or 30 polygons on")
-        ->type_name("none|bvh|grid[:AxBxC]");
+    attach_note(add_value(command, "--pes", o.pes,
+                          "Number P of processing elements, 1..W*H; default: the machine's, or A*B of a grid",
+                          "Number of PEs; default: the machine's")
+                    ->type_name("P"),
+                kRingOnlyNote, "its PEs are nodes; set their number with --nodes IxJxK");
+    attach_note(
+        add_value(command, "--offset", o.offset,
+                  "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W) on spa and grande, 0 on "
+                  "the other machines",
+                  "Offset of the cyclic mapping; default: 16")
+            ->type_name("p"),
+        kRingOnlyNote, kNoPixels);
+    attach_note(
+        add_value(
+            command, "--mapping", o.mapping,
+            "Assignment of pixels to PEs: cyclic (slots of a sheared image, --offset), cyclic:p, column (cyclic with "
+            "offset 0: whole columns), rows (scan lines round robin), blocks (contiguous scan lines), grid:AxB (A rows "
+            "of B PEs; a PE has every B-th pixel of every A-th line), tiles:WxH (tiles of W x H pixels round robin), "
+            "random:seed (default seed 1); dynamic:CHUNK[,OVERHEAD[,ROOT]]: PEs request CHUNK pixels at a time, each "
+            "request costs the PE OVERHEAD cycles and occupies the root, which answers one at a time, for ROOT cycles; "
+            "hybrid:CHUNK[,OVERHEAD[,SHARE[,ROOT]]]: PEs request pixels after rendering a fraction SHARE (0.5) of "
+            "their "
+            "cyclic pixels; the loads of dynamic and hybrid are simulated; default: the machine's, cyclic on spa",
+            "Pixels to PEs: cyclic, column, rows, blocks, grid:AxB, tiles:WxH, random, dynamic:CHUNK, hybrid:CHUNK")
+            ->type_name("NAME"),
+        kRingOnlyNote, kNoPixels);
+    attach_note(add_choice(command, "--fold", o.fold, kFoldChoices,
+                           "PE of slot c if P is not W: cyclic (c mod P) or block (c P div W); default: cyclic"),
+                kRingOnlyNote, kNoPixels);
+    attach_note(add_value(command, "--accel", o.accel,
+                          "Acceleration structure in each PE's memory, which does not change the hits: none: every ray "
+                          "is tested against "
+                          "all objects; bvh: faster from a few hundred objects on; grid: a uniform grid of A x B x C "
+                          "voxels along x, y, "
+                          "z, by default a few voxels per object; default: none; on grande bvh if it is faster, from "
+                          "about 100 spheres "
+                          "or 30 polygons on",
+                          "Acceleration structure in each PE's memory")
+                    ->type_name("none|bvh|grid[:AxBxC]"),
+                kRingOnlyNote, "its voxels are the grid; refine it with --voxels AxBxC");
     add_value(command, "--pe-memory", o.pe_memory,
               "Memory in bytes of a PE, or of a torus node with all its buffers; default: the machine's, 32768 on spa, "
               "4194304 on torus, no limit on grande")
@@ -120,7 +144,8 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
     add_value(
         command, "--format", o.format,
         "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
-        "fraction bits, t truncates; default: the machine's, fp32 on grande and torus, e6m15 on the other machines")
+        "fraction bits, t truncates; default: the machine's, fp32 on grande and torus, e6m15 on the other machines",
+        "Number format: fp32, spa22 (e6m15) or eXmY[t]")
         ->type_name("NAME");
     add_device_option(command, o.device);
     add_value(command, "--lanes", o.lanes,
@@ -140,13 +165,13 @@ namespace {
 
 Antialias antialias_settings(const RenderOptions& o) {
     Antialias antialias;
-    antialias.method = parse_antialias(o.antialias);
-    antialias.points = parse_points(o.points.empty() ? "axes" : o.points);
-    if (antialias.method != AntialiasMethod::kSupersample && (o.threshold || !o.points.empty()))
+    antialias.method = o.antialias;
+    antialias.points = o.points.value_or(antialias.points);
+    antialias.exchange = o.exchange.value_or(antialias.exchange);
+    if (antialias.method != AntialiasMethod::kSupersample && (o.threshold || o.points))
         throw UserError("--threshold and --points require supersampling: add --antialias supersample");
-    if (antialias.method == AntialiasMethod::kNone && !o.exchange.empty())
+    if (antialias.method == AntialiasMethod::kNone && o.exchange)
         throw UserError("--exchange requires anti-aliasing: add --antialias filter or supersample");
-    antialias.exchange = parse_exchange(o.exchange.empty() ? "ring" : o.exchange);
     antialias.threshold = o.threshold.value_or(antialias.threshold) + 0.0;  // + 0.0 turns -0 into 0
     if (!(antialias.threshold >= 0 && antialias.threshold <= 1))
         throw UserError(fmt::format("--threshold {}: must be 0..1", antialias.threshold));
@@ -161,10 +186,10 @@ void check_slot_options(const RenderOptions& o, const MappingText& mapping, cons
         throw UserError(
             fmt::format("--offset {} with --mapping {}: {} has no offset; leave out --offset, or choose cyclic",
                         *o.offset, mapping.text, mapping.name()));
-    if (!has_slots && !o.fold.empty())
+    if (!has_slots && o.fold)
         throw UserError(fmt::format(
-            "--fold {} with --mapping {}: {} has no slots to fold; leave out --fold, or choose cyclic or column",
-            o.fold, mapping.text, mapping.name()));
+            "--fold with --mapping {}: {} has no slots to fold; leave out --fold, or choose cyclic or column",
+            mapping.text, mapping.name()));
     if (o.offset && !mapping.takes_offset_option && *o.offset != mapping.rule.parameter)
         throw UserError(fmt::format("--offset {} with --mapping {}: the mapping's offset is {}; leave out one of them",
                                     *o.offset, mapping.text, mapping.rule.parameter));
@@ -189,7 +214,7 @@ MappingRule rule_of(const MappingText& mapping, const RenderOptions& o, const Ma
     const std::uint32_t default_offset = machine.mapping.has_slots() ? machine.mapping.parameter % width : 0;
     const std::uint32_t offset =
         mapping.takes_offset_option ? o.offset.value_or(default_offset) : mapping.rule.parameter;
-    return cyclic_mapping(offset, o.fold.empty() ? Fold::kCyclic : parse_fold(o.fold));
+    return cyclic_mapping(offset, o.fold.value_or(Fold::kCyclic));
 }
 
 // Sets settings.mapping, and settings.dynamic if the mapping is dynamic or hybrid.
@@ -251,7 +276,7 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
             "choose a ring: spa",
             o.machine));
     settings.format = format_of(o, settings.machine);
-    settings.sampling = parse_sampling(o.sampling);
+    settings.sampling = o.sampling;
     set_mapping(settings, o, image_size(o, scene));
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
     settings.antialias = antialias_settings(o);

@@ -17,14 +17,24 @@ namespace raya {
 
 /// The options as given on the command line. An empty value means the default of the machine, scene or device.
 struct RenderOptions {
-    std::string scene, machine = "spa", size, mapping, fold, format, sampling = "centres", device, antialias = "none",
-                       points, exchange, kernel_dir, accel;
+    std::string scene, machine = "spa", size, mapping, format, device, kernel_dir, accel;
+    Sampling sampling = Sampling::kCentres;
+    AntialiasMethod antialias = AntialiasMethod::kNone;
+    std::optional<raya_u32> points;
+    std::optional<ExchangeMethod> exchange;
+    std::optional<Fold> fold;
     bool strict = false, no_tuned = false;
     ViewOptions view;
     std::optional<double> threshold;
     std::optional<std::uint64_t> pe_memory;  // bytes
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
 };
+
+// Notes of options that only one kind of machine has: the reason why another machine has no such option, which
+// completes an error message (torus_options.hpp).
+inline constexpr const char *kRingOnlyNote = "ring only", *kTorusOnlyNote = "torus only";
+inline constexpr const char* kNoNeighbours =
+    "its nodes hold no pixels to compare with their neighbours; leave it out, or choose a ring: --machine grande";
 
 /// Adds the options of RenderOptions except the scene, and except anti-aliasing if `antialiasing` is false.
 void add_render_options(CLI::App& command, RenderOptions& options, bool antialiasing = true);

@@ -22,12 +22,10 @@
 #include "host/base/module.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/file_options.hpp"
-#include "host/cli/nearest.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
+#include "host/cli/parse_failure.hpp"
 #include "host/cli/scene_input.hpp"
-#include "host/cli/tuned_option.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 

@@ -11,7 +11,10 @@ namespace raya {
 
 /// The options as given on the command line. An empty value means the default.
 struct TorusOptions {
-    std::string nodes, voxels, links, inject, returns, packets, replay, link_exchange;
+    std::string nodes, voxels, packets, replay;
+    Links links = Links::kTorus3d;
+    Injection inject = Injection::kAll;
+    bool one_return_per_ray = false;
     std::optional<std::uint32_t> packet_words;
     std::optional<std::uint32_t> queue;  // queue length in packets
     bool async = false;

@@ -11,17 +11,15 @@
 #include "host/base/clock.hpp"
 #include "host/base/log.hpp"
 #include "host/base/standard_streams.hpp"
-#include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/scene_input.hpp"
 #include "host/error.hpp"
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 #include "host/report/table.hpp"
 #include "host/tune/store.hpp"
 
@@ -31,16 +29,9 @@ namespace {
 struct TuneCommand {
     TrialSetup render;
     RenderOptions image;  // only image.size is an option of tune
-    std::string report;
     std::vector<std::string> variants, formats;
-    double seconds = 60, candidate_seconds = 20;
-    bool exhaustive = false;
+    double seconds = 60;
 };
-
-void check_range(const char* option, double value, double min, double max) {
-    if (!(value >= min && value <= max))
-        throw UserError(fmt::format("{} {}: must be {}..{} seconds", option, value, min, max));
-}
 
 std::vector<Workload> workloads_of(const TuneCommand& command) {
     if (command.variants.empty() && command.formats.empty()) return default_workloads();
@@ -63,42 +54,13 @@ TrialProgress progress_printer(const Workload& workload, const Space& space) {
     };
 }
 
-const char* status_text(TrialStatus status) {
-    switch (status) {
-        case TrialStatus::kCompile:
-            return "not built";
-        case TrialStatus::kRuntime:
-            return "failed";
-        case TrialStatus::kCorrectness:
-            return "wrong";
-        case TrialStatus::kTimeout:
-            return "too long";
-        default:
-            return "right";
-    }
-}
-
-void print_dropped_trials(const Tuning& tuning) {
-    for (const Trial& trial : tuning.trials)
-        if (trial.status != TrialStatus::kCorrect && trial.status != TrialStatus::kUnfinished)
-            fmt::print("dropped: {}: {}: {}: {}\n", tuning.workload.name(),
-                       change_text(tuning.space, trial.values, trial.values), status_text(trial.status), trial.error);
-}
-
-void print_exhaustive_search(const Tuning& tuning) {
-    if (tuning.exhaustive_best)
-        fmt::print(
-            "exhaustive search of {} candidates: {}: the best is {}; the tuned values take {:.3f} times its time\n",
-            tuning.exhaustive_tried + 1, tuning.workload.name(),
-            change_text(tuning.space, *tuning.exhaustive_best, *tuning.exhaustive_best), tuning.exhaustive_ratio);
-}
-
 void print_tunings(const std::vector<Tuning>& tunings) {
     std::vector<std::vector<std::string>> table = {
         {"workload", "speed-up", "tried", "of", "dropped", "s", "defaults -> best"}};
     for (const Tuning& t : tunings)
-        table.push_back({t.workload.name(), fmt::format("{:.2f}", 1 / t.ratio), std::to_string(t.trials.size()),
-                         std::to_string(t.space.size()), std::to_string(t.dropped()), fmt::format("{:.1f}", t.seconds),
+        table.push_back({t.workload.name(), fmt::format("{:.2f}", 1 / t.ratio), std::to_string(t.tried),
+                         std::to_string(t.space.candidates().size()), std::to_string(t.dropped.size()),
+                         fmt::format("{:.1f}", t.seconds),
                          change_text(t.space, t.space.defaults, t.best) + (t.complete ? "" : " (time limit)")});
     fmt::print("{}", text_table(table));
     fmt::print(
@@ -107,8 +69,10 @@ void print_tunings(const std::vector<Tuning>& tunings) {
         "that the kernels choose\n");
     if (std::any_of(tunings.begin(), tunings.end(), [](const Tuning& t) { return !t.complete; }))
         fmt::print("time limit: the limit ended the search; a larger --seconds allows a longer search\n");
-    for (const Tuning& tuning : tunings) print_dropped_trials(tuning);
-    for (const Tuning& tuning : tunings) print_exhaustive_search(tuning);
+    for (const Tuning& t : tunings)
+        for (const Trial& trial : t.dropped)
+            fmt::print("dropped: {}: {}: {}\n", t.workload.name(), change_text(t.space, trial.values, trial.values),
+                       trial.error);
 }
 
 TunedEntry entry_of(const Tuning& tuning, const std::string& scene) {
@@ -116,8 +80,8 @@ TunedEntry entry_of(const Tuning& tuning, const std::string& scene) {
 }
 
 void tune_device(const CLI::App& parser, TuneCommand& command) {
-    check_range("--seconds", command.seconds, 1, 86400);
-    check_range("--candidate-seconds", command.candidate_seconds, 1, 3600);
+    if (!(command.seconds >= 1 && command.seconds <= 86400))
+        throw UserError(fmt::format("--seconds {}: must be 1..86400 seconds", command.seconds));
     Warnings warnings;
     warn_of_build_options(warnings);
     TrialSetup& render = command.render;
@@ -133,7 +97,7 @@ void tune_device(const CLI::App& parser, TuneCommand& command) {
     fmt::print("tuning {} ({}, driver {}): {}, {:.0f} s\n", device.name, device.platform, device.driver,
                counted(workloads.size(), "workload"), command.seconds);
     std::fflush(stdout);
-    TuneSettings settings{.render = render, .limit_s = command.candidate_seconds, .exhaustive = command.exhaustive};
+    TuneSettings settings{.render = render};
     std::vector<Tuning> tunings;
     double remaining_s = command.seconds;
     const std::string date = utc_text("%Y-%m-%d");
@@ -147,7 +111,6 @@ void tune_device(const CLI::App& parser, TuneCommand& command) {
     }
     clear_status();
     print_tunings(tunings);
-    if (!command.report.empty()) write_whole_file(command.report, t4_text(device, tunings));
     fmt::print("stored in {}: render, bench and study use this file, unless --lanes, --group or --no-tuned is given\n",
                printable(file.string()));
 }
@@ -179,26 +142,11 @@ void add_rendered_options(CLI::App& command, TuneCommand& options) {
         ->type_name("P")
         ->capture_default_str();
     add_device_option(command, render.device);
-    group.next(kKernels);
-    add_kernel_source_options(command, render.kernel_dir);
-}
-
-void add_search_options(CLI::App& command, TuneCommand& options) {
-    const OptionGroup group(command, "Search");
     add_value(command, "--seconds", options.seconds, "Duration of the search in seconds, 1..86400")
         ->type_name("S")
         ->capture_default_str();
-    add_value(command, "--candidate-seconds", options.candidate_seconds,
-              "Time limit of a candidate with its build, 1..3600 seconds; each candidate runs in its own process. raya "
-              "drops candidates that exceed the limit, fail, or give an image that differs from that of the defaults")
-        ->type_name("S")
-        ->capture_default_str();
-    command.add_flag(
-        "--exhaustive", options.exhaustive,
-        "After the search, try every candidate without a time limit, and compare the tuned values with the "
-        "best candidate");
-    add_file(command, FileUse::kWritten, "--report", options.report, "FILE.json",
-             "Write all trials in the T4 format of Kernel Tuner; -: stdout; the tables then go to stderr");
+    group.next(kKernels);
+    add_kernel_source_options(command, render.kernel_dir);
 }
 
 }  // namespace
@@ -207,11 +155,10 @@ void add_tune_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "tune", "Search for this device's fastest launch values and store them for render, bench and study");
     add_examples(*command, {{"raya tune", "Search for a minute and store the best values for this device and driver"},
-                            {"raya tune scenes/centre.nff --variants bvh --size 128 --seconds 20 --report t4.json",
-                             "Tune the BVH for one scene, with a report of all trials"}});
+                            {"raya tune scenes/centre.nff --variants bvh --size 128 --seconds 20",
+                             "Tune the BVH for one scene"}});
     const auto options = std::make_shared<TuneCommand>();
     add_rendered_options(*command, *options);
-    add_search_options(*command, *options);
     command->callback([command, options] { tune_device(*command, *options); });
 }
 

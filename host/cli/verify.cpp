@@ -11,21 +11,17 @@
 #include <memory>
 
 #include "host/base/log.hpp"
-#include "host/base/progress.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/file_options.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/scene_input.hpp"
-#include "host/cli/verify_as.hpp"
 #include "host/cli/verify_output.hpp"
-#include "host/cli/verify_ranks.hpp"
 #include "host/error.hpp"
 #include "host/verify/bisect.hpp"
-#include "host/verify/ci_reports.hpp"
+#include "host/verify/device_checks.hpp"
 #include "host/verify/reproduce.hpp"
 #include "host/verify/supervisor.hpp"
 
@@ -141,7 +137,7 @@ void analyse_first_failure(const VerifyCommand& command, const DeviceChecks& dev
             name);
 }
 
-void run_verify(VerifyCommand command, Ranks& ranks) {
+void run_verify(VerifyCommand command) {
     take_render(command);
     if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
     if (!command.page.empty()) check_page_name("--page", command.page);
@@ -149,19 +145,15 @@ void run_verify(VerifyCommand command, Ranks& ranks) {
         if (!(seconds >= 0 && seconds <= kMaxTime_s))
             throw UserError(fmt::format("{}: must be a time from 0 s to {:.0f} s", option, kMaxTime_s));
     const VerifySettings settings = settings_of(command);
-    if (command.list) return ranks.is_first() ? list_checks(command, settings) : void();
-    if (ranks.has_several() && (command.device == "all" || !command.reproduce.empty() || !command.bisect.empty()))
-        throw UserError("--device all, --reproduce, --bisect: start raya without mpirun, on the host of the device");
+    if (command.list) return list_checks(command, settings);
     if (!command.reproduce.empty()) check_case_folder(command.reproduce);
     if ((!command.reproduce.empty() || !command.bisect.empty()) && (command.device == "all" || settings.soak_s > 0))
         throw UserError(
             "--reproduce, --bisect: not with --device all or --soak; remedy: repeat the failed check with "
             "--only, --lanes and --device");
     Warnings warnings;
-    if (ranks.is_first()) warn_of_build_options(warnings);
-    const std::vector<DeviceChecks> device_checks =
-        ranks.has_several() ? verify_on_ranks(command.device, settings, ranks) : verify_devices(command, settings);
-    if (!ranks.is_first()) return;
+    warn_of_build_options(warnings);
+    const std::vector<DeviceChecks> device_checks = verify_devices(command, settings);
     if (device_checks.size() > 1) print_device_totals(device_checks);
     for (const std::string& text : unmatched_patterns(settings.expected_failures, device_checks))
         warn(text + "; raya verify --full --list prints the names of all checks");
@@ -174,36 +166,9 @@ void run_verify(VerifyCommand command, Ranks& ranks) {
     throw CheckFailure{};
 }
 
-std::vector<ShortHelp> verify_short_help() {
-    const char *const options = "Options", *const failures = "Failures", *const more = "More options";
-    return {{"--quick", options, "Default lanes, common formats and images (default)"},
-            {"--brief", options, "Few kernels with few rays, for slow devices"},
-            {"--full", options, "All formats, lanes and group sizes: minutes"},
-            {"--lanes", options, "Check only this number of lanes: 1, 4, 8 or 16"},
-            {"--only", options, "Only checks whose names contain this text"},
-            {"--skip", options, "No checks whose names contain this text"},
-            {"--device", options, "OpenCL device: number, type, part of its name, all"},
-            {"--as", options, "Check what \"render SCENE OPTIONS\" uses"},
-            {"--report", options, "Write all checks as JSON; -: stdout"},
-            {"--junit", options, "Write the results as JUnit XML"},
-            {"--tap", options, "Write the results as TAP"},
-            {"--page", options, "Write the results as an HTML page"},
-            {"--reproduce", failures, "Write the first failure as a C program with data"},
-            {"--bisect", failures, "Find settings with which a failing check passes"},
-            {"--expect", failures, "List of checks that are known to fail"},
-            {"--timeout", failures, "Seconds after which a check counts as failed"},
-            {"--soak", more, "Random checks for this time, such as 30m or 2h"},
-            {"--seed", more, "Seed of --soak"},
-            {"--repeat", more, "Number of runs of each check"},
-            {"--shard", more, "The I-th of N parts of the checks"},
-            {"--list", more, "Print the names of the checks, and run none"},
-            {"--kernel-dir", more, "Read the kernels from this folder"},
-            {"--il", more, "Build the kernels from SPIR-V"}};
-}
-
 }  // namespace
 
-void add_verify_command(CLI::App& program, Ranks& ranks) {
+void add_verify_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "verify", "Check arithmetic, hits, machines and images of a device, its driver and its compiler bit for bit");
     add_examples(*command, {{"raya verify", "Run the default checks and print a line for each check"},
@@ -260,8 +225,7 @@ void add_verify_command(CLI::App& program, Ranks& ranks) {
     add_device_option(*command, options->device);
     command->get_option("--device")
         ->description(command->get_option("--device")->get_description() +
-                      "; all: every usable device, in turn or, with --soak, at once; under mpirun each rank checks one "
-                      "device");
+                      "; all: every usable device, in turn or, with --soak, at once");
     group.next(kKernels);
     add_kernel_source_options(*command, options->kernel_dir);
     group.next(kDiagnostics);
@@ -282,8 +246,7 @@ void add_verify_command(CLI::App& program, Ranks& ranks) {
     add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
              "Write all checks, and the first failure in full, as an HTML page; raya page makes the same page from a "
              "report");
-    add_short_help(*command, verify_short_help());
-    command->callback([options, &ranks] { run_verify(*options, ranks); });
+    command->callback([options] { run_verify(*options); });
 }
 
 }  // namespace raya

@@ -1,28 +1,45 @@
 // Output of `raya verify`: lines on the terminal, and the JSON report.
 #pragma once
-#include <functional>
+#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "host/base/clock.hpp"
 #include "host/base/json.hpp"
-#include "host/verify/soak.hpp"
+#include "host/cli/render_command.hpp"
+#include "host/verify/render_case.hpp"
 #include "host/verify/supervisor.hpp"
+#include "host/verify/verify.hpp"
 
 namespace raya {
 
-using PrintLines = std::function<void(const std::string& lines)>;
+// Results of a soak test (verify_at_random()): which checks failed, when, how often, and with which first wrong word.
+
+class SoakCounts {
+  public:
+    /// Counts a check that has ended `seconds` after the start. Returns the lines to print: none if the check has
+    /// passed; its details only for the first failure of the check.
+    std::string add(const Check& check, double seconds);
+
+    /// Returns a line for each check that has failed, such as "machine bus: failed 2 of 31 times, first after 12.3 s; 2
+    /// times with the same first wrong word: ...".
+    std::string summary() const;
+
+  private:
+    struct Count {
+        std::size_t runs = 0, failures = 0;
+        std::size_t repeats = 0;  // number of failures that equal the first one
+        double first_s = 0;
+        std::string first_wrong{};  // place, expected and actual bits of the first failure
+    };
+    std::map<std::string, Count> counts_;  // by "LAYER NAME"
+};
 
 /// Prints the checks of one device. In a soak test, prints only failures.
 class DeviceOutput {
   public:
     /// `settings` must outlive this object. `index`: number of the device among those that --device selects.
     DeviceOutput(const VerifySettings& settings, std::size_t index);
-
-    /// For a rank among several: prints only failures and the counts, with `print`.
-    DeviceOutput(const VerifySettings& settings, PrintLines print)
-        : settings_(settings), print_(std::move(print)), of_rank_(true) {}
 
     // The callbacks of SupervisorSink.
     void device(const DeviceChecks& device, const std::vector<std::string>& unusable_devices, std::size_t devices);
@@ -36,8 +53,6 @@ class DeviceOutput {
     bool soaks() const { return settings_.soak_s > 0; }
 
     const VerifySettings& settings_;
-    PrintLines print_;
-    bool of_rank_ = false;
     std::size_t index_ = 0, device_count_ = 1;
     Clock::time_point start_ = Clock::now();
     SoakCounts counts_;
@@ -49,5 +64,15 @@ void print_device_totals(const std::vector<DeviceChecks>& device_checks);
 
 /// Returns the report of --report (docs/report.md).
 Json verify_report(const std::vector<DeviceChecks>& device_checks, const VerifySettings& settings);
+
+// The option --as of `raya verify`: a render command, parsed like that of `raya render`.
+
+/// Parses a command such as "render scene.nff --lanes 8"; "raya" may precede it. Quotes work as in a shell. Throws
+/// UserError, with --as, if `raya render` would refuse the options.
+RenderCommand parse_render(const std::string& text);
+
+/// Returns the render of such a command: reads its scene, and loads the values of raya tune unless the command has
+/// --no-tuned. Throws UserError like `raya render`.
+RenderCase render_case(const std::string& text);
 
 }  // namespace raya

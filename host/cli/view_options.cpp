@@ -9,7 +9,7 @@
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/scene/nff_tokens.hpp"
-#include "host/scene/outline.hpp"
+#include "host/scene/polygon.hpp"
 
 namespace raya {
 namespace {

@@ -24,7 +24,6 @@ struct PictureToEncode {
     int height;          // pixels
     int channels;        // 3, or 1: channel Y
     const void* values;  // float for EXR, else std::uint8_t
-    double gamma;        // exponent of the transfer curve v^(1/gamma); 0: sRGB curve
     const ImageAttributes& attributes;
 };
 

@@ -2,7 +2,6 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include <sstream>
 #include <string_view>
 
 #include "host/image/encoder.hpp"
@@ -19,13 +18,7 @@ std::string description(const ImageAttributes& attributes) {
 
 // Sets the attributes of a format with 8-bit codes.
 void describe_codes(OIIO::ImageSpec& spec, const PictureToEncode& picture, std::string_view format) {
-    std::string colour_space = "sRGB";
-    if (picture.gamma != 0) {  // PNG files store the gamma; TIFF and JPEG cannot
-        std::ostringstream name;
-        name << "Gamma" << picture.gamma;
-        colour_space = name.str();
-    }
-    spec.attribute("oiio:ColorSpace", colour_space);
+    spec.attribute("oiio:ColorSpace", "sRGB");
     if (format == "png") {
         for (const auto& [key, text] : picture.attributes) spec.attribute("raya:" + key, text);
         return;

@@ -78,21 +78,21 @@ EncodePicture* encoder(const fs::path& path) {
 }
 
 std::string encode(const fs::path& path, const char* format, const Pixels& pixels, const void* values,
-                   const ImageAttributes& attributes, double gamma = 0) {
+                   const ImageAttributes& attributes) {
     std::string result;
-    if (!encoder(path)({format, pixels.width, pixels.height, pixels.channels, values, gamma, attributes}, result))
+    if (!encoder(path)({format, pixels.width, pixels.height, pixels.channels, values, attributes}, result))
         refuse_to_encode(path, result);
     return result;
 }
 
 std::string encode_codes(const fs::path& path, const char* format, const Pixels& pixels,
-                         const ImageAttributes& attributes, const Tone& tone) {
-    const ToneCodes codes_of(tone);
+                         const ImageAttributes& attributes, double exposure) {
+    const ToneCodes codes_of(exposure);
     std::vector<std::uint8_t> codes;
     codes.reserve(pixels.values.size());
     for (std::size_t at = 0; at < pixels.values.size(); at += 3)
         for (const std::uint8_t code : codes_of(&pixels.values[at])) codes.push_back(code);
-    return encode(path, format, pixels, codes.data(), attributes, tone.gamma.value_or(0));
+    return encode(path, format, pixels, codes.data(), attributes);
 }
 
 // Writes a header, then one row at a time, so that memory never holds the whole file. append_row(bytes, row) appends
@@ -112,8 +112,8 @@ void write_rows(const fs::path& path, const Pixels& pixels, const std::string& h
 
 // Binary portable pixmap (PPM, J. Poskanzer): the lines `P6`, `width height` and `255`, then three 8-bit codes per
 // pixel, the same as in a PNG, the top row first.
-void write_ppm(const fs::path& path, const Pixels& pixels, const Tone& tone) {
-    const ToneCodes codes_of(tone);
+void write_ppm(const fs::path& path, const Pixels& pixels, double exposure) {
+    const ToneCodes codes_of(exposure);
     const std::string header = fmt::format("P6\n{} {}\n255\n", pixels.width, pixels.height);
     write_rows(path, pixels, header, [&](std::string& bytes, int number) {
         const std::span<const float> row = pixels.row(number);
@@ -135,14 +135,14 @@ void write_pfm(const fs::path& path, const Pixels& pixels) {
     });
 }
 
-// Writes the pixels in the format of `extension`. `tone` applies only to formats with 8-bit codes.
+// Writes the pixels in the format of `extension`. `exposure` applies only to formats with 8-bit codes.
 void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttributes& attributes,
-                  const std::string& extension, const Tone& tone) {
+                  const std::string& extension, double exposure) {
     const char* const format = encoded_format(extension);
     if (extension == ".exr")
         return write_whole_file(path, encode(path, format, pixels, pixels.values.data(), attributes));
-    if (format != nullptr) return write_whole_file(path, encode_codes(path, format, pixels, attributes, tone));
-    if (extension == ".ppm") return write_ppm(path, pixels, tone);
+    if (format != nullptr) return write_whole_file(path, encode_codes(path, format, pixels, attributes, exposure));
+    if (extension == ".ppm") return write_ppm(path, pixels, exposure);
     write_pfm(path, pixels);
 }
 
@@ -164,11 +164,11 @@ void load_encoder(const fs::path& path) {
     if (encoded_format(lower_case_extension(path, kImageExtensions)) != nullptr) encoder(path);
 }
 
-void write_image(const fs::path& path, const Image& image, const ImageAttributes& attributes, const Tone& tone) {
+void write_image(const fs::path& path, const Image& image, const ImageAttributes& attributes, double exposure) {
     check_shape(image.width, image.height, 3, image.rgb.size());
     check_image_name(path, kImageExtensions);
     write_pixels(path, {image.width, image.height, 3, image.rgb}, attributes,
-                 lower_case_extension(path, kImageExtensions), tone);
+                 lower_case_extension(path, kImageExtensions), exposure);
 }
 
 void write_image(const fs::path& path, const GreyImage& image, const ImageAttributes& attributes) {

@@ -8,7 +8,6 @@
 
 #include "host/image/encoder.hpp"
 #include "host/image/image.hpp"
-#include "host/image/tone.hpp"
 
 namespace raya {
 
@@ -16,7 +15,7 @@ inline constexpr std::array<std::string_view, 8> kImageExtensions{".png", ".exr"
                                                                   ".tif", ".tiff", ".jpg", ".jpeg"};
 inline constexpr std::array<std::string_view, 2> kGreyImageExtensions{".exr", ".pfm"};  // formats that store floats
 
-/// Returns true if a colour image in the file `path` is stored as 8-bit codes, to which a Tone applies.
+/// Returns true if a colour image in the file `path` is stored as 8-bit codes, to which --exposure applies.
 bool stores_8bit_codes(const std::filesystem::path& path);
 
 /// Throws UserError, with file, reason and remedy, if the extension of `path` (upper or lower case) is not one of
@@ -28,11 +27,11 @@ void check_image_name(const std::filesystem::path& path, std::span<const std::st
 void load_encoder(const std::filesystem::path& path);
 
 /// Writes an image atomically in the format of the extension, without date, host or program version. PNG, TIFF (zip),
-/// JPEG (kJpegQuality, 4:4:4) and PPM store the nearest 8-bit code of each tone-mapped value; EXR (channels R, G, B,
+/// JPEG (kJpegQuality, 4:4:4) and PPM store the nearest 8-bit code of each value; EXR (channels R, G, B,
 /// zip) and PFM store the floats. Throws UserError with file, reason and remedy; std::logic_error if `image` does not
 /// have 3 floats per pixel.
 void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes,
-                 const Tone& tone = {});
+                 double exposure = 0);
 
 /// Writes an image of one number per pixel as EXR (channel Y, zip) or PFM. Throws UserError with file, reason
 /// and remedy; std::logic_error if `image` does not have one float per pixel.

@@ -1,17 +1,144 @@
 #include "host/mesh/mesh_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
 #include <string_view>
+#include <thread>
+#include <utility>
 
+#include "host/base/child_process.hpp"
+#include "host/base/module.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
-#include "host/mesh/import_process.hpp"
+#include "host/mesh/import_records.hpp"
 #include "host/mesh/mesh_scene.hpp"
 #include "host/scene/nff.hpp"
 
 namespace raya {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::chrono::seconds time_limit() {
+    constexpr long kDefault = 120, kMax = 1'000'000;
+    const char* const text = std::getenv("RAYA_MESH_TIMEOUT");
+    if (text == nullptr) return std::chrono::seconds(kDefault);
+    long seconds = 0;
+    const char* const end = text + std::strlen(text);
+    if (std::from_chars(text, end, seconds).ptr != end || seconds < 1 || seconds > kMax)
+        throw UserError(fmt::format("RAYA_MESH_TIMEOUT={}: must be a number of seconds from 1 to {}", text, kMax));
+    return std::chrono::seconds(seconds);
+}
+
+std::filesystem::path import_program(const MeshScene& scene) {
+    try {
+        return module_file(kImportProgram);
+    } catch (const ModuleError& error) {
+        scene.refuse(fmt::format("cannot read meshes: {}; remedy: use a complete installation of raya", error.what()));
+    }
+}
+
+/// The running program and the records that it sends.
+class ImportProcess : public RecordSource {
+  public:
+    ImportProcess(const std::filesystem::path& file, const MeshScene& scene)
+        : scene_(scene), limit_(time_limit()), deadline_(Clock::now() + limit_) {
+        const std::string program = import_program(scene);
+        std::array<int, 2> ends{};
+        if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("cannot create a pipe to a child process");
+        pipe_ = ends[0];
+        try {
+            child_ = start_child(program, {kImportProgram, std::to_string(ends[1]), file.string()}, ends[1]);
+        } catch (...) {
+            for (const int end : ends) ::close(end);
+            throw;
+        }
+        ::close(ends[1]);
+    }
+    ImportProcess(const ImportProcess&) = delete;
+    ImportProcess& operator=(const ImportProcess&) = delete;
+    ~ImportProcess() override {
+        ::close(pipe_);
+        if (child_ >= 0) wait(Clock::now());
+    }
+
+    void take(char* bytes, std::size_t count) override {
+        while (count > 0) {
+            const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline_ - Clock::now());
+            pollfd in{pipe_, POLLIN, 0};
+            const int ready = left.count() > 0 ? ::poll(&in, 1, static_cast<int>(left.count())) : 0;
+            if (ready == 0)
+                scene_.refuse(fmt::format(
+                    "reading the mesh takes more than {} s; the file may be damaged; remedy for a large file: set "
+                    "RAYA_MESH_TIMEOUT",
+                    limit_.count()));
+            const ssize_t read_bytes = ready > 0 ? ::read(pipe_, bytes, count) : -1;
+            if (read_bytes < 0 && errno == EINTR) continue;
+            if (read_bytes <= 0) refuse_end();
+            bytes += read_bytes;
+            count -= static_cast<std::size_t>(read_bytes);
+        }
+    }
+
+  private:
+    [[noreturn]] void refuse_end() {
+        const int status = wait(deadline_);
+        if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)
+            scene_.refuse(fmt::format(
+                "cannot read meshes: {} does not start; remedy: install assimp (Debian: libassimp5)", kImportProgram));
+        scene_.refuse(fmt::format("cannot read the mesh: the import process ended with {}; the file may be damaged",
+                                  ending_text(status)));
+    }
+
+    /// Waits for the end of the process, kills it at the deadline, and returns its status.
+    int wait(Clock::time_point deadline) {
+        int status = 0;
+        while (::waitpid(child_, &status, WNOHANG) == 0) {
+            if (Clock::now() >= deadline) ::kill(child_, SIGKILL);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        child_ = -1;
+        return status;
+    }
+
+    const MeshScene& scene_;
+    std::chrono::seconds limit_;
+    Clock::time_point deadline_;
+    int pipe_ = -1;
+    pid_t child_ = -1;
+};
+
+/// Checks that the file can be read, because assimp's messages do not say why it cannot.
+void check_readable(const std::filesystem::path& file, const MeshScene& scene) {
+    std::error_code error;
+    const bool is_regular = std::filesystem::is_regular_file(file, error);
+    if (!error && is_regular && ::access(file.c_str(), R_OK) != 0) error.assign(errno, std::generic_category());
+    if (error || !is_regular)
+        scene.refuse(fmt::format("cannot read the mesh: {}", error ? error.message() : "it is not a regular file"));
+}
+
+}  // namespace
+
+void import_mesh(const std::filesystem::path& file, MeshScene& scene) {
+    check_readable(file, scene);
+    register_input(file);
+    ImportProcess process(file, scene);
+    read_records(process, scene);
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -11,9 +11,8 @@
 
 #include "host/error.hpp"
 #include "host/scene/nff_tokens.hpp"
-#include "host/scene/outline.hpp"
 #include "host/scene/polygon.hpp"
-#include "host/scene/view.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 namespace {

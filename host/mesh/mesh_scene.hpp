@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/remark.hpp"
+#include "host/scene/nff.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {

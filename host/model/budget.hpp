@@ -23,6 +23,7 @@
 #include <cstdint>
 
 #include "host/model/machine.hpp"
+#include "host/model/t805.hpp"
 
 namespace raya {
 
@@ -38,6 +39,9 @@ struct Budget {
     std::uint32_t divisions = 0, roots = 0;
     std::uint32_t moves = 0;  // moves without arithmetic in parallel
     std::uint32_t branches = 0;
+    // On a T805 (host/model/t805.hpp), instead of multiply-accumulates. Each word of a created packet costs a store.
+    std::uint32_t additions = 0, multiplications = 0;
+    CreatedPacket creates = CreatedPacket::kNone;
     const char* work = "";  // text: the work that the budget includes and excludes
 };
 

@@ -11,7 +11,6 @@
 #include "host/error.hpp"
 #include "host/model/budget.hpp"
 #include "host/model/t805.hpp"
-#include "host/model/time_model.hpp"
 
 namespace raya {
 namespace {
@@ -155,9 +154,9 @@ constexpr RingSources kComparedArraySources = {.pes = "",
                                                .gather = "[P] PEs hold the frame buffer",
                                                .display = "[P] PEs hold the frame buffer"};
 
-// "Cellular Array Processor CAP and Applications", doi:10.1007/BF00932066, 1989 (abstract): 256 cells; an interface chip with two
-// buses for broadcasts, 2 MB/s each, and six serial ports, 15 Mbit/s each; every cell holds and displays its part of
-// the image.
+// "Cellular Array Processor CAP and Applications", doi:10.1007/BF00932066, 1989 (abstract): 256 cells; an interface
+// chip with two buses for broadcasts, 2 MB/s each, and six serial ports, 15 Mbit/s each; every cell holds and displays
+// its part of the image.
 Machine cap() {
     Machine machine =
         array_of_spa_pes("cap", "the array of the CAP, on PEs of the SPA", "2-D array", grid_mapping(16, 16), 256);

@@ -58,6 +58,14 @@ struct DoesNotFit : UserError {
 /// The number of events of each kind (RAYA_* of kernels/shared/events.h).
 using EventCounts = std::array<std::uint64_t, RAYA_EVENTS>;
 
+/// Names of a count, see RAYA_EVENT_LIST of kernels/shared/events.h.
+struct EventNames {
+    const char *name, *member;
+};
+#define RAYA_EVENT_NAMES(enumerator, name, member) EventNames{name, member},
+inline constexpr std::array<EventNames, RAYA_EVENTS> kEvents = {{RAYA_EVENT_LIST(RAYA_EVENT_NAMES)}};
+#undef RAYA_EVENT_NAMES
+
 /// The kind of a machine: which data it distributes over its PEs.
 enum class MachineKind {
     kRing,  // the pixels (host/ring/)
@@ -67,11 +75,11 @@ enum class MachineKind {
 /// Rates from which modelled_time() (model/time_model.hpp) computes the time of a ring machine. An infinite rate
 /// stands for a transfer that takes no time. docs/clock.md has the origin of the SPA's numbers.
 struct MachineClock {
-    double cycle_ns = 0;               // time of a cycle of a PE
-    double cycle_factor = 1;           // number of the machine's cycles per cycle of the budgets (model/budget.hpp)
-    double link_words_per_s = 0;       // rate of a link from a PE to its neighbour, and of the bus between PEs
-    double rotation_sync_ms = 0;       // overhead of one rotation, or of one transfer over the bus between PEs
-    double setup_ms = 0;               // set-up of the scene's broadcast, of the image's gather, of an exchange of pixels
+    double cycle_ns = 0;          // time of a cycle of a PE
+    double cycle_factor = 1;      // number of the machine's cycles per cycle of the budgets (model/budget.hpp)
+    double link_words_per_s = 0;  // rate of a link from a PE to its neighbour, and of the bus between PEs
+    double rotation_sync_ms = 0;  // overhead of one rotation, or of one transfer over the bus between PEs
+    double setup_ms = 0;          // set-up of the scene's broadcast, of the image's gather, of an exchange of pixels
     double broadcast_words_per_s = 0;  // from the host to the PEs
     double gather_words_per_s = 0;     // from the PEs to the host
     double display_pixels_per_s = 0;   // display of the image

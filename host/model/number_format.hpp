@@ -1,5 +1,6 @@
 // The number formats of the kernels' arithmetic (kernels/number/README.md), on the host.
 #pragma once
+#include <cstdint>
 #include <string>
 
 namespace raya {
@@ -31,5 +32,28 @@ double farthest_hit(const NumberFormat& format);
 /// Converts `value` to the format: rounds once, saturates at the largest number, and flushes magnitudes below
 /// smallest_number() to zero. Throws std::invalid_argument for NaN.
 float round_to_format(double value, const NumberFormat& format);
+
+// Texts of counts, sizes, times and rates, for messages and reports. 1 KB = 1024 bytes, 1 MB = 1024 KB.
+
+/// Returns a count with its noun: "1 frame", "2 frames". The default plural is `singular` with an s.
+std::string counted(std::uint64_t count, const std::string& singular, const std::string& plural = "");
+
+/// Return a size. A size below 1 KB is in bytes: "12 bytes". Any other size is in KB with one decimal: "12.3 KB". An
+/// available size of whole KB has no decimal: "12 KB". A required size is rounded up and an available size is rounded
+/// down, so that the texts never suggest that data fits if it does not.
+std::string required_size_text(std::uint64_t bytes);
+std::string available_size_text(std::uint64_t bytes);
+
+/// Returns an amount of data that is not compared with a limit. Below 10,000 bytes: "12 bytes". Below a million bytes:
+/// "12.3 KB". From a million bytes on: "12.3 MB".
+std::string data_text(double bytes);
+
+/// Returns a time. Below ten seconds: "12.3 ms". Below ten minutes: "12.3 s". Below ten hours: "12.3 min". From ten
+/// hours on: "12.3 h".
+std::string time_text(double ms);
+
+/// Returns a rate. Below 1000 rays per second: "12.3 rays/s". Below a million: "12.3 krays/s". From a million on:
+/// "12.3 Mrays/s".
+std::string rate_text(double rays_per_s);
 
 }  // namespace raya

@@ -6,18 +6,15 @@
 #include <numeric>
 
 #include "host/cli/parse.hpp"
-#include "host/cli/parse_mapping.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/error.hpp"
 #include "host/model/budget.hpp"
 #include "host/model/machine.hpp"
 #include "host/python/session.hpp"
-#include "host/ring/antialias.hpp"
 #include "host/ring/bus_and_ring.hpp"
 #include "host/ring/mapping.hpp"
-#include "host/ring/route.hpp"
+#include "host/ring/neighbour_exchange.hpp"
 #include "host/ring/schedule.hpp"
-#include "host/torus/node_distribution.hpp"
 #include "host/torus/topology.hpp"
 #include "tests/reference/reference.hpp"
 
@@ -35,7 +32,7 @@ raya_mapping mapping_of(const ImageSize& size, const std::string& mapping, Optio
     options.machine = "grande";
     options.size = fmt::format("{}x{}", size.width, size.height);
     options.mapping = mapping;
-    options.fold = fold;
+    if (!fold.empty()) options.fold = parse_choice("--fold", fold, kFoldChoices);
     options.offset = offset;
     options.pes = pes;
     return ring_settings(options, {}).mapping;
@@ -67,7 +64,8 @@ py::array imbalances(const py::array& costs, std::uint32_t pes, const std::vecto
     {
         const py::gil_scoped_release no_gil;
         imbalance_by_offset = imbalance_of_offsets(
-            cost, pes, parse_fold(fold) == Fold::kBlock ? RAYA_FOLD_BLOCK : RAYA_FOLD_CYCLIC, offsets);
+            cost, pes, parse_choice("--fold", fold, kFoldChoices) == Fold::kBlock ? RAYA_FOLD_BLOCK : RAYA_FOLD_CYCLIC,
+            offsets);
     }
     return copy_of(imbalance_by_offset);
 }
@@ -79,7 +77,7 @@ py::array speedups(const py::array& costs, const std::vector<std::uint32_t>& pes
     const CostImage cost = cost_image_of(costs);
     if (offsets.size() != pes.size() && offsets.size() != 1)
         throw py::value_error("offsets: must have one element, or as many as pes");
-    const Fold fold_kind = parse_fold(fold);
+    const Fold fold_kind = parse_choice("--fold", fold, kFoldChoices);
     std::vector<double> speedup_by_pes;
     CostImage slot_loads{cost.width, 1, {}};
     OptionalNumber slot_offset;  // offset for which slot_loads was computed
@@ -149,7 +147,7 @@ std::uint32_t pixels_of_largest_share(std::uint32_t width, std::uint32_t height,
 py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::string& antialias,
                       const std::optional<py::array>& supersample) {
     const CostImage trace_cost = cost_image_of(trace);
-    const AntialiasMethod method = parse_antialias(antialias);
+    const AntialiasMethod method = parse_choice("--antialias", antialias, kAntialiasChoices);
     const MachineClock& clock = machine_named("spa").clock;
     std::vector<std::uint32_t> offsets(trace_cost.width);
     std::iota(offsets.begin(), offsets.end(), 0u);
@@ -199,12 +197,6 @@ py::array reference_image(const Scene& scene, std::uint32_t size, int bounces, i
     for (const Colour& colour : image.pixels)
         for (int channel = 0; channel < 3; ++channel) *out++ = colour[channel];
     return array;
-}
-
-py::array ranks_of_pes(std::uint32_t pes, std::uint32_t ranks) {
-    std::vector<std::uint32_t> ranks_by_pe;
-    for (std::uint32_t pe = 0; pe < pes; ++pe) ranks_by_pe.push_back(rank_of_pe(pes, ranks, pe));
-    return copy_of(ranks_by_pe);
 }
 
 py::array ranks_of_torus(const std::array<std::uint32_t, 3>& nodes, std::uint32_t ranks) {
@@ -308,8 +300,9 @@ void add_loads(py::module_& module) {
         "supersample: modelled cycles of each pixel in the two passes, [H, W]. Returns a dict of arrays [W]: offset, "
         "imbalance (of the first pass), trace_ms and supersample_ms (of the busiest PE), smooth_ms (filter and "
         "comparison), ring_ms (exchange of neighbours), rotations (number of rotations).");
-    module.def("ranks_of_pes", ranks_of_pes, py::arg("pes"), py::arg("ranks"),
-               "uint32 [P]: the MPI rank of each PE of a ring.");
+    module.def(
+        "ranks_of_pes", [](std::uint32_t pes, std::uint32_t ranks) { return copy_of(ranks_of_pes(pes, ranks)); },
+        py::arg("pes"), py::arg("ranks"), "uint32 [P]: the MPI rank of each PE of a ring.");
     module.def("ranks_of_nodes", ranks_of_torus, py::arg("nodes"), py::arg("ranks"),
                "uint32 [nodes]: the MPI rank of each node of a 3-D torus. nodes: number of nodes (I, J, K).");
     module.def("link_ends", link_ends, py::arg("nodes"),

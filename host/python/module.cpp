@@ -30,8 +30,6 @@ PYBIND11_MODULE(_engine, module) {
     set_verbosity(kErrorsOnly);  // warnings become Python warnings instead
     auto& input_error = pybind11::register_exception<UserError>(module, "InputError", PyExc_ValueError);
     input_error.doc() = "Invalid input or options.";
-    pybind11::register_exception<TorusDeadlock>(module, "Deadlock", input_error).doc() =
-        "The torus is deadlocked: its buffers are too short for its packets.";
     pybind11::register_exception<DoesNotFit>(module, "DoesNotFit", input_error).doc() =
         "A part of the scene does not fit into the memory of a PE or node.";
     pybind11::register_exception<DeviceError>(module, "DeviceError", PyExc_RuntimeError).doc() =

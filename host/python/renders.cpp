@@ -45,9 +45,8 @@ void require_cost(const Phase& phase) {
 
 py::array cost_of(const py::object& self) {
     const RingResult& ring = ring_of(*self.cast<Result>(), "cost");
-    const Phase& phase = ring.phases.size() == 1 ? ring.phases.front() : ring.all;
-    require_cost(phase);
-    return cost_array(*phase.recorded_cost, self);
+    require_cost(ring.phases.front());
+    return cost_array(ring.cost(), self);
 }
 
 // Returns a dict of figure(phase) by the phase's name. `property`: name of the Result's property, for messages.
@@ -66,15 +65,9 @@ py::dict costs_of(const py::object& self) {
     });
 }
 
-// Names of the counted events, in the order of kernels/shared/events.h.
-constexpr const char* kEvents[RAYA_EVENTS] = {"primary",       "primary_hits", "reflected",    "refracted",
-                                              "shadow",        "shadow_hits",  "sphere_tests", "plane_tests",
-                                              "polygon_tests", "cone_tests",   "shaded",       "lit",
-                                              "highlights",    "walks",        "steps",        "discarded"};
-
 py::dict events_of(const Result& r) {
     py::dict counts;
-    for (std::size_t event = 0; event < RAYA_EVENTS; ++event) counts[kEvents[event]] = r->report.events[event];
+    for (std::size_t event = 0; event < RAYA_EVENTS; ++event) counts[kEvents[event].name] = r->report.events[event];
     return counts;
 }
 
@@ -82,9 +75,9 @@ double events_ms(const std::map<std::string, std::uint64_t>& events) {
     const auto cycles = t805_cycles();
     std::uint64_t sum = 0;
     for (const auto& [name, count] : events) {
-        const auto found = std::find(std::begin(kEvents), std::end(kEvents), name);
-        if (found == std::end(kEvents)) throw py::value_error(fmt::format("t805_ms: unknown event {}", name));
-        sum += count * cycles[static_cast<std::size_t>(found - std::begin(kEvents))];
+        const auto found = std::ranges::find_if(kEvents, [&](const EventNames& names) { return names.name == name; });
+        if (found == kEvents.end()) throw py::value_error(fmt::format("t805_ms: unknown event {}", name));
+        sum += count * cycles[static_cast<std::size_t>(found - kEvents.begin())];
     }
     return static_cast<double>(sum) * kT805CycleNs * 1e-6;
 }

@@ -16,7 +16,7 @@
 #include "host/scene/generate.hpp"
 #include "host/scene/nff.hpp"
 #include "host/scene/packer.hpp"
-#include "host/scene/view.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 namespace {

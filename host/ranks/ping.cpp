@@ -1,9 +1,6 @@
 #include "host/ranks/ping.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <limits>
 
 #include "host/base/clock.hpp"
@@ -16,8 +13,6 @@ constexpr std::uint64_t kMaxPingBytes = 4 << 20;
 // Lengths of the messages. The shortest has one byte, because the transport does not send empty messages.
 constexpr std::uint64_t kMessageBytes[] = {1,        64,        1 << 10, 4 << 10,      16 << 10,
                                            64 << 10, 256 << 10, 1 << 20, kMaxPingBytes};
-constexpr std::uint64_t kGatherBytes[] = {136, 1088, 8704, 69632};  // status words of 1, 8, 64 and 512 torus nodes
-
 // Returns the number of repetitions of a measurement; higher for short messages. All messages together have at most
 // 1 GB.
 int repetitions_of(std::uint64_t bytes) { return bytes <= (64 << 10) ? 300 : 20; }
@@ -46,19 +41,6 @@ MessageTime message_time(Ranks& ranks, std::uint32_t partner, std::uint64_t byte
     return {bytes, round_trip_s / 2};
 }
 
-MessageTime gather_time(Ranks& ranks, std::uint64_t bytes) {
-    const std::vector<std::byte> block(bytes);
-    const std::vector<std::size_t> sizes(ranks.count(), bytes);
-    return {bytes, minimum_seconds(repetitions_of(bytes),
-                                   [&] { ranks.all_gather(std::span<const std::byte>(block), sizes); })};
-}
-
-Json json_of(const std::vector<MessageTime>& times) {
-    Json list = Json::array();
-    for (const MessageTime& time : times) list.push_back({{"bytes", time.bytes}, {"seconds", time.seconds}});
-    return list;
-}
-
 }  // namespace
 
 // Minimises the sum over the messages (b bytes, t seconds) of
@@ -82,46 +64,25 @@ Network fitted_network(std::span<const MessageTime> times) {
     return solution;
 }
 
-// The number of threads is POCL_MAX_PTHREAD_COUNT, which open_ranks() has set.
-RankPlace place_of_this_process(const std::string& host) {
-    const auto cores = static_cast<std::uint32_t>(std::max(1L, ::sysconf(_SC_NPROCESSORS_ONLN)));
-    const char* const pocl_threads = std::getenv("POCL_MAX_PTHREAD_COUNT");
-    const int threads = pocl_threads != nullptr ? std::atoi(pocl_threads) : 0;
-    return {host, threads > 0 ? static_cast<std::uint32_t>(threads) : cores, cores};
-}
-
 PingReport ping(Ranks& ranks) {
     PingReport report;
     report.library = ranks.library();
     const std::vector<std::string> hosts = ranks.gather(ranks.host());
-    const RankPlace own_place = place_of_this_process("");
-    const std::vector<std::uint32_t> threads = ranks.all_gather(own_place.threads),
-                                     cores = ranks.all_gather(own_place.cores);
-    for (std::size_t rank = 0; rank < hosts.size(); ++rank)
-        report.ranks.push_back({hosts[rank], threads[rank], cores[rank]});
     report.partner = 1;
     for (std::uint32_t rank = ranks.is_first() ? ranks.count() - 1 : 0; rank > 0; --rank)
         if (hosts[rank] != hosts[0]) report.partner = rank;
     ranks.broadcast(report.partner);
     for (const std::uint64_t bytes : kMessageBytes)
         report.messages.push_back(message_time(ranks, report.partner, bytes));
-    for (const std::uint64_t bytes : kGatherBytes) report.gathers.push_back(gather_time(ranks, bytes));
     if (ranks.is_first()) report.network = fitted_network(report.messages);
     return report;
 }
 
 Json PingReport::json() const {
-    Json places = Json::array();
-    for (const RankPlace& place : ranks)
-        places.push_back({{"host", place.host}, {"threads", place.threads}, {"cores", place.cores}});
-    return {{"kind", "raya ping"},
-            {"library", library},
-            {"ranks", places},
-            {"partner", partner},
-            {"messages", json_of(messages)},
-            {"gathers", json_of(gathers)},
-            {"alpha_s", network.alpha_s},
-            {"beta_s_per_byte", network.beta_s}};
+    Json times = Json::array();
+    for (const MessageTime& time : messages) times.push_back({{"bytes", time.bytes}, {"seconds", time.seconds}});
+    return {{"kind", "raya ping"}, {"library", library},         {"partner", partner},
+            {"messages", times},   {"alpha_s", network.alpha_s}, {"beta_s_per_byte", network.beta_s}};
 }
 
 }  // namespace raya

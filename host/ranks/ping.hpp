@@ -29,23 +29,11 @@ struct Network {
 /// much weight as long ones. Requires at least two different lengths and positive times.
 Network fitted_network(std::span<const MessageTime> times);
 
-/// Host of a rank, number of the rank's threads, and number of the host's cores.
-struct RankPlace {
-    std::string host;
-    std::uint32_t threads = 0;  // number of threads of the rank's OpenCL CPU device
-    std::uint32_t cores = 0;    // number of cores of the host
-};
-
-/// Returns the place of this process. `host`: name of the host, which is copied to the result.
-RankPlace place_of_this_process(const std::string& host);
-
 /// Result of ping().
 struct PingReport {
     std::string library;                // name and version of the MPI library
-    std::vector<RankPlace> ranks;       // [rank]
     std::uint32_t partner = 0;          // lowest rank that is not on rank 0's host; 1 if there is none
     std::vector<MessageTime> messages;  // times of messages between rank 0 and the partner
-    std::vector<MessageTime> gathers;   // times of all-gathers as in a torus superstep; `bytes`: sent by each rank
     Network network;                    // fitted to `messages`
 
     Json json() const;

@@ -2,24 +2,18 @@
 
 #include "host/base/encoding.hpp"
 #include "host/base/json.hpp"
-#include "host/model/budget.hpp"
-#include "host/report/profile_table.hpp"
 #include "host/report/scene_report.hpp"
+#include "host/report/table.hpp"
 
 namespace raya {
 namespace {
-
-Json codes_json(const std::optional<CodeConversion>& codes) {
-    if (!codes) return {};
-    return {{"exposure", codes->exposure}, {"tone", codes->tone}, {"gamma", codes->gamma}};
-}
 
 Json image_json(const RenderReport& r) {
     Json json = {{"width", r.image.width},
                  {"height", r.image.height},
                  {"file", r.image.file},
                  {"hash", r.image.hash},
-                 {"codes", codes_json(r.image.codes)}};
+                 {"exposure", r.image.exposure}};
     const auto& preview = r.image.preview;
     if (!preview.png.empty())
         json["preview"] = {{"width", preview.width}, {"height", preview.height}, {"png", base64(preview.png)}};
@@ -43,64 +37,6 @@ Json loads_json(const RenderReport& r) {
     if (r.requests) all["requests"] = *r.requests;
     for (const auto& [phase, load] : r.loads) all[phase] = load_json(load);
     return all;
-}
-
-Json antialias_json(const std::optional<Antialiasing>& a) {
-    if (!a) return {{"method", "none"}};
-    Json json = {{"method", a->method}, {"exchange", a->exchange}, {"band_pixels", a->band_pixels}};
-    if (a->points.empty()) return json;
-    json["threshold"] = a->threshold;
-    json["points"] = a->points;
-    json["recomputed_pixels"] = a->recomputed;
-    json["recomputed_share"] = a->recomputed_share;
-    return json;
-}
-
-Json communication_json(const Communication& c) {
-    return {{"broadcasts", c.broadcasts},
-            {"broadcast_words", c.broadcast_words},
-            {"rotations", c.rotations},
-            {"rotation_words", c.rotation_words},
-            {"transfers", c.transfers},
-            {"transfer_words", c.transfer_words},
-            {"pe_broadcasts", c.pe_broadcasts},
-            {"pe_broadcast_words", c.pe_broadcast_words},
-            {"gathers", c.gathers},
-            {"gather_words", c.gather_words}};
-}
-
-Json accel_json(const std::optional<AccelSummary>& a) {
-    if (!a) return {{"kind", "none"}};
-    if (a->kind == AccelKind::kBvh)
-        return {{"kind", "bvh"},     {"nodes", a->nodes}, {"leaves", a->leaves},
-                {"depth", a->depth}, {"words", a->words}, {"apart", a->separate}};
-    return {{"kind", "grid"},
-            {"divisions", a->divisions},
-            {"copies", a->copies},
-            {"words", a->words},
-            {"apart", a->separate}};
-}
-
-// Returns the numbers of operations of all events, according to the instruction budget of the modelled PEs.
-Json budget_json(const EventCounts& events) {
-    const Operations sum = operations_of(events);
-    return {{"multiply_accumulates", sum.multiply_accumulates},
-            {"divisions", sum.divisions},
-            {"roots", sum.roots},
-            {"moves", sum.moves},
-            {"branches", sum.branches}};
-}
-
-Json modelled_json(const ModelledTime& time) {
-    return {{"objects", time.objects_ms},
-            {"compute", time.compute_ms},
-            {"filter", time.filter_ms},
-            {"compare", time.compare_ms},
-            {"communication", time.communication_ms},
-            {"image", time.image_ms},
-            {"display", time.display_ms},
-            {"total", time.total_ms},
-            {"factor", time.factor}};
 }
 
 Json measured_json(const RenderReport& report) {
@@ -130,20 +66,6 @@ Json machine_json(const RenderReport& r) {
             {"pe_memory_used_bytes", r.machine.pe_memory_used_bytes}};
 }
 
-void add_ring(Json& json, const RenderReport& r) {
-    json["accel"] = accel_json(r.accel);
-    json["antialias"] = antialias_json(r.antialias);
-    json["communication"] = communication_json(r.communication);
-    json["budget"] = budget_json(r.events);
-    json["modelled_ms"] = modelled_json(r.modelled);
-}
-
-void add_torus(Json& json, const RenderReport& r) {
-    json["torus"] = torus_json(*r.torus);
-    json["budget"] = t805_budget_json(r.events, r.torus->packets);
-    json["modelled_ms"] = torus_time_json(r.torus->modelled);
-}
-
 }  // namespace
 
 std::uint64_t ray_count(const EventCounts& e) {
@@ -155,7 +77,6 @@ std::uint64_t test_count(const EventCounts& e) {
 }
 
 Json to_json(const RenderReport& r) {
-    const EventCounts& e = r.events;
     Json json;
     json["kind"] = kRenderReportKind;
     json["raya"] = r.raya;
@@ -169,21 +90,16 @@ Json to_json(const RenderReport& r) {
                       {"version", r.device.version}, {"driver", r.device.driver},
                       {"lanes", r.device.lanes},     {"group_size", r.device.group_size},
                       {"tuned", r.device.tuned},     {"build_options", r.device.build_options}};
-    json["rays"] = {{"primary", e[RAYA_PRIMARY]},     {"primary_hits", e[RAYA_PRIMARY_HITS]},
-                    {"reflected", e[RAYA_REFLECTED]}, {"refracted", e[RAYA_REFRACTED]},
-                    {"shadow", e[RAYA_SHADOW]},       {"shadow_hits", e[RAYA_SHADOW_HITS]}};
-    json["tests"] = {{"sphere", e[RAYA_SPHERE_TESTS]},
-                     {"plane", e[RAYA_PLANE_TESTS]},
-                     {"polygon", e[RAYA_POLYGON_TESTS]},
-                     {"cone", e[RAYA_CONE_TESTS]}};
-    json["walks"] = e[RAYA_WALKS];
-    json["steps"] = e[RAYA_STEPS];
-    json["shading"] = {{"hits", e[RAYA_SHADED]}, {"lit", e[RAYA_LIT]}, {"highlights", e[RAYA_HIGHLIGHTS]}};
+    for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
+        const std::string member = kEvents[event].member;
+        const std::size_t dot = member.find('.');
+        if (dot != std::string::npos)
+            json[member.substr(0, dot)][member.substr(dot + 1)] = r.events[event];
+        else if (!member.empty())
+            json[member] = r.events[event];
+    }
     json["load"] = loads_json(r);
-    if (r.torus)
-        add_torus(json, r);
-    else
-        add_ring(json, r);
+    json.update(r.of_machine.json);
     json["measured"] = measured_json(r);
     return json;
 }

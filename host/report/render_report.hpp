@@ -10,29 +10,18 @@
 #include "host/base/json.hpp"
 #include "host/cl/profile.hpp"
 #include "host/model/machine.hpp"
-#include "host/model/time_model.hpp"
+#include "host/model/t805.hpp"
 #include "host/report/roofline.hpp"
-#include "host/report/torus_report.hpp"
 #include "host/scene/nff.hpp"
 
 namespace raya {
 
-/// Anti-aliasing of an image on the ring machine.
-struct Antialiasing {
-    std::string method;             // "filter" or "supersample"
-    std::string exchange;           // transfer of neighbouring pixels: "ring", "bus", "bus-broadcast"
-    std::string points;             // points of supersampling: "axes" or "diagonals"
-    double threshold = 0;           // threshold of supersampling, 0..1
-    std::uint64_t recomputed = 0;   // number of pixels supersampled
-    double recomputed_share = 0;    // supersampled pixels / all pixels
-    std::uint32_t band_pixels = 0;  // number of pixels that a PE sends in one transfer
-};
-
-/// Conversion of linear colours to the values of an 8-bit image.
-struct CodeConversion {
-    double exposure = 0;          // stops: colours were multiplied by 2^exposure
-    std::string tone;             // "clip" or "reinhard"
-    std::optional<double> gamma;  // empty: the sRGB curve
+/// The part of a report that depends on the machine.
+struct MachineReport {
+    Json json = Json::object();  // members of the report
+    std::string title{};         // in the summary's first line; empty: PEs and mapping
+    std::string lines{};         // of the summary
+    std::string memory{};        // in the summary's line about memory
 };
 
 /// Time on the host for building one OpenCL program.
@@ -50,13 +39,13 @@ struct RenderReport {
     Json view;  // camera and lights after applying command-line options (view_json() in scene_report.hpp)
 
     struct {
-        int width = 0, height = 0;  // pixels
-        std::string file, hash;     // hash: of the linear pixel values
-        std::optional<CodeConversion> codes{};
+        int width = 0, height = 0;         // pixels
+        std::string file, hash;            // hash: of the linear pixel values
+        std::optional<double> exposure{};  // stops; empty: the file has linear colours
         struct {
             int width = 0, height = 0;  // pixels
             std::string png;            // contents of the PNG file; empty: no preview
-        } preview{};                    // shown in the report's page (host/image/preview.hpp)
+        } preview{};                    // shown in the report's page (host/image/plain_png.hpp)
     } image;
 
     struct {
@@ -67,7 +56,7 @@ struct RenderReport {
         std::uint32_t pes = 0;
         std::optional<std::uint32_t> offset;  // p; empty: the mapping has no slots
         std::uint32_t bounces = 0;
-        int length_exponent = 0;  // lengths of the scene are multiplied by 2^this (host/scene/length_scale.hpp)
+        int length_exponent = 0;            // lengths of the scene are multiplied by 2^this (host/scene/scene.hpp)
         std::uint64_t pe_memory_bytes = 0;  // 0: no limit
         std::uint64_t pe_memory_used_bytes = 0;
     } machine;
@@ -83,11 +72,7 @@ struct RenderReport {
     std::optional<std::uint64_t> requests;            // number of pixel requests; empty: scheduling was static
     Load load;                                        // loads summed over all phases
     std::vector<std::pair<std::string, Load>> loads;  // name and load of each phase
-    std::optional<Antialiasing> antialias;
-    std::optional<AccelSummary> accel;  // empty: no accelerator
-    Communication communication;
-    ModelledTime modelled;             // ring machine only
-    std::optional<TorusReport> torus;  // torus machine only; replaces antialias, accel, communication and modelled
+    MachineReport of_machine;
 
     std::vector<Json> ranks;  // device, times, messages and roofline of each MPI rank; empty for one rank
     std::vector<std::string> rank_rooflines;  // with --profile or --page: roofline of each rank, as text
@@ -112,6 +97,9 @@ std::uint64_t test_count(const EventCounts& events);
 /// Returns the report as JSON. docs/report.md documents the members. Later versions may add members, but do not remove
 /// or change them.
 Json to_json(const RenderReport& report);
+
+/// Returns a line of the summary about loads.
+std::string load_line(const std::string& label, const Load& load, const std::string& remark = {});
 
 /// Returns the summary for the terminal: rays, load imbalance u, efficiency, times.
 std::string summary_text(const RenderReport& report);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 #include "host/report/table.hpp"
 
 namespace raya {

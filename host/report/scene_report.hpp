@@ -10,8 +10,7 @@
 
 #include "host/base/json.hpp"
 #include "host/model/machine.hpp"
-#include "host/scene/length_scale.hpp"
-#include "host/scene/remark.hpp"
+#include "host/scene/nff.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "host/base/json.hpp"
+
 namespace raya {
 namespace {
 
@@ -38,6 +40,67 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows) {
         text += line + '\n';
     }
     return text;
+}
+
+namespace {
+
+std::string ms(double ns) { return fmt::format("{:.3f}", ns * 1e-6); }
+double number(std::uint64_t count) { return static_cast<double>(count); }
+
+double mean(std::uint64_t total, const LabelSummary& c) { return number(total) / static_cast<double>(c.launches); }
+
+std::string build_line(double build_s, const std::vector<ProgramBuild>& builds) {
+    std::string text = fmt::format("kernel build {:.3f} s, not among the commands", build_s);
+    for (std::size_t i = 0; i < builds.size(); ++i)
+        text += fmt::format("{} {} {:.3f} s", i == 0 ? ":" : ",", builds[i].name, builds[i].seconds);
+    return text +
+           (builds.empty() ? "\n" : "; the remainder is the time of first launches, in which some drivers compile\n");
+}
+
+}  // namespace
+
+std::string profile_table(double build_s, const std::vector<ProgramBuild>& builds,
+                          const std::vector<LabelSummary>& commands) {
+    double total_ns = 0;  // total time of all commands
+    for (const LabelSummary& c : commands) total_ns += number(c.total_ns);
+    std::vector<std::vector<std::string>> rows = {{"label", "kind", "launches", "total ms", "share %", "min ms",
+                                                   "mean ms", "max ms", "queue->submit ms", "submit->start ms", "MB",
+                                                   "GB/s"}};
+    for (const LabelSummary& c : commands) {
+        const double total = number(c.total_ns);
+        rows.push_back({c.label, c.kind, std::to_string(c.launches), ms(total),
+                        fmt::format("{:.1f}", total_ns > 0 ? 100 * total / total_ns : 0), ms(number(c.min_ns)),
+                        ms(c.mean_ns), ms(number(c.max_ns)), ms(mean(c.submit_ns, c)), ms(mean(c.start_ns, c)),
+                        c.bytes > 0 ? fmt::format("{:.3f}", 1e-6 * number(c.bytes)) : "-",
+                        c.bytes > 0 && c.total_ns > 0 ? fmt::format("{:.3f}", number(c.bytes) / total) : "-"});
+    }
+    return build_line(build_s, builds) + text_table(rows) +
+           "total, share, min, mean and max: times from start to end; queue->submit and submit->start: mean waiting "
+           "times before the start\n";
+}
+
+Json commands_json(const std::vector<LabelSummary>& commands, bool waits) {
+    Json json = Json::array();
+    for (const LabelSummary& c : commands) {
+        json.push_back({{"label", c.label},
+                        {"kind", c.kind},
+                        {"launches", c.launches},
+                        {"total_ns", c.total_ns},
+                        {"min_ns", c.min_ns},
+                        {"mean_ns", c.mean_ns},
+                        {"max_ns", c.max_ns}});
+        if (!waits) continue;
+        json.back()["queue_to_submit_mean_ns"] = mean(c.submit_ns, c);
+        json.back()["submit_to_start_mean_ns"] = mean(c.start_ns, c);
+        json.back()["bytes"] = c.bytes;
+    }
+    return json;
+}
+
+Json builds_json(const std::vector<ProgramBuild>& builds) {
+    Json json = Json::array();
+    for (const ProgramBuild& b : builds) json.push_back({{"program", b.name}, {"seconds", b.seconds}});
+    return json;
 }
 
 }  // namespace raya

@@ -4,7 +4,6 @@
 // names; times are microseconds (TraceFile writes three decimals); two slices of a track are nested or disjoint; both
 // ends of a flow are in slices.
 #pragma once
-
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "host/base/json.hpp"
+#include "host/cl/profile.hpp"
 
 namespace raya {
 
@@ -102,5 +102,26 @@ std::vector<TracedPe> traced_pes(const std::vector<std::uint64_t>& loads, std::s
 
 /// Returns a name such as "PE 17 (busiest)". `kind`: "PE" or "node".
 std::string traced_pe_name(const std::string& kind, const TracedPe& traced);
+
+// Adds measured times to a trace file: the host's spans as one process, the device's commands as another.
+
+/// MPI rank to which the trace's processes belong.
+struct TraceRank {
+    std::uint32_t number = 0;
+    bool named = false;  // true if there are several ranks: the names of the processes then begin with the rank
+};
+
+/// Adds one track with the host's spans. `begin`: host_clock_ns() at the start of the trace; no span starts earlier.
+void add_host_spans(TraceFile& trace, const std::vector<HostSpan>& spans, std::uint64_t begin,
+                    const TraceRank& rank = {});
+
+/// Adds a slice from start to end for each command. Its arguments are the command's four times on the device's clock
+/// and its bytes; a kernel has the launch's groups and arguments instead of bytes. The command queue is in order, so
+/// one track contains all slices, except commands whose reported times overlap: they are in further tracks. Times that
+/// are out of order or before `begin` are moved to the nearest valid time. The metadata contains the number of moved
+/// times and the offset between the clocks. For a device that does not time its commands, the function adds only a
+/// remark to the metadata.
+void add_device_commands(TraceFile& trace, const std::string& device, const Profile& profile, const ClockOffset& offset,
+                         std::uint64_t begin, const TraceRank& rank = {});
 
 }  // namespace raya

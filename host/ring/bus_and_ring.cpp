@@ -17,18 +17,14 @@ void Bus::send(const Buffer<float>& pe_memory, PeWords source, Buffer<float>& bl
                std::size_t words) {
     communication_.transfers += 1;
     communication_.transfer_words += source.rows * words;
-    const std::uint32_t sender = rank_of_pe(pes_, ranks_.count(), source.pe),
-                        receiver = rank_of_pe(pes_, ranks_.count(), target.pe);
-    if (sender == receiver) {
-        if (ranks_.rank() == sender) copy("bus.send", pe_memory, source, blocks, target, words, segment_.first);
-        return;
-    }
-    if (ranks_.rank() == sender)
-        ranks_.send(receiver, std::span<const float>(read("bus.send", pe_memory, source, words)));
-    if (ranks_.rank() == receiver) {
+    const bool sends = pes_.has(source.pe), receives = pes_.has(target.pe);
+    if (sends && receives) return copy("bus.send", pe_memory, source, blocks, target, words, pes_.first());
+    if (sends)
+        pes_.ranks().send(pes_.rank_of(target.pe), std::span<const float>(read("bus.send", pe_memory, source, words)));
+    if (receives) {
         std::vector<float> received(target.rows * words);
-        ranks_.receive(sender, std::span(received));
-        write("bus.send", blocks, target, received, segment_.first);
+        pes_.ranks().receive(pes_.rank_of(source.pe), std::span(received));
+        write("bus.send", blocks, target, received, pes_.first());
     }
 }
 
@@ -36,13 +32,12 @@ void Bus::broadcast_from(const Buffer<float>& pe_memory, PeWords source, Buffer<
                          std::size_t words) {
     communication_.pe_broadcasts += 1;
     communication_.pe_broadcast_words += source.rows * words;
-    if (!ranks_.has_several()) return copy("bus.broadcast_from", pe_memory, source, all_blocks, target, words, 0);
-    const std::uint32_t sender = rank_of_pe(pes_, ranks_.count(), source.pe);
+    if (pes_.count() == pes_.all()) return copy("bus.broadcast_from", pe_memory, source, all_blocks, target, words, 0);
     std::vector<float> sent;
-    if (ranks_.rank() == sender) sent = read("bus.broadcast_from", pe_memory, source, words);
-    std::vector<std::size_t> sizes(ranks_.count());
-    sizes[sender] = source.rows * words;
-    write("bus.broadcast_from", all_blocks, target, ranks_.all_gather(std::span<const float>(sent), sizes), 0);
+    if (pes_.has(source.pe)) sent = read("bus.broadcast_from", pe_memory, source, words);
+    std::vector<std::size_t> sizes(pes_.ranks().count());
+    sizes[pes_.rank_of(source.pe)] = source.rows * words;
+    write("bus.broadcast_from", all_blocks, target, pes_.ranks().all_gather(std::span<const float>(sent), sizes), 0);
 }
 
 void Bus::gather(const Buffer<float>& blocks, std::span<float> target, std::uint64_t words) {
@@ -52,10 +47,10 @@ void Bus::gather(const Buffer<float>& blocks, std::span<float> target, std::uint
 
 void Bus::copy(const char* label, const Buffer<float>& pe_memory, const PeWords& source, Buffer<float>& blocks,
                const PeWords& target, std::size_t words, std::size_t first_block_pe) {
-    session_.copy_blocks(
-        label, pe_memory, {source.offset, source.pitch, (source.pe - segment_.first) * source.rows * source.pitch},
-        blocks, {target.offset, target.pitch, (target.pe - first_block_pe) * target.rows * target.pitch}, words,
-        source.rows);
+    session_.copy_blocks(label, pe_memory,
+                         {source.offset, source.pitch, (source.pe - pes_.first()) * source.rows * source.pitch}, blocks,
+                         {target.offset, target.pitch, (target.pe - first_block_pe) * target.rows * target.pitch},
+                         words, source.rows);
 }
 
 std::vector<float> Bus::read(const char* label, const Buffer<float>& pe_memory, const PeWords& source,
@@ -63,7 +58,7 @@ std::vector<float> Bus::read(const char* label, const Buffer<float>& pe_memory, 
     std::vector<float> words_read(source.rows * words);
     for (std::size_t row = 0; row < source.rows; ++row)
         session_.read(label, pe_memory, std::span(words_read).subspan(row * words, words),
-                      ((source.pe - segment_.first) * source.rows + row) * source.pitch + source.offset);
+                      ((source.pe - pes_.first()) * source.rows + row) * source.pitch + source.offset);
     return words_read;
 }
 
@@ -75,69 +70,66 @@ void Bus::write(const char* label, Buffer<float>& blocks, const PeWords& target,
                        ((target.pe - first_block_pe) * target.rows + row) * target.pitch + target.offset);
 }
 
-Ring::Ring(Session& session, Communication& communication, std::uint32_t pes, std::size_t rows, std::size_t row_words,
-           Ranks& ranks)
+Ring::Ring(Session& session, Communication& communication, Distribution pes, std::size_t rows, std::size_t row_words)
     : session_(session),
       communication_(communication),
-      ranks_(ranks),
-      segment_(own_segment(pes, ranks)),
-      pes_(pes),
+      pes_(std::move(pes)),
       rows_(rows),
       row_words_(row_words),
       block_words_(rows * row_words),
-      front_(session.buffer<float>("ring blocks", segment_.count * block_words_)),
-      back_(session.buffer<float>("ring blocks in transit", segment_.count * block_words_)) {}
+      front_(session.buffer<float>("ring blocks", pes_.count() * block_words_)),
+      back_(session.buffer<float>("ring blocks in transit", pes_.count() * block_words_)) {}
 
 void Ring::load(const Buffer<float>& pe_memory, std::size_t memory_row_words, std::size_t begin) {
-    const std::size_t count = std::min(row_words_, memory_row_words - begin), rows = segment_.count * rows_;
+    const std::size_t count = std::min(row_words_, memory_row_words - begin), rows = pes_.count() * rows_;
     if (count == memory_row_words) return session_.copy("ring.load", pe_memory, 0, front_, 0, rows * count);
     session_.copy_blocks("ring.load", pe_memory, {begin, memory_row_words}, front_, {0, row_words_}, count, rows);
 }
 
 // The block for another rank is sent first, so that its transfer overlaps with the copies within this rank.
 void Ring::rotate(RingDirection direction) {
-    if (ranks_.has_several()) send_block(direction);
+    const bool crosses_ranks = pes_.count() < pes_.all();
+    if (crosses_ranks) send_block(direction);
     rotate_within_rank(direction);
-    if (ranks_.has_several()) receive_block(direction);
+    if (crosses_ranks) receive_block(direction);
     communication_.rotations += 1;
-    communication_.rotation_words += pes_ * block_words_;
+    communication_.rotation_words += pes_.all() * block_words_;
     std::swap(front_, back_);
 }
 
-// Moves the blocks within the segment. With a single rank, also moves the block at one end of the segment to the other
-// end.
+// Moves the blocks within the rank. With a single rank, also moves the block at one end to the other end.
 void Ring::rotate_within_rank(RingDirection direction) {
     const bool down = direction == RingDirection::kDown;
     const char* const label = down ? "ring.rotate_down" : "ring.rotate_up";
-    const std::size_t last = segment_.count - 1;
+    const std::size_t last = pes_.count() - 1;
     move(label, front_, down ? 1 : 0, back_, down ? 0 : 1, last);
-    if (!ranks_.has_several()) move(label, front_, down ? 0 : last, back_, down ? last : 0, 1);
+    if (pes_.count() == pes_.all()) move(label, front_, down ? 0 : last, back_, down ? last : 0, 1);
 }
 
 void Ring::send_block(RingDirection direction) {
     const bool down = direction == RingDirection::kDown;
-    const std::uint32_t ranks = ranks_.count(), rank_below = (ranks_.rank() + ranks - 1) % ranks,
-                        rank_above = (ranks_.rank() + 1) % ranks;
+    const std::uint32_t below = pes_.rank_of((pes_.first() + pes_.all() - 1) % pes_.all()),
+                        above = pes_.rank_of((pes_.first() + pes_.count()) % pes_.all());
     outgoing_.resize(block_words_);
     incoming_.resize(block_words_);
-    session_.read("ring.leave", front_, outgoing_, down ? 0 : (segment_.count - 1) * block_words_);
-    const OutgoingMessage out{down ? rank_below : rank_above, 0, std::as_bytes(std::span(outgoing_))};
-    const IncomingMessage in{down ? rank_above : rank_below, 0, std::as_writable_bytes(std::span(incoming_))};
-    ranks_.start({&out, 1}, {&in, 1});
+    session_.read("ring.leave", front_, outgoing_, down ? 0 : (pes_.count() - 1) * block_words_);
+    const OutgoingMessage out{down ? below : above, 0, std::as_bytes(std::span(outgoing_))};
+    const IncomingMessage in{down ? above : below, 0, std::as_writable_bytes(std::span(incoming_))};
+    pes_.ranks().start({&out, 1}, {&in, 1});
 }
 
 void Ring::receive_block(RingDirection direction) {
     session_.flush();
-    ranks_.wait();
+    pes_.ranks().wait();
     session_.write("ring.arrive", back_, incoming_,
-                   direction == RingDirection::kDown ? (segment_.count - 1) * block_words_ : 0);
+                   direction == RingDirection::kDown ? (pes_.count() - 1) * block_words_ : 0);
 }
 
 void Ring::take(const Buffer<float>& all_blocks, std::size_t distance) {
-    const std::size_t first = (segment_.first + distance) % pes_;
-    const std::size_t before_wrap = std::min<std::size_t>(segment_.count, pes_ - first);
+    const std::size_t first = (pes_.first() + distance) % pes_.all();
+    const std::size_t before_wrap = std::min<std::size_t>(pes_.count(), pes_.all() - first);
     move("ring.take", all_blocks, first, front_, 0, before_wrap);
-    move("ring.take", all_blocks, 0, front_, before_wrap, segment_.count - before_wrap);
+    move("ring.take", all_blocks, 0, front_, before_wrap, pes_.count() - before_wrap);
 }
 
 void Ring::move(const char* label, const Buffer<float>& source, std::size_t first_source, Buffer<float>& target,

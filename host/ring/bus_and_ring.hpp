@@ -1,38 +1,18 @@
-// Bus and ring of the machine (Kohata & Ito 1993, section on the array), and the distribution of PEs over ranks.
+// Bus and ring of the machine (Kohata & Ito 1993, section on the array).
 // Buffer transfers with labels model the transfers of bus and ring; raya counts them.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "host/array/render.hpp"
 #include "host/cl/commands.hpp"
-#include "host/model/time_model.hpp"
-#include "host/ranks/ranks.hpp"
-#include "host/ring/route.hpp"
+#include "host/model/t805.hpp"
+#include "host/ring/mapping.hpp"
 
 namespace raya {
-
-/// The consecutive PEs that a rank models. The sizes of segments differ by at most one PE.
-struct PeSegment {
-    std::uint32_t first = 0, count = 0;
-};
-
-/// Returns the segment of a rank. Requires pes >= ranks.
-inline PeSegment segment_of(std::uint32_t pes, std::uint32_t ranks, std::uint32_t rank) {
-    const auto begin = [&](std::uint64_t r) { return static_cast<std::uint32_t>(r * pes / ranks); };
-    return {begin(rank), begin(rank + 1) - begin(rank)};
-}
-
-/// Returns the rank that models a PE.
-inline std::uint32_t rank_of_pe(std::uint32_t pes, std::uint32_t ranks, std::uint64_t pe) {
-    return static_cast<std::uint32_t>(((pe + 1) * ranks - 1) / pes);
-}
-
-/// Returns the segment of this rank.
-inline PeSegment own_segment(std::uint32_t pes, const Ranks& ranks) {
-    return segment_of(pes, ranks.count(), ranks.rank());
-}
 
 /// Part of one PE's data in a buffer with the layout [PE][rows][pitch]: the words of each row from `offset` on.
 /// `pitch` and `offset` are in words.
@@ -41,15 +21,11 @@ struct PeWords {
 };
 
 /// The bus between host and PEs. PE numbers are those of the whole ring. All ranks must make the same calls. Each rank
-/// counts all transfers, but its buffers hold only the PEs of its own segment.
+/// counts all transfers, but its buffers hold only its own PEs.
 class Bus {
   public:
-    Bus(Session& session, Communication& communication, std::uint32_t pes, Ranks& ranks = Ranks::single())
-        : session_(session),
-          communication_(communication),
-          ranks_(ranks),
-          pes_(pes),
-          segment_(own_segment(pes, ranks)) {}
+    Bus(Session& session, Communication& communication, Distribution pes)
+        : session_(session), communication_(communication), pes_(std::move(pes)) {}
 
     /// Sends words from the host to all PEs, by writing them to the device buffer `target`. The PEs copy the words
     /// into their memories at the start of a kernel.
@@ -83,9 +59,7 @@ class Bus {
 
     Session& session_;
     Communication& communication_;
-    Ranks& ranks_;
-    std::uint32_t pes_;
-    PeSegment segment_;
+    Distribution pes_;
 };
 
 /// One block in the memory of each PE, and the rotations that move all blocks. The device needs a second buffer,
@@ -93,10 +67,9 @@ class Bus {
 /// word and needs only one block.
 class Ring {
   public:
-    /// Allocates the blocks of this rank's segment on the device, [PE][rows][row_words], with undefined contents.
-    /// `pes`: number of PEs of the whole ring. All sizes must be > 0. `communication` counts the rotations of all PEs.
-    Ring(Session& session, Communication& communication, std::uint32_t pes, std::size_t rows, std::size_t row_words,
-         Ranks& ranks = Ranks::single());
+    /// Allocates the blocks of this rank's PEs on the device, [PE][rows][row_words], with undefined contents. All sizes
+    /// must be > 0. `communication` counts the rotations of all PEs.
+    Ring(Session& session, Communication& communication, Distribution pes, std::size_t rows, std::size_t row_words);
 
     /// Fills each PE's block from its own memory `pe_memory`, [PE][rows][memory_row_words]: copies the words of each
     /// row from `begin` on, at most row_words of them. `communication` excludes it: no data leaves a PE.
@@ -109,7 +82,7 @@ class Ring {
     /// `all_blocks`: blocks that Bus::broadcast_from() has sent and counted, [PE of all ranks][rows][row_words].
     void take(const Buffer<float>& all_blocks, std::size_t distance);
 
-    /// Current blocks of the PEs of this rank's segment, [PE][rows][row_words].
+    /// Current blocks of this rank's PEs, [PE][rows][row_words].
     Buffer<float>& blocks() { return front_; }
 
   private:
@@ -122,9 +95,8 @@ class Ring {
 
     Session& session_;
     Communication& communication_;
-    Ranks& ranks_;
-    PeSegment segment_;
-    std::size_t pes_, rows_, row_words_, block_words_;
+    Distribution pes_;  // consecutive
+    std::size_t rows_, row_words_, block_words_;
     Buffer<float> front_, back_;              // current blocks; target of a rotation
     std::vector<float> outgoing_, incoming_;  // block to send to another rank; block received from another rank
 };

@@ -1,9 +1,12 @@
 // Mappings of an image onto the PEs of a ring; the formulas are in kernels/shared/mapping.h.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "host/model/mapping_rule.hpp"
+#include "kernels/shared/neighbours.h"
 
 namespace raya {
 
@@ -19,5 +22,52 @@ std::string mapping_text(const raya_mapping& mapping);
 
 /// Returns the maximum number of pixels that a PE owns.
 std::uint32_t largest_share(const raya_mapping& mapping);
+
+// Routes of neighbouring pixels over ring or bus: the PEs that own the pixels next to a PE's pixels, and the number of
+// moves that bring them.
+
+/// Direction of a rotation: every PE sends its block to the PE with the next lower (kDown) or next higher (kUp) number.
+enum class RingDirection { kDown, kUp };
+
+/// A sequence of rotations in one direction, starting with each PE's own block. After s downward rotations, PE i holds
+/// the block of PE (i + s) mod P; after s upward rotations, that of PE (i - s) mod P.
+struct Leg {
+    RingDirection direction = RingDirection::kDown;
+    // Ascending. After each of these numbers of rotations, the PEs use the blocks that they then hold. 0: their own.
+    std::vector<std::uint32_t> stops;
+
+    std::uint32_t rotations() const { return stops.empty() ? 0 : stops.back(); }
+};
+
+/// Returns all d in 0..P-1, ascending, for which at least one PE i owns a pixel whose neighbour on `side`
+/// (RAYA_LEFT..RAYA_BELOW) belongs to PE (i + d) mod P; empty if no pixel has such a neighbour. For the cyclic mapping
+/// with offset p and P = W: left P - 1, right 1, above p, below P - p (Kohata & Ito 1993).
+std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya_u32 side);
+
+/// Returns the legs that bring the blocks at all `distances` with the minimum number of rotations: at most one leg in
+/// each direction, the downward leg first.
+std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances);
+
+/// Methods of exchanging neighbouring pixels. The ring moves data of all PEs at the same time; the bus moves data of
+/// one PE at a time (Kohata & Ito 1993, section on the array).
+enum class ExchangeMethod {
+    kRing,      // rotations of all blocks; the paper's anti-aliasing
+    kBus,       // transfers to each PE from the PEs that own the neighbours of its pixels
+    kBroadcast  // broadcasts from one PE after another
+};
+
+/// Returns "ring", "bus" or "bus-broadcast".
+std::string exchange_name(ExchangeMethod method);
+
+/// [side]: number of rotations, transfers or broadcasts, which take place one after another.
+using MovesOfSides = std::array<std::uint64_t, RAYA_SIDES>;
+
+/// Returns the numbers of moves. The moves bring to every PE the whole shares that contain neighbours of its pixels.
+/// `any_order`: the sides may be processed in any order, so that one series of broadcasts serves all sides. The series
+/// is counted for the first side that needs a broadcast.
+MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool any_order);
+
+/// Returns the sum over all sides.
+std::uint64_t sum_of(const MovesOfSides& moves);
 
 }  // namespace raya

@@ -5,11 +5,10 @@
 #include <array>
 #include <functional>
 
-#include "host/base/huge_pages.hpp"
 #include "host/base/parallel.hpp"
 #include "host/error.hpp"
+#include "host/ring/ring_plan.hpp"
 #include "host/ring/ring_renderer.hpp"
-#include "host/ring/tracer.hpp"
 #include "kernels/shared/share_pixels.h"
 
 namespace raya {
@@ -17,16 +16,17 @@ namespace {
 
 constexpr std::uint32_t kInterleavedPes = 16;
 
-/// Calls visit(PE, pixel, image pixel) for the pixels in `range` of the share of every PE of the segment. The arguments
-/// are the index of the PE in the segment, the index of the pixel in the PE's device buffer, and the index of the pixel
-/// in the image. Neighbouring PEs often own neighbouring columns, so the runs of kInterleavedPes PEs are interleaved
-/// for memory locality.
+/// Calls visit(PE, pixel, image pixel) for the pixels in `range` of the share of each of `count` PEs from `first_pe`
+/// on. The arguments are the index of the PE, from 0 on, the index of the pixel in the PE's device buffer, and the
+/// index of the pixel in the image. Neighbouring PEs often own neighbouring columns, so the runs of kInterleavedPes PEs
+/// are interleaved for memory locality.
 template <class Visit>
-void for_each_pixel(const raya_mapping& m, const PeSegment& segment, PixelRange range, Visit&& visit) {
-    for (std::uint32_t first = 0; first < segment.count; first += kInterleavedPes) {
-        const std::uint32_t pes = std::min(kInterleavedPes, segment.count - first);
+void for_each_pixel(const raya_mapping& m, std::uint32_t first_pe, std::uint32_t count, PixelRange range,
+                    Visit&& visit) {
+    for (std::uint32_t first = 0; first < count; first += kInterleavedPes) {
+        const std::uint32_t pes = std::min(kInterleavedPes, count - first);
         std::array<raya_share, kInterleavedPes> shares{};
-        for (std::uint32_t i = 0; i < pes; ++i) shares[i] = raya_share_of(m, segment.first + first + i);
+        for (std::uint32_t i = 0; i < pes; ++i) shares[i] = raya_share_of(m, first_pe + first + i);
         std::uint32_t pixels = 0;
         for (std::uint32_t k = range.begin; k < range.end; k += pixels) {
             std::array<raya_pixel_run, kInterleavedPes> runs{};
@@ -59,10 +59,10 @@ Image black_image(const raya_mapping& m) {
 
 // Throws DeviceError unless one primary ray was counted for each pixel of this rank. Some devices silently end long
 // loops (Mesa's llvmpipe after 65,535 iterations of a work-item), so that pixels would be missing.
-void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const PeSegment& pes,
+void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const Distribution& pes,
                       const DeviceInfo& device) {
     std::uint64_t pixels = 0;
-    for (std::uint32_t i = 0; i < pes.count; ++i) pixels += raya_share_size(raya_share_of(m, pes.first + i));
+    for (const std::uint32_t pe : pes.own()) pixels += raya_share_size(raya_share_of(m, pe));
     const std::uint64_t traced = first_pass[RAYA_PRIMARY];
     if (traced == pixels) return;
     throw DeviceError(fmt::format(
@@ -82,20 +82,6 @@ void add_events(const std::vector<EventCounts>& rank_events, EventCounts& phase_
 
 }  // namespace
 
-// Sends this rank's `elements`, `per_pe` for each PE, to rank 0. Rank 0 calls take(segment, elements) for one rank
-// after another, including itself.
-template <class T, class Take>
-void RingRenderer::collect(std::vector<T>& elements, std::size_t per_pe, const Take& take) {
-    if (!ranks_.is_first()) return ranks_.send(0, std::span<const T>(elements));
-    take(pes_, elements);
-    for (std::uint32_t rank = 1; rank < ranks_.count(); ++rank) {
-        const PeSegment pes = segment_of(settings_.mapping.pes, ranks_.count(), rank);
-        elements.resize(per_pe * pes.count);
-        ranks_.receive(rank, std::span(elements));
-        take(pes, elements);
-    }
-}
-
 // Copies the pixels of the last gather into the image, and allocates the host memory for the next gather in advance, as
 // the first access to new memory is slow. trace() calls this function while the device traces.
 void RingRenderer::place_gathered_and_allocate(RingResult& result) {
@@ -105,7 +91,7 @@ void RingRenderer::place_gathered_and_allocate(RingResult& result) {
     resize_in_huge_pages(gathered_, pixels_.size());
 }
 
-void RingRenderer::gather(PixelRange range, RingResult& result) {
+void RingRenderer::gather(PixelRange range) {
     const SpanLog::Span span = session_.span("gather");
     const raya_mapping& m = settings_.mapping;
     std::uint64_t gathered_pixels = 0;
@@ -114,34 +100,27 @@ void RingRenderer::gather(PixelRange range, RingResult& result) {
         gathered_pixels += share > range.begin ? std::min(share, range.end) - range.begin : 0;
     }
     bus_.gather(pixels_, gathered_, 3 * gathered_pixels);
-    if (ranks_.has_several())
-        collect(gathered_, std::size_t{3} * window_,
-                [&](const PeSegment& pes, std::span<const float> pixels) { place_pixels(pes, range, pixels, result); });
-    else
-        gathered_range_ = range;
+    gathered_ = pes_.gather(std::move(gathered_), std::size_t{3} * window_);
+    gathered_range_ = range;
 }
 
 void RingRenderer::place_gathered_pixels(RingResult& result) {
-    place_pixels(pes_, gathered_range_, gathered_, result);
-    gathered_range_ = {};
-}
-
-void RingRenderer::place_pixels(const PeSegment& pes, PixelRange range, std::span<const float> pixels,
-                                RingResult& result) const {
+    const PixelRange range = std::exchange(gathered_range_, {});
+    if (range.end == 0 || !ranks_.is_first()) return;
     const std::size_t window = window_;
     float* const image = result.image.rgb.data();
     constexpr std::size_t kFewPixels = 1 << 16;
-    const std::uint32_t parts = (pes.count + kInterleavedPes - 1) / kInterleavedPes;
-    parallel_for(parts, pixels.size() > 3 * kFewPixels ? core_count() : 1, [&](std::size_t part) {
-        const auto skipped = static_cast<std::uint32_t>(part) * kInterleavedPes;
-        const PeSegment some{pes.first + skipped, std::min(kInterleavedPes, pes.count - skipped)};
-        const float* const colours = pixels.data() + 3 * skipped * window;
-        for_each_pixel(settings_.mapping, some, range, [=](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
-            const float* const red = colours + 3 * pe * window + pixel;
-            image[3 * image_pixel] = *red;
-            image[3 * image_pixel + 1] = red[window];
-            image[3 * image_pixel + 2] = red[2 * window];
-        });
+    const std::uint32_t pes = pes_.all(), parts = (pes + kInterleavedPes - 1) / kInterleavedPes;
+    parallel_for(parts, gathered_.size() > 3 * kFewPixels ? core_count() : 1, [&](std::size_t part) {
+        const auto first = static_cast<std::uint32_t>(part) * kInterleavedPes;
+        const float* const colours = gathered_.data() + 3 * first * window;
+        for_each_pixel(settings_.mapping, first, std::min(kInterleavedPes, pes - first), range,
+                       [=](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
+                           const float* const red = colours + 3 * pe * window + pixel;
+                           image[3 * image_pixel] = *red;
+                           image[3 * image_pixel + 1] = red[window];
+                           image[3 * image_pixel + 2] = red[2 * window];
+                       });
     });
 }
 
@@ -152,32 +131,32 @@ void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
     for (std::size_t i = 0; i < counters_.size(); ++i) {
         std::vector<std::uint64_t> cycles(counters_[i].cycles.size());
         session_.read("read cost", counters_[i].cycles, cycles);
-        collect(cycles, window_, [&](const PeSegment& pes, std::span<const std::uint64_t> rank_cycles) {
-            for_each_pixel(settings_.mapping, pes, range,
-                           [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
-                               const std::uint64_t cost = rank_cycles[pe * window_ + pixel];
-                               result.phases[i].recorded_cost->cycles[image_pixel] = cost;
-                               if (counters_.size() > 1) result.all.recorded_cost->cycles[image_pixel] += cost;
-                           });
-        });
+        cycles = pes_.gather(std::move(cycles), window_);
+        if (!ranks_.is_first()) continue;
+        for_each_pixel(settings_.mapping, 0, pes_.all(), range,
+                       [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
+                           const std::uint64_t cost = cycles[pe * window_ + pixel];
+                           result.phases[i].recorded_cost->cycles[image_pixel] = cost;
+                           if (result.sum_cost) result.sum_cost->cycles[image_pixel] += cost;
+                       });
     }
 }
 
 void RingRenderer::collect_marks(RingResult& result) {
     const SpanLog::Span span = session_.span("collect marks");
-    if (ranks_.is_first()) result.mask = black_image(settings_.mapping);
     std::vector<std::uint8_t> marks(contrast_->marks().size());
     session_.read("read marks", contrast_->marks(), marks);
     for (const std::uint8_t mark : marks) result.rank_recomputed += mark;
-    collect(marks, window_, [&](const PeSegment& pes, std::span<const std::uint8_t> rank_marks) {
-        const PixelRange share{0, 0, share_pixels_};
-        for_each_pixel(settings_.mapping, pes, share, [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
-            const std::uint8_t mark = rank_marks[pe * window_ + pixel];
-            result.recomputed += mark;
-            std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * image_pixel), 3,
-                        static_cast<float>(mark));
-        });
-    });
+    marks = pes_.gather(std::move(marks), window_);
+    if (!ranks_.is_first()) return;
+    result.mask = black_image(settings_.mapping);
+    for_each_pixel(settings_.mapping, 0, pes_.all(), {0, 0, share_pixels_},
+                   [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
+                       const std::uint8_t mark = marks[pe * window_ + pixel];
+                       result.recomputed += mark;
+                       std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * image_pixel), 3,
+                                   static_cast<float>(mark));
+                   });
 }
 
 void RingRenderer::collect_events(RingResult& result) {
@@ -185,7 +164,7 @@ void RingRenderer::collect_events(RingResult& result) {
     const auto cycles = cycles_of_events();
     std::vector<std::uint64_t> sum_loads(settings_.mapping.pes);
     for (std::size_t i = 0; i < counters_.size(); ++i) {
-        std::vector<std::uint64_t> counts(counters_[i].events.size()), loads(pes_.count), all_loads;
+        std::vector<std::uint64_t> counts(counters_[i].events.size()), loads(pes_.count());
         session_.read("read counters", counters_[i].events, counts);
         EventCounts events{};
         for (std::size_t n = 0; n < counts.size(); ++n) {
@@ -195,14 +174,12 @@ void RingRenderer::collect_events(RingResult& result) {
         }
         result.phases[i].rank_events = events;
         if (i == 0) check_all_traced(events, settings_.mapping, pes_, session_.device());
-        add_events(ranks_.all_gather(events), result.phases[i].events, result.all.events);
-        collect(loads, 1, [&](const PeSegment&, std::span<const std::uint64_t> rank_loads) {
-            all_loads.insert(all_loads.end(), rank_loads.begin(), rank_loads.end());
-        });
-        std::transform(all_loads.begin(), all_loads.end(), sum_loads.begin(), sum_loads.begin(), std::plus<>());
-        if (ranks_.is_first()) result.phases[i].load = load_of(std::move(all_loads));
+        add_events(ranks_.all_gather(events), result.phases[i].events, result.events);
+        loads = pes_.gather(std::move(loads), 1);
+        std::transform(loads.begin(), loads.end(), sum_loads.begin(), sum_loads.begin(), std::plus<>());
+        if (ranks_.is_first()) result.phases[i].load = load_of(std::move(loads));
     }
-    if (ranks_.is_first()) result.all.load = load_of(std::move(sum_loads));
+    if (ranks_.is_first()) result.load = load_of(std::move(sum_loads));
 }
 
 }  // namespace raya

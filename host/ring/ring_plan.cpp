@@ -1,16 +1,64 @@
 #include "host/ring/ring_plan.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "host/accel/bvh.hpp"
 #include "host/accel/partition.hpp"
 #include "host/base/clock.hpp"
-#include "host/cl/tuned.hpp"
+#include "host/cl/kernel_options.hpp"
+#include "host/model/machine.hpp"
+#include "host/model/number_format.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/scene/packer.hpp"
 #include "kernels/shared/bvh.h"
 
 namespace raya {
+namespace {
+
+constexpr std::uint64_t kPendingRayWords = 7;  // a pending ray on the stack: origin, direction, weight
+// State of a ray tree except the stack: ray, hit, normal, mirror direction, tint, sum, counters.
+constexpr std::uint64_t kRayTreeWords = 32;
+constexpr std::uint64_t kPixelBytes = 12;  // three colour components of 4 bytes
+
+[[noreturn]] void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes,
+                         const std::string& remedy) {
+    const char* memory_remedy = machine.name == "grande" ? "a larger --pe-memory, or none" : "--machine grande";
+    throw DoesNotFit(
+        fmt::format("{}: needs {} in every PE, a PE of {} has {}; use {}{}", what, required_size_text(bytes),
+                    machine.title, available_size_text(*machine.pe_memory_bytes), remedy, memory_remedy),
+        bytes, *machine.pe_memory_bytes);
+}
+
+}  // namespace
+
+PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
+    PeMemory memory{.job_words = demand.job_words, .tree_words = kRayTreeWords + kPendingRayWords * demand.bounces};
+    const bool antialiased = demand.antialias != AntialiasMethod::kNone;
+    // The number of pixels that is reduced until the PE's memory suffices.
+    std::uint32_t& fitted_pixels = antialiased ? memory.band_pixels : memory.block_pixels;
+    if (antialiased) memory.block_pixels = demand.share_pixels;
+    if (demand.antialias == AntialiasMethod::kFilter) memory.sum_pixels = demand.share_pixels;
+    if (demand.antialias == AntialiasMethod::kSupersample) memory.marks = demand.share_pixels;
+    const std::uint64_t fixed_bytes = memory.bytes();
+    fitted_pixels = demand.share_pixels;
+    if (!machine.pe_memory_bytes || memory.bytes() <= *machine.pe_memory_bytes) return memory;
+
+    const std::uint64_t limit_bytes = *machine.pe_memory_bytes;
+    if (fixed_bytes + kPixelBytes > limit_bytes && antialiased)
+        refuse(machine, fmt::format("{} with --antialias {}", demand.scene, antialias_name(demand.antialias)),
+               fixed_bytes + kPixelBytes, "more PEs, a smaller image or ");
+    if (fixed_bytes + kPixelBytes > limit_bytes) refuse(machine, demand.scene, fixed_bytes + kPixelBytes, "");
+    fitted_pixels = static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(demand.share_pixels, (limit_bytes - fixed_bytes) / kPixelBytes));
+    if (antialiased) {
+        const std::uint32_t bands = (demand.share_pixels + fitted_pixels - 1) / fitted_pixels;
+        fitted_pixels = (demand.share_pixels + bands - 1) / bands;
+    }
+    return memory;
+}
+
 namespace {
 
 // Returns true if PEs should copy the job's words into local memory in each launch. Returns false if the words do not
@@ -19,24 +67,10 @@ namespace {
 bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel) {
     constexpr std::size_t kMaxCopiedBytes = 64 * 1024;
     constexpr std::size_t kMaxCopiedWords = 4096;
-    if (device.max_loop_iterations > 0 && job.words().size() > kMaxCopiedWords) return false;
+    if (device.ends_loops_early && job.words().size() > kMaxCopiedWords) return false;
     // 32 bytes for padding to a multiple of 16 bytes, and for the work-group's own data.
     const std::size_t bytes = 4 * job.words().size() + 32;
     return bytes <= device.local_memory_bytes && (accel == AccelKind::kNone || bytes <= kMaxCopiedBytes);
-}
-
-constexpr std::size_t kTestsPerRay = 20;  // approximate number of object tests of a ray with an accelerator
-
-// Returns the maximum work of a launch, in tests and traversal steps of a lane's rays, so that the device does not
-// exceed its limit of loop iterations. A lane checks its work limit only after each ray and its shadow rays, so it may
-// exceed the limit by the work `overrun`. The constants convert work to iterations. Measured with the images of `raya
-// verify` on llvmpipe: 12 iterations per test were too few and 16 enough. A BVH step has one iteration for each of
-// sixteen boxes and a few more. kIterationsPerLaunch is for the loop that copies words.
-double max_launch_work(AccelKind accel, double overrun, const DeviceInfo& device) {
-    constexpr double kIterationsPerTest = 24, kIterationsPerStep = 96, kIterationsPerLaunch = 8192;
-    if (device.max_loop_iterations == 0) return 1u << 31;
-    const double iterations = accel == AccelKind::kNone ? kIterationsPerTest : kIterationsPerStep;
-    return std::max(1.0, (device.max_loop_iterations - kIterationsPerLaunch) / iterations - overrun);
 }
 
 PackedJob pack_in_span(const Session& session, const Scene& scene, const RingSettings& settings,
@@ -109,37 +143,26 @@ RingSettings checked_settings(RingSettings settings, const DeviceInfo& device) {
 }
 
 LaunchWork launch_work(const RingSettings& settings, const KernelOptions& options, std::size_t objects,
-                       std::size_t lights, std::uint32_t pes, const DeviceInfo& device) {
-    if (const std::uint32_t work = settings.work_per_launch) return {work, work, work};
-    constexpr double kTestsPerLaunch = 2e8;  // they take a quarter of a second on two CPU cores
-    constexpr double kRaysPerPixel = 6;      // typical number
-    const double tests_of_ray = static_cast<double>(
-        settings.accel.kind != AccelKind::kNone ? std::min(kTestsPerRay, objects) : std::max<std::size_t>(1, objects));
-    const double max = max_launch_work(settings.accel.kind, tests_of_ray * static_cast<double>(1 + lights), device);
+                       std::uint32_t pes) {
+    if (const std::uint32_t work = settings.work_per_launch) return {work, work, 0};
+    constexpr double kTestsPerLaunch = 2e8;   // they take a quarter of a second on two CPU cores
+    constexpr std::size_t kTestsPerRay = 20;  // approximate number of object tests of a ray with an accelerator
+    constexpr double kRaysPerPixel = 6, kMaxWork = 1u << 31;  // typical number of rays
+    const double least = kRaysPerPixel * static_cast<double>(settings.accel.kind != AccelKind::kNone
+                                                                 ? std::min(kTestsPerRay, objects)
+                                                                 : std::max<std::size_t>(1, objects));
     const double first = kTestsPerLaunch / (1.0 * pes * options.group_size * options.lanes);
-    const auto bounded = [&](double work) { return static_cast<std::uint32_t>(std::clamp(work, 1.0, max)); };
-    return {bounded(std::max(first, kRaysPerPixel * tests_of_ray)), bounded(kRaysPerPixel * tests_of_ray),
-            bounded(max)};
+    const auto bounded = [&](double work) { return static_cast<std::uint32_t>(std::clamp(work, 1.0, kMaxWork)); };
+    return {bounded(std::max(first, least)), bounded(least)};
 }
 
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
                              const DeviceInfo& device) {
-    return {.lanes = settings.kernels.lanes,
-            .group_size = settings.kernels.group_size,
-            .bounces = settings.bounces,
-            .format = settings.format,
-            .exact_divide = settings.kernels.exact_arithmetic,
-            .exact_fma = settings.kernels.exact_arithmetic,
-            .words_local = settings.kernels.local_words && words_local(job, device, settings.accel.kind),
-            .accel = static_cast<std::uint32_t>(settings.accel.kind),
-            .stack = (RAYA_BVH_WIDTH - 1) * accel.depth,
-            .filter = settings.kernels.filter && (job.header().objects.spheres > 0 || job.has_polygons()) &&
-                      filters_are_valid(settings.format, job.header().extent),
-            .polygons = job.has_polygons(),
-            .patches = job.has_patches(),
-            .cones = job.has_cones(),
-            .packets = settings.packets,
-            .tuning = settings.kernels.tuning};
+    KernelOptions options = kernel_options(settings, job, words_local(job, device, settings.accel.kind));
+    options.accel = static_cast<std::uint32_t>(settings.accel.kind);
+    options.stack = (RAYA_BVH_WIDTH - 1) * accel.depth;
+    options.packets = settings.packets;
+    return options;
 }
 
 PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
@@ -179,6 +202,88 @@ RingJob make_ring_job(const Session& session, const Scene& scene, const RingSett
     ranks.broadcast(figures);
     ranks.broadcast(words);
     return job;
+}
+
+namespace {
+
+std::size_t saved_tree_words(const KernelOptions& options, std::uint32_t pes) {
+    const std::size_t lanes = std::size_t{pes} * options.group_size * options.lanes;
+    return lanes * raya_saved_words(options.bounces);
+}
+
+}  // namespace
+
+Tracer::Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity, const LaunchWork& work)
+    : session_(kernels.session()),
+      options_(kernels.options()),
+      pes_(pes),
+      capacity_(capacity),
+      work_(work),
+      build_options_(kernels.program(TraceKernel::kFile).options()),
+      kernel_(kernels.get<TraceKernel>()),
+      progress_(session_.buffer<raya_trace_progress>("progress", pes.count())),
+      saved_trees_(session_.buffer<std::uint32_t>("saved trees", saved_tree_words(options_, pes.count()))) {}
+
+PassCounters Tracer::make_counters(const std::string& pass) const {
+    const std::size_t costs = options_.packets ? 1 : std::size_t{pes_.count()} * capacity_;  // else not counted
+    return {session_.buffer<std::uint64_t>("pixel cycles of " + pass, costs),
+            session_.buffer<std::uint64_t>("events of " + pass,
+                                           std::size_t{pes_.count()} * options_.group_size * RAYA_EVENTS)};
+}
+
+void Tracer::clear(PassCounters& counters) {
+    session_.write("clear counters", counters.events, std::vector<std::uint64_t>(counters.events.size()));
+    session_.fill("clear counters", counters.cycles, 0);
+}
+
+void Tracer::warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
+                     PassCounters& counters) {
+    reset_progress("warm-up", 0);
+    launch("warm-up", job, {}, RAYA_POINTS_OWN, 1, marks, pixels, counters);
+}
+
+void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
+                   const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
+                   const ProgressCallback& progress, const std::function<void()>& host_work) {
+    reset_progress(label, range.begin);
+    const auto launch_part = [&](std::uint32_t work, bool resumes) {
+        launch(label, job, range, points, work, marks, pixels, counters);
+        if (resumes || !host_work) return;
+        session_.flush();
+        host_work();
+    };
+    const auto end = [&] {
+        std::vector<raya_trace_progress> pes(pes_.count());
+        session_.read(label, progress_, pes);
+        LaunchEnd ended;
+        std::uint64_t traced = 0;
+        for (const raya_trace_progress& pe : pes) {
+            ended.done &= pe.left == 0;
+            ended.truncated |= pe.cut > 0;
+            traced += pe.next - range.begin;
+        }
+        if (progress && !ended.truncated)
+            progress(ended.done ? 1 : static_cast<double>(traced) / (1.0 * pes_.count() * (range.end - range.begin)));
+        return ended;
+    };
+    launches_.run(session_, label, progress ? work_.with_progress : work_.first, work_.target_s / (progress ? 2 : 1),
+                  launch_part, end, progress_, saved_trees_, pixels, counters.cycles, counters.events);
+}
+
+// Writes the buffer instead of filling it, because Oclgrind reports filled buffers as uninitialised.
+void Tracer::reset_progress(const std::string& label, std::uint32_t pixel) {
+    session_.write(label, progress_, std::vector<raya_trace_progress>(pes_.count(), {pixel, 0, 0}));
+}
+
+void Tracer::launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
+                    std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
+                    PassCounters& counters) {
+    session_.launch(label, kernel_, pes_.count(), options_.group_size, job, Uint<"word_count">{cl_uint(job.size())},
+                    Uint<"window_start">{range.window_start}, Uint<"capacity">{capacity_}, Uint<"end">{range.end},
+                    Uint<"points">{points}, Uint<"first_pe">{pes_.first()}, Uint<"work">{work}, marks,
+                    LocalMemory<raya_trace_progress>{1},
+                    LocalMemory<std::uint32_t>{options_.words_local ? (job.size() + 3) / 4 * 4 : 4}, pixels,
+                    counters.cycles, counters.events, progress_, saved_trees_);
 }
 
 }  // namespace raya

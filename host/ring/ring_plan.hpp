@@ -3,43 +3,71 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "host/array/render.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/commands.hpp"
-#include "host/cl/device_info.hpp"
+#include "host/cl/device.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/model/machine.hpp"
 #include "host/ranks/ranks.hpp"
-#include "host/ring/antialias.hpp"
-#include "host/ring/pe_memory.hpp"
-#include "host/ring/tracer.hpp"
-#include "host/scene/length_scale.hpp"
+#include "host/ring/bus_and_ring.hpp"
+#include "host/ring/neighbour_exchange.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
 #include "kernels/shared/mapping.h"
+#include "kernels/shared/trace_progress.h"
 
 namespace raya {
 
+// Plan of a PE's memory: the contents, and the number of the PE's pixels that fit at a time. A PE of the ring machine
+// can access only its own memory.
+
+/// Contents of the memory of each PE. A word has 4 bytes.
+struct PeMemory {
+    std::uint64_t job_words = 0;   // number of words of the job, which are broadcast to all PEs
+    std::uint64_t tree_words = 0;  // number of words of one ray tree's state: the modelled PE traces one ray at a time
+    std::uint32_t block_pixels = 0;  // number of traced pixels that are not gathered yet, 3 words each
+    std::uint32_t sum_pixels = 0;    // number of filter sums, 3 words each
+    std::uint32_t band_pixels = 0;   // number of pixels received from another PE, 3 words each
+    std::uint32_t marks = 0;         // number of marks for supersampling, one byte each
+
+    std::uint64_t bytes() const {
+        return 4 * (job_words + tree_words + 3ull * (block_pixels + sum_pixels + band_pixels)) + marks;
+    }
+};
+
+/// Properties of a render that determine a PE's memory.
+struct PeDemand {
+    std::string scene;               // name of the scene, for messages
+    std::uint64_t job_words = 0;     // see PeMemory
+    std::uint32_t bounces = 0;       // maximum number of reflections and refractions after the primary ray
+    std::uint32_t share_pixels = 0;  // maximum number of pixels that a PE owns
+    AntialiasMethod antialias = AntialiasMethod::kNone;
+};
+
+/// Plans the memory of each PE. Without anti-aliasing, block_pixels is the whole share if the share fits. Otherwise it
+/// is the number of pixels that fit, and the image is gathered block by block. (The paper's run on one PE, 256 x 256
+/// pixels with 32 KB, requires this.) With anti-aliasing, each PE holds its whole share with sums or marks, and
+/// band_pixels is the number of pixels that fit, reduced so that all bands have about the same length. Throws
+/// DoesNotFit, with the required and available bytes and a remedy, if not even one pixel of the block or band fits.
+PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand);
+
 /// Settings of a render on a ring machine.
-struct RingSettings {
-    Machine machine;
+struct RingSettings : RenderSettings {
     std::optional<DynamicPlan> dynamic;  // dynamic distribution, whose loads are simulated from the pixels' costs
     raya_mapping mapping{};              // image size, number of PEs, and owner of each pixel
-    std::uint32_t bounces = 8;
-    NumberFormat format;
-    Sampling sampling = Sampling::kCentres;
     Antialias antialias;
     // Rays of neighbouring pixels descend through the BVH together, which takes less time. Only rays and their hits are
     // counted then, because the numbers of steps and tests would depend on the neighbours. See use_packets().
     bool packets = false;
     bool record_costs = false;  // record each pixel's cost, which takes 8 bytes of host memory; implied by `dynamic`
     Accel accel;
-    KernelChoice kernels;
     // Maximum number of pixels of all PEs that the device holds at a time, 20 bytes each. With anti-aliasing the device
     // holds all pixels.
     std::uint64_t device_pixels = 1 << 22;
-    // Maximum number of tests and traversal steps of a lane's rays in one launch; 0: chosen so that a launch takes
-    // about one second.
-    std::uint32_t work_per_launch = 0;
 };
 
 /// Sets settings.packets if that is possible: in fp32 with a BVH, if the mapping is tiles, so that the lanes hold
@@ -56,11 +84,17 @@ PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::
 /// kernels cannot be built with these settings. Call it before packing the scene, so that raya fails early.
 RingSettings checked_settings(RingSettings settings, const DeviceInfo& device);
 
-/// Returns the work limits of a launch. A launch should take at most about a second, so that progress is shown, Ctrl-C
-/// takes effect and no GPU watchdog ends the launch. It must not exceed the loop iterations that the device allows.
-/// `objects`, `lights`: numbers of objects and lights of the scene; `pes`: number of PEs on this device.
+/// Work of one lane in the first launch, in tests and traversal steps of the lane's rays: `first`, or `with_progress`
+/// if progress is shown. Later launches take about `target_s` seconds, or half of them if progress is shown.
+struct LaunchWork {
+    std::uint32_t first = 0, with_progress = 0;
+    double target_s = 1;
+};
+
+/// Returns the work of the first launch: about a quarter of a second on two CPU cores, and at least a pixel of each
+/// lane. `objects`: number of objects of the scene; `pes`: number of PEs on this device.
 LaunchWork launch_work(const RingSettings& settings, const KernelOptions& options, std::size_t objects,
-                       std::size_t lights, std::uint32_t pes, const DeviceInfo& device);
+                       std::uint32_t pes);
 
 /// Returns the kernel options for the packed job. `accel`: summary of the accelerator that settings.accel selects.
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
@@ -85,5 +119,71 @@ AccelSummary append_accel(PackedJob& job, const RingSettings& settings);
 /// call of `packed` the scene's objects are not used. Other ranks do not use `scene`.
 RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks,
                       const std::function<void()>& packed = {});
+
+// The trace kernel: its build for a job and a device, and its launches, each of which does a bounded amount of work.
+
+/// Counters of one pass over the image (tracing or supersampling).
+struct PassCounters {
+    Buffer<std::uint64_t> cycles;  // [PE][capacity]: modelled cycles of each pixel
+    Buffer<std::uint64_t> events;  // [PE][L][RAYA_EVENTS]; L: work-items of a PE
+};
+
+/// Pixels begin .. end - 1 of each PE's share. `window_start`: index in the share of the first pixel that is in
+/// the device buffers.
+struct PixelRange {
+    std::uint32_t window_start = 0, begin = 0, end = 0;
+};
+
+using TraceKernel =
+    DescribedKernel<"ring/trace.cl", "trace", const Buffer<std::uint32_t>&, Uint<"word_count">, Uint<"window_start">,
+                    Uint<"capacity">, Uint<"end">, Uint<"points">, Uint<"first_pe">, Uint<"work">,
+                    const Buffer<std::uint8_t>&, LocalMemory<raya_trace_progress>, LocalMemory<std::uint32_t>,
+                    Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&, Buffer<raya_trace_progress>&,
+                    Buffer<std::uint32_t>&>;
+
+class Tracer {
+  public:
+    /// `pes`: PEs on this device; `capacity`: number of pixels of each PE in the device buffers.
+    Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity, const LaunchWork& work);
+
+    /// Allocates the counters of a pass.
+    PassCounters make_counters(const std::string& pass) const;
+    void clear(PassCounters& counters);
+
+    /// Launches the kernel once without pixels, so that its compilation, which PoCL does at the first launch, counts as
+    /// build time.
+    void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
+                 PassCounters& counters);
+
+    /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; supersampling points only of the marked
+    /// pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of work,
+    /// so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Calls `host_work` on the
+    /// host while the first launch runs. Throws DeviceError if the device ends loops early even in the smallest launch.
+    void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
+               const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
+               const ProgressCallback& progress = {}, const std::function<void()>& host_work = {});
+
+    const KernelOptions& options() const { return options_; }
+    const std::string& build_options() const { return build_options_; }
+
+  private:
+    /// Launches the kernel for those pixels of the range that have not been traced.
+    void launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
+                std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters);
+    /// Sets the next pixel of every PE to index `pixel` of its share.
+    void reset_progress(const std::string& label, std::uint32_t pixel);
+
+    Session& session_;
+    KernelOptions options_;
+    Distribution pes_;
+    std::uint32_t capacity_;
+    LaunchWork work_;
+    std::string build_options_;
+    TraceKernel kernel_;
+    Buffer<raya_trace_progress> progress_;  // [PE]
+    Buffer<std::uint32_t> saved_trees_;     // unfinished ray trees, which the next launch continues
+    LaunchLoop<raya_trace_progress, std::uint32_t, float, std::uint64_t, std::uint64_t> launches_{
+        "fewer tests of a ray (--accel bvh or grid), other --lanes or --group"};
+};
 
 }  // namespace raya

@@ -13,14 +13,6 @@
 namespace raya {
 namespace {
 
-PeSegment checked_segment(const raya_mapping& m, const Ranks& ranks) {
-    if (m.pes < ranks.count())
-        throw UserError(fmt::format(
-            "{} ranks for {} PEs: a rank needs at least one PE; start {} ranks or fewer, or use more PEs (--pes)",
-            ranks.count(), m.pes, m.pes));
-    return own_segment(m.pes, ranks);
-}
-
 // Returns the number of pixels of each PE that the device holds at a time. For large images the device holds only a
 // part (a window) of each PE's block, to save memory on device and host. Anti-aliasing needs all pixels on the device.
 // The number does not depend on the number of ranks, so that a checkpoint can be resumed with other ranks.
@@ -37,14 +29,14 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
     : session_(session),
       ranks_(ranks),
       settings_(checked_settings(settings, session.device())),
-      pes_(checked_segment(settings_.mapping, ranks)),
+      pes_(Distribution(settings_.mapping.pes, ranks)),
       job_(make_ring_job(session, scene, settings_, ranks, packed)),
       share_pixels_(largest_share(settings_.mapping)),
       memory_(plan_pe_memory(settings_.machine, pe_demand(settings_, scene.name, job_.job.words().size()))),
       window_(device_window(memory_, settings_)),
-      bus_(session, communication_, settings_.mapping.pes, ranks),
+      bus_(session, communication_, pes_),
       broadcast_(session.buffer_of("broadcast words", std::span(job_.job.words()))),
-      pixels_(session.buffer<float>("pixel blocks", 3ull * pes_.count * window_)),
+      pixels_(session.buffer<float>("pixel blocks", 3ull * pes_.count() * window_)),
       no_marks_(session.buffer<std::uint8_t>("no marks", 1)) {
     ranks_.one_rank_per_host_first([this] { build(); });
 }
@@ -55,9 +47,8 @@ void RingRenderer::build() {
     const Clock::time_point start = Clock::now();
     const KernelOptions options = kernel_options(settings_, job_.job, job_.accel, session_.device());
     Kernels kernels(session_, options, settings_.kernels.sources);
-    tracer_ = std::make_unique<Tracer>(
-        kernels, pes_, window_,
-        launch_work(settings_, options, job_.objects, job_.job.header().lights, pes_.count, session_.device()));
+    tracer_ =
+        std::make_unique<Tracer>(kernels, pes_, window_, launch_work(settings_, options, job_.objects, pes_.count()));
     counters_.push_back(tracer_->make_counters(kTracePass));
     bus_.broadcast(broadcast_, job_.job.words());
     tracer_->clear(counters_.front());
@@ -76,7 +67,7 @@ void RingRenderer::build_exchange(KernelOptions options) {
                               .capacity = memory_.block_pixels,
                               .group_size = options.group_size};
     exchange_ = std::make_unique<NeighbourExchange>(session_, communication_, settings_.mapping, memory_.block_pixels,
-                                                    memory_.band_pixels, settings_.antialias.exchange, ranks_);
+                                                    memory_.band_pixels, settings_.antialias.exchange, pes_);
     if (settings_.antialias.method == AntialiasMethod::kFilter) {
         filter_ = std::make_unique<RingFilter>(kernels, setup);
         return;
@@ -90,21 +81,20 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const Checkpoi
     session_.clear_profile();
     communication_ = {};
     const SpanLog::Span rendering = session_.span("render");
-    started_ = Clock::now();
-    checkpointing_ = checkpointing;
+    checkpoints_.emplace(checkpointing, session_, pes_, checkpointing ? state_settings() : StateSettings{});
     const RankTraffic traffic_before = ranks_.traffic();
     RingResult result;
     prepare(result);
     bus_.broadcast(broadcast_, job_.job.words());
-    resume(result);
+    if (checkpointing) resume(result);
     for (std::uint32_t block_begin = 0; block_begin < share_pixels_; block_begin += memory_.block_pixels)
         render_block(block_begin, result, progress);
     place_gathered_pixels(result);
     if (contrast_) collect_marks(result);
     collect_events(result);
     if (settings_.dynamic && ranks_.is_first()) simulate_schedule(result);
-    result.render_s = earlier_s_ + seconds_since(started_);
-    result.earlier_s = earlier_s_;
+    result.render_s = checkpoints_->seconds();
+    result.earlier_s = checkpoints_->earlier_s();
     result.traffic = ranks_.traffic() - traffic_before;
     gathered_ = {};
     describe(result);
@@ -114,17 +104,17 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const Checkpoi
 // Renders one block (the pixels of a share that fit the PE's memory at a time), one device window after another.
 void RingRenderer::render_block(std::uint32_t block_begin, RingResult& result, const ProgressCallback& progress) {
     const std::uint32_t end = std::min(share_pixels_, block_begin + memory_.block_pixels);
-    if (resumed_ && resumed_->window >= end) return;
+    if (resumed_ && position_.window >= end) return;
     if (!resumed_) bus_.begin_gather();
     for (std::uint32_t window_begin = block_begin; window_begin < end; window_begin += window_) {
-        if (resumed_ && resumed_->window > window_begin) continue;
+        if (resumed_ && position_.window > window_begin) continue;
         const PixelRange range{window_begin, window_begin, std::min(end, window_begin + window_)};
         trace(range, result, progress);
         if (filter_) filter_->apply(pixels_, *exchange_);
         if (contrast_) supersample(result, progress);
-        gather(range, result);
+        gather(range);
         collect_costs(range, result);
-        resumed_.reset();
+        resumed_ = false;
     }
 }
 
@@ -134,7 +124,7 @@ void RingRenderer::prepare(RingResult& result) {
     std::optional<CostImage> empty_costs;
     if (records_costs() && ranks_.is_first())
         empty_costs = CostImage{settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
-    if (counters_.size() > 1) result.all.recorded_cost = empty_costs;
+    if (counters_.size() > 1) result.sum_cost = empty_costs;
     for (PassCounters& counters : counters_) {
         Phase phase;
         phase.name = result.phases.empty() ? kTracePass : kSupersamplePass;
@@ -161,7 +151,7 @@ void RingRenderer::trace(PixelRange range, RingResult& result, const ProgressCal
 
 void RingRenderer::supersample(RingResult& result, const ProgressCallback& progress) {
     const SpanLog::Span span = session_.span(kSupersamplePass);
-    if (!resumed_ || resumed_->pass == 0) contrast_->apply(pixels_, *exchange_);
+    if (!resumed_ || position_.pass == 0) contrast_->apply(pixels_, *exchange_);
     PixelRange range{0, 0, share_pixels_};
     const auto report = [&](double done) {
         ranks_.poll_failures();
@@ -180,18 +170,17 @@ void RingRenderer::simulate_schedule(RingResult& result) {
     const SpanLog::Span span = session_.span("simulate schedule");
     const Schedule schedule = dynamic_schedule(result.cost(), settings_.mapping, *settings_.dynamic);
     result.requests = schedule.requests;
-    result.all.load = result.phases.front().load = schedule.load;
+    result.load = result.phases.front().load = schedule.load;
 }
 
 void RingRenderer::describe(RingResult& result) {
-    result.all.name = "all";
     result.scale = job_.scale;
     result.communication = communication_;
     result.pe_memory = memory_;
     if (settings_.accel.kind != AccelKind::kNone) result.accel = job_.accel;
     result.words_local = tracer_->options().words_local;
-    result.first_pe = pes_.first;
-    result.parts_of_rank = pes_.count;
+    result.first_pe = pes_.first();
+    result.parts_of_rank = pes_.count();
     result.lanes = settings_.kernels.lanes;
     result.group_size = settings_.kernels.group_size;
     result.build_options = tracer_->build_options();

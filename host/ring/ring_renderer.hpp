@@ -5,18 +5,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "host/base/clock.hpp"
+#include "host/array/checkpoints.hpp"
 #include "host/ring/bus_and_ring.hpp"
 #include "host/ring/neighbour_exchange.hpp"
 #include "host/ring/ring_plan.hpp"
 #include "host/ring/ring_result.hpp"
-#include "host/ring/ring_state.hpp"
-#include "host/ring/smoothing.hpp"
-#include "host/ring/tracer.hpp"
-#include "host/scene/length_scale.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
 
@@ -52,23 +47,11 @@ class RingRenderer {
     void trace_in_bands(std::uint32_t pass, PixelRange range, RingResult& result,
                         const std::function<void(PixelRange)>& trace);
     StateSettings state_settings() const;
-    RingState host_state(const RingResult& result) const;
-    RingState checkpoint_state(const RingResult& result);
+    void visit_state(RenderState& state, RingResult& result);
     void resume(RingResult& result);
-    void restore(RingState& state, RingResult& result);
-    template <class T>
-    void gather_pes(std::vector<T>& elements);
-    template <class T>
-    void scatter_pes(std::vector<T>& elements, std::size_t per_pe);
-    template <class T>
-    std::vector<T> read_pes(const Buffer<T>& buffer);
-    void save_checkpoint(std::uint32_t pass, PixelRange range, RingResult& result);
     void place_gathered_and_allocate(RingResult& result);
-    void gather(PixelRange range, RingResult& result);
+    void gather(PixelRange range);
     void place_gathered_pixels(RingResult& result);
-    void place_pixels(const PeSegment& pes, PixelRange range, std::span<const float> pixels, RingResult& result) const;
-    template <class T, class Take>
-    void collect(std::vector<T>& elements, std::size_t per_pe, const Take& take);
     void collect_costs(PixelRange range, RingResult& result);
     void collect_marks(RingResult& result);
     void collect_events(RingResult& result);
@@ -78,7 +61,7 @@ class RingRenderer {
     Session& session_;
     Ranks& ranks_;
     RingSettings settings_;  // with lanes and group size chosen
-    PeSegment pes_;          // PEs of this rank
+    Distribution pes_;
     RingJob job_;
     std::uint32_t share_pixels_ = 0;  // maximum number of pixels that a PE owns
     PeMemory memory_;
@@ -89,7 +72,7 @@ class RingRenderer {
     double build_s_ = 0;
     Buffer<std::uint32_t> broadcast_;  // words of the job
     Buffer<float> pixels_;             // [PE][3][window]
-    std::vector<float> gathered_;      // pixels of gathered_range_: read, but not yet copied into the image
+    std::vector<float> gathered_;      // pixels of gathered_range_ of all PEs, not yet copied into the image
     PixelRange gathered_range_;
     Buffer<std::uint8_t> no_marks_;  // dummy argument of the first pass, which has no marks
     std::unique_ptr<Tracer> tracer_;
@@ -99,11 +82,14 @@ class RingRenderer {
     std::unique_ptr<RingContrast> contrast_;
 
     // State of a render with checkpoints.
-    const Checkpointing* checkpointing_ = nullptr;
-    std::optional<RingState> resumed_;  // the loaded checkpoint; empty once its window has been traced and gathered
-    std::uint32_t band_ = 0;            // length of the next band, in pixels of each PE's share
-    double earlier_s_ = 0;              // seconds of earlier runs
-    Clock::time_point started_;
+    std::optional<Checkpoints> checkpoints_;
+    struct {
+        std::uint32_t pass = 0;    // current pass: 0 trace, 1 supersample
+        std::uint32_t window = 0;  // index, in each PE's share, of the first pixel that is on the device
+        std::uint32_t next = 0;    // index, in each PE's share, of the first pixel that this pass has not traced
+    } position_;
+    bool resumed_ = false;    // position_ is that of a checkpoint, whose window has not been gathered yet
+    std::uint32_t band_ = 0;  // length of the next band, in pixels of each PE's share
 };
 
 }  // namespace raya

@@ -6,17 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "host/cl/profile.hpp"
-#include "host/image/image.hpp"
-#include "host/model/machine.hpp"
-#include "host/model/time_model.hpp"
-#include "host/ranks/ranks.hpp"
+#include "host/array/render.hpp"
+#include "host/model/t805.hpp"
 #include "host/report/roofline.hpp"
 #include "host/report/trace_file.hpp"
-#include "host/ring/pe_memory.hpp"
 #include "host/ring/ring_plan.hpp"
 #include "host/ring/schedule.hpp"
-#include "host/scene/length_scale.hpp"
 
 namespace raya {
 
@@ -34,32 +29,22 @@ struct Phase {
     const CostImage& cost() const;
 };
 
-struct RingResult {
-    Image image;
-    std::vector<Phase> phases;  // the first pass, and supersampling if selected
-    Phase all;                  // sums over the phases; without recorded_cost if there is only one phase (see cost())
-    Image mask;                 // 1 for supersampled pixels, else 0; empty without supersampling
+struct RingResult : RenderResult {
+    std::vector<Phase> phases;              // the first pass, and supersampling if selected
+    std::optional<CostImage> sum_cost;      // sums of Phase::recorded_cost, if there are several phases (see cost())
+    Image mask;                             // 1 for supersampled pixels, else 0; empty without supersampling
     std::uint64_t recomputed = 0;           // number of supersampled pixels
     std::uint64_t rank_recomputed = 0;      // number of supersampled pixels of this rank's PEs
     std::optional<std::uint64_t> requests;  // number of requests in a simulated dynamic distribution
     Communication communication;
-    LengthScale scale;
     PeMemory pe_memory;
     std::optional<AccelSummary> accel;  // summary of the grid or BVH
     bool words_local = true;            // in each launch the PEs copied the job's words into local memory
     std::uint32_t first_pe = 0;         // of this rank
-    std::uint32_t parts_of_rank = 0;    // number of PEs of this rank
-    RankTraffic traffic;                // traffic of this rank during the render
-    std::uint32_t lanes = 0, group_size = 0;
-    std::string build_options;
-    std::string tuned;  // origin of lanes, group size and related settings (host/cl/tuned.hpp)
-    // Measured by the host's clock, seconds: build of the grid or BVH; kernel build; rendering.
-    double accel_s = 0, build_s = 0, render_s = 0;
-    double earlier_s = 0;  // part of render_s that earlier runs took, before a resume
-    std::vector<LabelSummary> commands;
+    double accel_s = 0;                 // measured build time of the grid or BVH, seconds
 
     /// Modelled cycles of each pixel in all phases. Throws std::logic_error if they were not recorded.
-    const CostImage& cost() const { return (phases.size() == 1 ? phases.front() : all).cost(); }
+    const CostImage& cost() const { return sum_cost ? *sum_cost : phases.front().cost(); }
 };
 
 /// Returns the device time, in seconds, of all commands that trace rays; render_s if the device does not time its

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/model/mapping_rule.hpp"
-#include "host/model/time_model.hpp"
+#include "host/model/t805.hpp"
 #include "kernels/shared/mapping.h"
 
 namespace raya {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "host/scene/outline.hpp"
+#include "host/scene/polygon.hpp"
 
 namespace raya {
 namespace {

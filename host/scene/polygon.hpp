@@ -1,6 +1,9 @@
 // Normal and triangulation of a polygon, shared by the reader, the packer and the reference renderer.
 #pragma once
 #include <array>
+#include <functional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/scene/scene.hpp"
@@ -27,5 +30,47 @@ std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& vertices, c
 
 /// Returns the triangles of triangulate() as polygons, with the normals and the surface of `polygon`.
 std::vector<Polygon> triangles_of(const Polygon& polygon);
+
+// Validation of polygon outlines, views and colours from scene files and the command line.
+
+/// Shorter lengths are treated as 0, because products of four lengths must not underflow a double. Scenes may use any
+/// unit of length; length_scale.hpp handles lengths that are too small for a number format.
+inline constexpr double kMinSceneLength = 1e-30;
+
+/// Maximum distance of a vertex from the plane of its polygon, relative to the polygon's size (the longest side of its
+/// bounding box). In a polygon that spans 1,000 pixels, the limit 1e-3 is one pixel. Vertices that are rounded to six
+/// digits are only about 1e-5 off the plane.
+inline constexpr double kFlatness = 1e-3;
+
+enum class OutlineFault { kNone, kNoArea, kCrosses, kNotFlat };
+
+/// Result of the check of an outline. `reason` completes a sentence that begins with "the polygon".
+struct OutlineCheck {
+    OutlineFault fault = OutlineFault::kNone;
+    std::string reason;
+};
+
+/// Removes each vertex that equals the previous one, with its normal, and checks the outline. A self-intersection is
+/// detected only if the signed area is 0.
+OutlineCheck clean_outline(Polygon& polygon);
+
+/// Reports a polygon that cannot be traced as given. Throws UserError with `reason`, a sentence about the polygon, or
+/// adds the remark `what`.
+using RemarkOrRefuse = std::function<void(const std::string& reason, const std::string& what)>;
+
+/// Adds a polygon to the scene after clean_outline(). Reports a polygon without area and leaves it out; reports a
+/// polygon that is not flat and cuts it into triangles.
+void add_polygon(Scene& scene, Polygon polygon, const RemarkOrRefuse& report);
+
+/// Returns `v` normalised. Returns a vector unchanged if its length is 1 up to rounding, so that writing and reading a
+/// scene does not change it; also returns the zero vector unchanged.
+Vec3 unit_vector(const Vec3& v);
+
+/// Returns the reason why a view is invalid, for example "'from' and 'at' are the same point", or an empty string if
+/// the view is valid.
+std::string view_error(const View& view);
+
+/// Returns true if all components are in 0..kMaxNumber.
+bool is_colour(const Colour& colour);
 
 }  // namespace raya

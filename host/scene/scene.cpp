@@ -1,12 +1,19 @@
 #include "host/scene/scene.hpp"
 
+#include <fmt/core.h>
 #include <malloc.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numbers>
 #include <utility>
+
+#include "host/error.hpp"
+#include "host/scene/polygon.hpp"
+#include "host/scene/split_mix.hpp"
 
 namespace raya {
 namespace {
@@ -79,6 +86,160 @@ double scene_extent(const Scene& scene) {
         extent = std::max(extent, largest_coordinate(c.apex) + std::abs(c.apex_radius));
     }
     return extent;
+}
+
+namespace {
+
+/// Cosine and sine of an angle; exact for quarter turns.
+struct Direction {
+    double cosine, sine;
+};
+
+Direction direction_at(double degrees) {
+    const double quarters = std::round(degrees / 90), remainder = (degrees - 90 * quarters) * std::numbers::pi / 180;
+    const double c = std::cos(remainder), s = std::sin(remainder);
+    switch (static_cast<int>(std::fmod(quarters, 4) + 4) % 4) {
+        case 1:
+            return {-s, c};
+        case 2:
+            return {-c, -s};
+        case 3:
+            return {s, -c};
+        default:
+            return {c, s};
+    }
+}
+
+double round_to_millionth(double x) { return std::round(x * 1e6) / 1e6 + 0.0; }
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+/// Extends `box` so that it contains a disk perpendicular to `axis`, which has length 1. Along a coordinate axis, the
+/// disk extends from its centre by its radius times the sine of the angle between `axis` and the coordinate axis.
+void extend_by_disk(Imath::Box3d& box, const Vec3& centre, double radius, const Vec3& axis) {
+    Vec3 extent;
+    for (int i = 0; i < 3; ++i) extent[i] = std::abs(radius) * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
+    box.extendBy(centre - extent);
+    box.extendBy(centre + extent);
+}
+
+}  // namespace
+
+View turned(View view, double degrees) {
+    const double angle = std::fmod(degrees, 360);
+    if (angle == 0) return view;
+    const auto [cosine, sine] = direction_at(angle);
+    const Vec3 axis = view.up.normalized(), arm = view.from - view.at;
+    // Rodrigues' rotation formula.
+    view.from = view.at + arm * cosine + axis.cross(arm) * sine + axis * (axis.dot(arm) * (1 - cosine));
+    return view;
+}
+
+Scene random_view(Scene scene, std::uint64_t seed) {
+    View& view = scene.view;
+    const Vec3 up = view.up.normalized(), arm = view.from - view.at;
+    const Vec3 not_parallel = std::abs(up.x) < 0.5 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+    const Vec3 east = up.cross(not_parallel).normalized(), north = up.cross(east);
+    SplitMix random(seed);
+    // A uniform point on a sphere has a uniform height, because the area of a zone is proportional to its height
+    // (Archimedes).
+    const double height =
+        random.uniform(std::sin(radians(kMinElevationDegrees)), std::sin(radians(kMaxElevationDegrees)));
+    const double azimuth = random.uniform(0, 2 * std::numbers::pi), horizontal = std::sqrt(1 - height * height);
+    const Vec3 direction = up * height + (east * std::cos(azimuth) + north * std::sin(azimuth)) * horizontal;
+    view.from = view.at + Vec3(round_to_millionth(direction.x), round_to_millionth(direction.y),
+                               round_to_millionth(direction.z)) *
+                              arm.length();
+    return scene;
+}
+
+Imath::Box3d scene_box(const Scene& scene) {
+    Imath::Box3d box;
+    for (const Sphere& s : scene.spheres) {
+        box.extendBy(s.centre - Vec3(std::abs(s.radius)));
+        box.extendBy(s.centre + Vec3(std::abs(s.radius)));
+    }
+    for (const Polygon& p : scene.polygons)
+        for (const Vec3& v : p.vertices) box.extendBy(v);
+    for (const Cone& c : scene.cones) {
+        const Vec3 axis = unit_vector(c.apex - c.base);
+        extend_by_disk(box, c.base, c.base_radius, axis);
+        extend_by_disk(box, c.apex, c.apex_radius, axis);
+    }
+    return box;
+}
+
+namespace {
+
+// Margins as exponents of two. kMinMargin: minimum margin between the lengths of an unscaled scene and the format's
+// lower limits. kPlaneMargin: margin between the largest length of a scaled scene and the format's upper limit, if the
+// scene has planes, which extend to the horizon.
+constexpr double kMinMargin = 2, kPlaneMargin = 6;
+
+/// Calls visit(length) for each length that must not be flushed to 0, because the job stores the square of the length
+/// or because kernels divide by the length.
+template <class Visit>
+void for_each_small_length(const Scene& scene, Visit&& visit) {
+    for (const Sphere& s : scene.spheres) visit(std::abs(s.radius));
+    for (const Cone& c : scene.cones)
+        visit(std::min(std::max(std::abs(c.base_radius), std::abs(c.apex_radius)), (c.apex - c.base).length()));
+    for (const Surface& s : scene.surfaces)
+        if (s.checker) visit(s.checker->size);
+}
+
+double largest_length(const Scene& scene) {
+    double largest = scene_extent(scene);
+    for (const Light& l : scene.lights)
+        for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(l.position[axis]));
+    for (const Plane& p : scene.planes) largest = std::max(largest, std::abs(p.distance));
+    return largest;
+}
+
+/// The margins between the lengths of an unscaled scene and the limits of a format, as exponents of two. A margin is
+/// negative if its limit is exceeded.
+struct ScaleMargins {
+    double to_upper;  // to the upper limit
+    double to_lower;  // to the nearer of the two lower limits
+};
+
+ScaleMargins margins_of(const LengthScale& scale, const NumberFormat& format) {
+    const double smallest_of_format = smallest_number(format);
+    return {std::log2(farthest_hit(format) / (4 * scale.largest_length)),
+            std::min(std::log2(scale.smallest_length / std::sqrt(smallest_of_format)),
+                     std::log2(std::ldexp(scale.largest_length, -format.fraction_bits - 1) / smallest_of_format))};
+}
+
+int exponent_for(const ScaleMargins& margins, bool has_planes) {
+    if (margins.to_upper >= 0 && margins.to_lower >= kMinMargin) return 0;
+    return static_cast<int>(std::floor(
+        std::min((margins.to_upper - margins.to_lower + 1) / 2, margins.to_upper - (has_planes ? kPlaneMargin : 0))));
+}
+
+[[noreturn]] void refuse(const Scene& scene, const LengthScale& scale, const NumberFormat& format) {
+    throw UserError(
+        fmt::format("{}: the range of its lengths, {:.3g} to {:.3g}, is too wide for {}: scaled to the largest length, "
+                    "all objects are below the smallest visible length, {:.3g}; remedy: --format fp32, or move distant "
+                    "objects closer",
+                    scene.name, scale.smallest_length, scale.largest_length, format_name(format), scale.min_visible));
+}
+
+}  // namespace
+
+LengthScale length_scale(const Scene& scene, const NumberFormat& format) {
+    LengthScale scale;
+    scale.largest_length = scale.smallest_length = largest_length(scene);
+    if (scale.largest_length == 0) return scale;  // only planes through the origin, with the eye at the origin
+    std::uint64_t lengths = 0;
+    for_each_small_length(scene, [&](double length) {
+        scale.smallest_length = std::min(scale.smallest_length, length);
+        ++lengths;
+    });
+    scale.exponent = exponent_for(margins_of(scale, format), !scene.planes.empty());
+    scale.min_visible = std::ldexp(std::sqrt(smallest_number(format)), -scale.exponent);
+    for_each_small_length(scene, [&](double length) { scale.vanishing_count += length < scale.min_visible; });
+    const bool has_flat_objects = !scene.polygons.empty() || !scene.planes.empty();
+    if (scale.vanishing_count == lengths && lengths > 0 && !has_flat_objects) refuse(scene, scale, format);
+    return scale;
 }
 
 }  // namespace raya

@@ -35,7 +35,6 @@
 #include <vector>
 
 #include "host/model/t805.hpp"
-#include "host/model/time_model.hpp"
 #include "host/torus/history.hpp"
 #include "kernels/shared/torus.h"
 

@@ -1,17 +1,11 @@
 // Sizes of the nodes' queues and mailboxes. Checks that queues and mailboxes fit the memory of a node and of the
-// device, suggests remedies if they do not fit, and searches for a queue length with which a deadlocked machine
-// completes.
+// device, and suggests remedies if they do not fit.
 #pragma once
-#include <array>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 
-#include "host/accel/partition.hpp"
 #include "host/model/machine.hpp"
-#include "host/model/number_format.hpp"
-#include "host/scene/packer.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/torus_settings.hpp"
 
@@ -40,46 +34,6 @@ std::uint32_t largest_where(std::uint64_t first, std::uint64_t end, const Holds&
     return static_cast<std::uint32_t>(first);
 }
 
-inline constexpr std::uint32_t kMaxQueue = 1u << 30;  // maximum capacity of a queue, packets
-
-/// Limits and callbacks of the search for a longer queue.
-struct QueueTrial {
-    std::function<std::uint64_t(const NodeBuffers&)> node_bytes;  // memory that the fullest node needs, bytes
-    std::uint64_t node_memory = UINT64_MAX;                       // memory of a node, bytes
-    std::uint32_t max_queue = kMaxQueue;                          // longest queue to try, packets
-    std::function<bool(const NodeBuffers&)> fits_device;          // true: the device can hold the buffers of all nodes
-    // Returns true if the machine completes an image without a deadlock. Throws DeviceError if allocating the buffers
-    // fails although fits_device() returned true.
-    std::function<bool(const NodeBuffers&)> completes;
-};
-
-/// Result of find_longer_queue().
-struct QueueSearchResult {
-    std::uint32_t queue = 0;  // longest queue that was tried, packets
-    bool completes = false;   // the machine completes an image with this queue
-    bool fits = false;        // scene words and buffers of the fullest node fit its memory
-    std::uint64_t bytes = 0;  // memory that the fullest node needs, bytes
-};
-
-/// Doubles the queue length, starting from `queue`, until the machine completes an image. Tries the longest queue that
-/// fits a node's memory before any longer queue.
-QueueSearchResult find_longer_queue(std::uint32_t queue, const QueueTrial& trial);
-
-/// Returns the remedy for an error message: "--queue 74 is long enough (tried)".
-std::string queue_remedy(const QueueSearchResult& found);
-
-/// Result of a NodeTrial.
-struct NodeTrialResult {
-    std::uint64_t words = 0;  // number of scene words of the fullest node
-    Divisions voxels{};       // numbers of voxels along x, y, z
-};
-/// Divides a job among `nodes` nodes along x, y, z. Returns nullopt if the partition would be too large.
-using NodeTrial = std::function<std::optional<NodeTrialResult>(const std::array<std::uint32_t, 3>& nodes)>;
-
-/// Makes a trial that divides `job` into `voxels` voxels, doubled along each axis until every node has a voxel. `job`
-/// must outlive the trial.
-NodeTrial make_node_trial(const PackedJob& job, const NumberFormat& format, const Divisions& voxels);
-
 /// Thrown if the scene or the buffers do not fit the nodes. `needed`: bytes that the fullest node needs; `memory`:
 /// bytes that a node has.
 struct NodesDoNotFit : DoesNotFit {
@@ -94,12 +48,10 @@ struct NodesDoNotFit : DoesNotFit {
 /// fit `memory_bytes` (empty: no limit) together with the words of the fullest node, at most default_queue().
 /// buffers_for() determines the size of the mailboxes. Throws NodesDoNotFit if words and buffers exceed `memory_bytes`.
 /// The message states how many nodes fit, the voxels, objects and bytes of the fullest node, and a remedy: more memory
-/// or a shorter queue. If `trial` is given, the remedy may be more nodes; the search for a sufficient number takes
-/// about a second. `min_queue`: number of packets that the ray tree of a single primary ray may need. Throws
+/// or a shorter queue. `min_queue`: number of packets that the ray tree of a single primary ray may need. Throws
 /// UserError if 0 < `queue` < `min_queue`.
 NodeBuffers plan_buffers(const std::string& scene, const NodeSizes& sizes, const raya_torus& torus,
-                         std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t min_queue,
-                         const NodeTrial& trial = {});
+                         std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t min_queue);
 
 /// Memory of a device in bytes. `max_buffer`: maximum size of one buffer.
 struct DeviceMemory {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "host/cl/kernels.hpp"
+#include "host/array/render.hpp"
 #include "host/error.hpp"
 
 namespace raya {
@@ -20,19 +20,6 @@ bool comes_before(const raya_head& a, const raya_head& b) {
 void append_contribution(std::vector<float>& colours, const raya_head& packet) {
     colours.insert(colours.end(), std::begin(packet.carries.colour), std::end(packet.carries.colour));
     colours.push_back(packet.weight);
-}
-
-// Returns the number of work-groups of `group_size` work-items. A work-item gets about 16 pixels or more. It gets fewer
-// if its loops would otherwise exceed the device's limit of iterations.
-std::size_t work_groups_for(const Contributions& contributions, std::uint32_t group_size, const DeviceInfo& device) {
-    constexpr std::size_t kPixelsPerItem = 16, kMaxGroups = 4096;
-    const std::vector<std::uint32_t>& starts = contributions.starts;
-    const std::size_t pixels = starts.size() - 1;
-    std::size_t groups = std::min(kMaxGroups, pixels / (kPixelsPerItem * group_size) + 1);
-    if (device.max_loop_iterations == 0) return groups;
-    std::size_t max_count = 0;  // maximum number of contributions of a pixel
-    for (std::size_t i = 0; i < pixels; ++i) max_count = std::max<std::size_t>(max_count, starts[i + 1] - starts[i]);
-    return std::max(groups, 2 * pixels * (max_count + 2) / (std::size_t{group_size} * device.max_loop_iterations) + 1);
 }
 
 }  // namespace
@@ -80,8 +67,9 @@ std::vector<float> Composer::compose(const Contributions& contributions) {
     Buffer<std::uint32_t> cut_flag = session_.buffer<std::uint32_t>("loops cut", 1);
     session_.write("compose", colours, contributions.colours);
     session_.write("compose", starts, contributions.starts);
+    constexpr std::size_t kPixelsPerItem = 16, kMaxGroups = 4096;
     std::uint32_t was_cut = 1;
-    for (std::size_t groups = work_groups_for(contributions, group_size_, session_.device()); was_cut; groups *= 2) {
+    for (std::size_t groups = std::min(kMaxGroups, pixels / (kPixelsPerItem * group_size_) + 1); was_cut; groups *= 2) {
         session_.fill("compose", cut_flag, 0);
         session_.launch("compose", compose_, groups, group_size_, colours, starts, Uint<"pixels">{pixels}, image,
                         cut_flag);

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/cl/kernels.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "kernels/shared/packet.h"
 
 namespace raya {

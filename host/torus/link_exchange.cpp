@@ -7,9 +7,6 @@
 namespace raya {
 namespace {
 
-// Fixed cost of a command, a few microseconds with PoCL, as the number of bytes that could be copied in that time.
-constexpr std::uint64_t kCommandCostBytes = 100'000;
-
 raya_head head_at(const std::uint32_t* packet) {
     raya_head head;
     std::memcpy(&head, packet, sizeof head);
@@ -21,17 +18,31 @@ raya_head head_at(const std::uint32_t* packet) {
 std::string link_name(std::uint32_t link) { return std::string(link % 2 == 0 ? "+" : "-") + "xyz"[link / 2]; }
 
 LinkExchange::LinkExchange(Session& session, const NodeDistribution& distribution, std::uint32_t capacity,
-                           const PacketClass& packet_class)
+                           const PacketClass& packet_class, const ExchangeKernel& kernel, std::uint32_t group_size,
+                           Buffer<std::uint32_t>& status)
     : session_(session),
       distribution_(distribution),
       torus_(distribution.torus()),
-      nodes_(distribution.nodes()),
+      nodes_(distribution.count()),
       capacity_(capacity),
       class_(packet_class),
       outboxes_(session.buffer<std::uint32_t>("outboxes", outbox_at(RAYA_LINKS, 0))),
       inboxes_(session.buffer<std::uint32_t>("inboxes", inbox_at(RAYA_LINKS, 0))),
       flag_buffer_(session.buffer<std::uint32_t>("sent flags", std::size_t{RAYA_LINKS} * distribution.inboxes())),
-      rank_links_(find_rank_links()) {}
+      kernel_(kernel),
+      group_size_(group_size),
+      status_(status),
+      end_slots_(session.buffer<std::uint32_t>("ends of links", std::size_t{RAYA_LINKS} * nodes_)),
+      rank_links_(find_rank_links()) {
+    std::vector<std::uint32_t> end_slots;
+    for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+        for (const std::uint32_t node : distribution_.own()) {
+            const bool stays_on_device = torus_.sides[link / 2] > 1 && !crosses_ranks(link, node);
+            end_slots.push_back(stays_on_device ? distribution_.slot_of(raya_link_end(torus_, node, link))
+                                                : RAYA_NO_SLOT);
+        }
+    session_.write("scatter", end_slots_, end_slots);
+}
 
 void LinkExchange::clear() {
     const std::size_t outboxes = std::size_t{RAYA_LINKS} * nodes_;
@@ -47,29 +58,15 @@ void LinkExchange::clear() {
     counts_.packets = counts_.messages;
 }
 
-void LinkExchange::use_kernel(const ExchangeKernel& kernel, std::uint32_t group_size, Buffer<std::uint32_t>& status) {
-    std::vector<std::uint32_t> end_slots;
-    for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-        for (const std::uint32_t node : distribution_.own_nodes()) {
-            const bool stays_on_device = torus_.sides[link / 2] > 1 && !crosses_ranks(link, node);
-            end_slots.push_back(stays_on_device ? distribution_.slot_of(raya_link_end(torus_, node, link))
-                                                : RAYA_NO_SLOT);
-        }
-    kernel_.emplace(
-        KernelTransfer{kernel, group_size, status, session_.buffer<std::uint32_t>("ends of links", end_slots.size())});
-    session_.write("scatter", kernel_->end_slots, end_slots);
-}
-
 void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>& words) {
     std::fill(sent_flags_.begin(), sent_flags_.end(), 0);
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
         if (torus_.sides[link / 2] == 1) continue;
         count_transfers(status, link, words);
-        if (!kernel_) copy_mailboxes(status, link);
     }
     // The kernel sets the flags of the transfers within this rank. Other transfers exist only if links cross ranks.
-    if (!kernel_ || !rank_links_.empty()) write_sent_flags();
-    if (kernel_) launch_kernel();
+    if (!rank_links_.empty()) write_sent_flags();
+    launch_kernel();
 }
 
 // Counts the transfers over the links of one direction (`link`), and sets their flags in sent_flags_.
@@ -86,23 +83,14 @@ void LinkExchange::count_transfers(const NodeStatus& status, std::uint32_t link,
     }
 }
 
-void LinkExchange::copy_mailboxes(const NodeStatus& status, std::uint32_t link) {
-    const std::size_t pitch = box_words(capacity_);
-    for (const CopyRange& range : copy_ranges(status, link))
-        session_.copy_blocks(class_.label + " " + link_name(link), outboxes_,
-                             {.pitch = pitch, .first = outbox_at(link, range.first_slot)}, inboxes_,
-                             {.pitch = pitch, .first = inbox_at(link, range.first_slot)}, box_words(range.packets),
-                             range.end_slot - range.first_slot);
-}
-
 void LinkExchange::launch_kernel() {
     if (std::find(sent_flags_.begin(), sent_flags_.end(), 1u) == sent_flags_.end() && sent_flags_ == device_flags_)
         return;
-    session_.launch(class_.label, kernel_->kernel, std::size_t{RAYA_LINKS} * nodes_, kernel_->group_size,
-                    kernel_->end_slots, Uint<"nodes">{nodes_}, Uint<"inboxes_of_link">{distribution_.inboxes()},
+    session_.launch(class_.label, kernel_, std::size_t{RAYA_LINKS} * nodes_, group_size_, end_slots_,
+                    Uint<"nodes">{nodes_}, Uint<"inboxes_of_link">{distribution_.inboxes()},
                     Uint<"capacity">{capacity_}, Uint<"packet_words">{class_.packet_words},
                     Uint<"outbox_status">{class_.outbox_status}, Uint<"inbox_status">{class_.inbox_status}, outboxes_,
-                    inboxes_, flag_buffer_, kernel_->status);
+                    inboxes_, flag_buffer_, status_);
     device_flags_ = sent_flags_;
 }
 
@@ -200,41 +188,10 @@ void LinkExchange::write_incoming() {
         }
 }
 
-std::uint64_t LinkExchange::copy_cost_bytes(const CopyRange& range) const {
-    return kCommandCostBytes + (range.end_slot - range.first_slot) * box_words(range.packets) * sizeof(std::uint32_t);
-}
-
-// Extends a range if one longer command takes at most as long as two commands. A range may include empty outboxes,
-// because the copy of an empty outbox leaves the empty inbox empty.
-std::vector<LinkExchange::CopyRange> LinkExchange::copy_ranges(const NodeStatus& status, std::uint32_t link) const {
-    std::vector<CopyRange> ranges;
-    bool may_extend = false;
-    for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
-        const std::uint32_t node = distribution_.own_nodes()[slot];
-        if (crosses_ranks(link, node) || inbox_occupied(status, link, node)) {
-            may_extend = false;
-            continue;
-        }
-        const std::uint32_t packets = status.at(node, class_.outbox_status + link);
-        if (packets == 0) continue;
-        const CopyRange single{slot, slot + 1, packets};
-        if (may_extend) {
-            const CopyRange longer{ranges.back().first_slot, slot + 1, std::max(ranges.back().packets, packets)};
-            if (copy_cost_bytes(longer) <= copy_cost_bytes(ranges.back()) + copy_cost_bytes(single)) {
-                ranges.back() = longer;
-                continue;
-            }
-        }
-        ranges.push_back(single);
-        may_extend = true;
-    }
-    return ranges;
-}
-
 void LinkExchange::visit_new_packets(const NodeStatus& status,
                                      const std::function<void(std::uint32_t, const raya_head&)>& visit) {
     for (std::uint32_t slot = 0; slot < nodes_; ++slot) {
-        const std::uint32_t node = distribution_.own_nodes()[slot];
+        const std::uint32_t node = distribution_.own()[slot];
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t packets = status.at(node, class_.outbox_status + link);
             const std::size_t box = std::size_t{link} * nodes_ + slot;
@@ -248,9 +205,35 @@ void LinkExchange::visit_new_packets(const NodeStatus& status,
     }
 }
 
+void LinkExchange::visit_state(RenderState& state, const NodeStatus& status) {
+    state.vector(counts_.messages);
+    state.vector(counts_.packets);
+    for (const bool out : {true, false}) {
+        Buffer<std::uint32_t>& boxes = out ? outboxes_ : inboxes_;
+        const auto packets_in = [&](std::uint32_t node, std::uint32_t link) {
+            return status.at(node, (out ? class_.outbox_status : class_.inbox_status) + link);
+        };
+        const auto box_at = [&](std::uint32_t node, std::uint32_t link) {
+            return out ? outbox_at(link, distribution_.slot_of(node))
+                       : inbox_at(link, distribution_.inbox_from(raya_link_end(torus_, node, link ^ 1u), link));
+        };
+        state.parts(boxes, [&](std::uint32_t node) {
+            std::vector<RenderState::Part> parts;
+            for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+                if (const std::size_t packets = packets_in(node, link); packets > 0)
+                    parts.push_back({box_at(node, link) + box_words(0), packets * class_.packet_words});
+            return parts;
+        });
+        for (std::uint32_t slot = 0; slot < (state.restores() ? nodes_ : 0); ++slot)
+            for (std::uint32_t node = distribution_.own()[slot], link = 0; link < RAYA_LINKS; ++link)
+                if (const std::uint32_t packets = packets_in(node, link); packets > 0)
+                    session_.write("resume", boxes, {&packets, 1}, box_at(node, link));
+    }
+}
+
 std::uint64_t LinkExchange::sent_packets() const {
     std::uint64_t packets = 0;
-    for (const std::uint32_t node : distribution_.own_nodes())
+    for (const std::uint32_t node : distribution_.own())
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             packets += counts_.packets[std::size_t{node} * RAYA_LINKS + link];
     return packets;
@@ -258,7 +241,7 @@ std::uint64_t LinkExchange::sent_packets() const {
 
 std::uint64_t LinkExchange::received_packets() const {
     std::uint64_t packets = 0;
-    for (const std::uint32_t node : distribution_.own_nodes())
+    for (const std::uint32_t node : distribution_.own())
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             packets += counts_.packets[std::size_t{raya_link_end(torus_, node, link ^ 1u)} * RAYA_LINKS + link];
     return packets;

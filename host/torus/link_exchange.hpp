@@ -1,5 +1,5 @@
 // Links of the torus. They transfer packets from the outboxes of nodes to the inboxes of neighbouring nodes: within a
-// device by buffer copies or by a kernel, between ranks by messages.
+// device by a kernel, between ranks by messages.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "host/array/checkpoints.hpp"
 #include "host/cl/commands.hpp"
-#include "host/cl/kernels.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/ranks/transport.hpp"
-#include "host/torus/node_distribution.hpp"
-#include "host/torus/torus_state.hpp"
+#include "host/torus/topology.hpp"
 #include "kernels/shared/traffic.h"
 
 namespace raya {
@@ -25,6 +25,12 @@ using ExchangeKernel = DescribedKernel<"torus/exchange.cl", "exchange", const Bu
                                        Uint<"inboxes_of_link">, Uint<"capacity">, Uint<"packet_words">,
                                        Uint<"outbox_status">, Uint<"inbox_status">, const Buffer<std::uint32_t>&,
                                        Buffer<std::uint32_t>&, Buffer<std::uint32_t>&, Buffer<std::uint32_t>&>;
+
+/// Counts of the links of all nodes, [node][RAYA_LINKS].
+struct LinkCounts {
+    std::vector<std::uint64_t> messages;  // numbers of charged packets
+    std::vector<std::uint64_t> packets;   // numbers of packets, including those that are not charged
+};
 
 /// Mailboxes of one class of packets (rays or returns), and their transfers over all links.
 class LinkExchange {
@@ -41,23 +47,18 @@ class LinkExchange {
     };
 
     /// Allocates mailboxes of `capacity` packets for every link of this rank's nodes (kernels/shared/traffic.h).
+    /// `group_size`: number of work-items that copy a mailbox. `status`: device buffer with the same status words that
+    /// exchange() receives; must outlive this object.
     LinkExchange(Session& session, const NodeDistribution& distribution, std::uint32_t capacity,
-                 const PacketClass& packet_class);
-
-    /// Makes exchange() use `kernel`, in work-groups of `group_size` work-items. The default is buffer copies.
-    /// `status`: device buffer with the same status words that exchange() receives; must outlive this object.
-    void use_kernel(const ExchangeKernel& kernel, std::uint32_t group_size, Buffer<std::uint32_t>& status);
-    void use_copies() { kernel_.reset(); }
+                 const PacketClass& packet_class, const ExchangeKernel& kernel, std::uint32_t group_size,
+                 Buffer<std::uint32_t>& status);
 
     /// Empties the mailboxes and resets the counters.
     void clear();
 
-    /// For each link with both ends on this device, transfers all packets of the outbox if the inbox is empty. A kernel
-    /// transfers the packets of all links in one launch, labelled PacketClass::label. Buffer copies take one command
-    /// for each link direction, labelled "LABEL +x", "LABEL -x", ... A direction takes several commands if some of its
-    /// inboxes are not empty, or if the lengths of the outboxes differ so much that one command with the maximum length
-    /// would take longer. Adds the number of words charged for each link to `words`, [node][link]. `status`, `words`
-    /// and counts() cover all nodes of all ranks.
+    /// For each link with both ends on this device, transfers all packets of the outbox if the inbox is empty, in one
+    /// launch, labelled PacketClass::label. Adds the number of words charged for each link to `words`, [node][link].
+    /// `status`, `words` and counts() cover all nodes of all ranks.
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
     /// Transfers between ranks, in the same superstep as an exchange(). begin_transfers() appends the messages to `out`
@@ -74,17 +75,13 @@ class LinkExchange {
 
     /// Counts since clear().
     const LinkCounts& counts() const { return counts_; }
-    void set_counts(LinkCounts counts) { counts_ = std::move(counts); }
 
     /// Return the numbers of packets that this rank's nodes have sent and received since clear().
     std::uint64_t sent_packets() const;
     std::uint64_t received_packets() const;
 
-    /// Appends to `words` the packets in the outboxes and inboxes of a node of this rank, as counted in `status`.
-    void read_boxes(const NodeStatus& status, std::uint32_t node, std::vector<std::uint32_t>& words);
-    /// Inverse of read_boxes(), after clear(): writes the first words of `words`, and returns the remaining ones.
-    std::span<const std::uint32_t> write_boxes(const NodeStatus& status, std::uint32_t node,
-                                               std::span<const std::uint32_t> words);
+    /// Saves or restores counts and packets of the mailboxes. `status`: that of all nodes. Restore after clear().
+    void visit_state(RenderState& state, const NodeStatus& status);
 
     /// Calls `visit`, unless it is empty, with the node and the head of every packet that was put into an outbox of
     /// this rank since the last call of visit_new_packets().
@@ -92,20 +89,9 @@ class LinkExchange {
                            const std::function<void(std::uint32_t node, const raya_head& packet)>& visit);
 
   private:
-    /// Mailboxes that one command copies: the first `packets` packets of each mailbox of slots `first_slot` to
-    /// `end_slot` - 1.
-    struct CopyRange {
-        std::uint32_t first_slot, end_slot, packets;
-    };
-    template <class Visit>
-    void for_each_box(const NodeStatus& status, std::uint32_t node, Visit&& visit);
     void count_transfers(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words);
-    void copy_mailboxes(const NodeStatus& status, std::uint32_t link);
     void launch_kernel();
     void write_sent_flags();
-    std::vector<CopyRange> copy_ranges(const NodeStatus& status, std::uint32_t link) const;
-    /// Returns the number of bytes that could be copied in the time of the command.
-    std::uint64_t copy_cost_bytes(const CopyRange& range) const;
     bool inbox_occupied(const NodeStatus& status, std::uint32_t link, std::uint32_t sender) const;
     bool crosses_ranks(std::uint32_t link, std::uint32_t sender) const;
 
@@ -131,13 +117,10 @@ class LinkExchange {
     std::uint32_t nodes_, capacity_;  // number of nodes of this rank; capacity of a mailbox, packets
     PacketClass class_;
     Buffer<std::uint32_t> outboxes_, inboxes_, flag_buffer_;
-    struct KernelTransfer {
-        ExchangeKernel kernel;
-        std::uint32_t group_size;
-        Buffer<std::uint32_t>& status;
-        Buffer<std::uint32_t> end_slots;  // [link][slot]: slot of the node at the end of the link, or RAYA_NO_SLOT
-    };
-    std::optional<KernelTransfer> kernel_;
+    ExchangeKernel kernel_;
+    std::uint32_t group_size_;
+    Buffer<std::uint32_t>& status_;
+    Buffer<std::uint32_t> end_slots_;          // [link][slot]: slot of the node at the link's end, or RAYA_NO_SLOT
     std::vector<std::uint32_t> sent_flags_;    // next contents of flag_buffer_
     std::vector<std::uint32_t> device_flags_;  // present contents of flag_buffer_
     std::vector<std::uint32_t> visited_;       // [link][slot]: number of packets in the outbox already visited

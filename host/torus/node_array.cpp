@@ -1,7 +1,6 @@
 #include "host/torus/node_array.hpp"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "kernels/shared/node_counts.h"
@@ -19,17 +18,14 @@ std::uint32_t max_node_words(const NodeMemories& memories) {
 constexpr std::size_t kRowWords = 4;  // the words of each node start at a multiple of kRowWords
 
 // Sets `words_local` to false if the node's words and the work-group's other data do not fit the local memory, or if
-// the device limits loop iterations. Devices that limit loop iterations are CPUs, whose local memory is not faster than
-// global memory.
+// the device may end loops early. Such devices are CPUs, whose local memory is not faster than global memory.
 KernelOptions choose_words_local(KernelOptions options, const NodeMemories& memories, const DeviceInfo& device) {
     const std::size_t work_group_words =
         std::max(RAYA_INJECT_WORDS(options.group_size, options.lanes), RAYA_ROUTE_WORDS(options.group_size));
     const std::size_t bytes = sizeof(std::uint32_t) * (work_group_words + kRowWords + max_node_words(memories));
-    options.words_local = options.words_local && bytes <= device.local_memory_bytes && device.max_loop_iterations == 0;
+    options.words_local = options.words_local && bytes <= device.local_memory_bytes && !device.ends_loops_early;
     return options;
 }
-
-constexpr const char* kTruncatedLoopRemedy = "fewer objects in a voxel (--voxels), a shorter --queue";
 
 // Returns true if status word `word` of any node is not 0.
 bool any_node_has(std::span<const std::uint32_t> status, std::size_t word) {
@@ -53,10 +49,9 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       buffers_(buffers),
       distribution_(distribution),
       ranks_(ranks),
-      nodes_(distribution.nodes()),
+      nodes_(distribution.count()),
       node_words_(max_node_words(memories)),
       options_(kernels.options()),
-      plan_(settings, memories, distribution, buffers, options_, session_.device()),
       memories_(session_.buffer_of("node memories", std::span(memories.words))),
       starts_(session_.buffer<std::uint32_t>("starts of node memories", memories.starts.size())),
       run_(session_.buffer<raya_run>("run", 1)),
@@ -70,10 +65,12 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       ended_(session_.buffer<std::uint64_t>("packets ended", std::size_t{nodes_} * RAYA_KINDS)),
       processed_(session_.buffer<raya_processed>("processed packets", options_.costs ? queues_.size() : 1)),
       ray_links_(session_, distribution, buffers.box,
-                 {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX, settings.packets.ray_words}),
+                 {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX, settings.packets.ray_words},
+                 kernels.get<ExchangeKernel>(), options_.group_size, status_),
       return_links_(session_, distribution, buffers.box,
                     {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX,
-                     settings.packets.return_words(), RAYA_STATUS_RETURN_CHARGED, 1}),
+                     settings.packets.return_words(), RAYA_STATUS_RETURN_CHARGED, 1},
+                    kernels.get<ExchangeKernel>(), options_.group_size, status_),
       inject_(kernels.get<node_kernels::Inject>()),
       trace_(kernels.get<node_kernels::TraceVoxel>()),
       route_(kernels.get<node_kernels::Route>()),
@@ -83,13 +80,12 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
     session_.write("scatter", starts_, memories.starts);
     write_inbox_table();
     set_pixels(settings.pixels);
-    choose_link_method(kernels);
 }
 
 void NodeArray::write_inbox_table() {
     std::vector<std::uint32_t> inboxes;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-        for (const std::uint32_t node : distribution_.own_nodes())
+        for (const std::uint32_t node : distribution_.own())
             inboxes.push_back(distribution_.inbox_from(raya_link_end(settings_.torus, node, link ^ 1u), link));
     session_.write("scatter", inbox_of_link_, inboxes);
 }
@@ -118,33 +114,36 @@ void NodeArray::clear() {
     session_.fill("clear", ended_, 0);
     ray_links_.clear();
     return_links_.clear();
-    plan_.clear();
+    superstep_s_.reset();
+    last_status_ = Clock::now();
     returns_pending_ = 0;
 }
 
+// Launches have no limit if the last superstep was short, because the number of packets in a queue, and so a
+// superstep's work, grows by a small factor only. Then the host need not read the status after each launch.
 template <class Launch>
-void NodeArray::launch_until_done(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch) {
-    const auto state = std::tie(queues_, ray_links_.outboxes(), ray_links_.inboxes(), return_links_.outboxes(),
-                                return_links_.inboxes(), returns_, status_, events_, made_, ended_);
+void NodeArray::launch_until_done(const std::string& label, Slots nodes, const Launch& launch) {
+    constexpr double kShort_s = 0.25;
+    constexpr std::uint32_t kFirstWork = 1 << 16;
+    if (nodes.count == 0) return;
+    std::uint32_t work = superstep_s_ && *superstep_s_ < kShort_s ? kUnlimitedWork : kFirstWork;
+    if (settings_.work_per_launch > 0) work = settings_.work_per_launch;
+    const double target_s = settings_.work_per_launch > 0 ? 0 : 1;
     std::vector<std::uint32_t> status(std::size_t{nodes.count} * RAYA_STATUS_WORDS);
-    for (std::uint32_t resume = 0;;) {
-        const auto begin = [&](auto&... parts) { return guard_.begin(session_, label, budget.work, parts...); };
-        launch(node_kernels::Work{std::apply(begin, state)}, node_kernels::Resume{resume});
-        if (budget.single_launch && !guard_.has_copies()) return;
+    const auto launch_part = [&](std::uint32_t part, bool resumes) {
+        launch(node_kernels::Work{part}, node_kernels::Resume{resumes});
+    };
+    const auto end = [&] {
         session_.read(label, status_, status, std::size_t{nodes.first} * RAYA_STATUS_WORDS);
-        if (any_node_has(status, RAYA_STATUS_CUT)) {
-            std::apply([&](auto&... parts) { guard_.restore_state(session_, label, kTruncatedLoopRemedy, parts...); },
-                       state);
-            continue;
-        }
-        if (!any_node_has(status, RAYA_STATUS_LEFT)) return;
-        resume = 1;
-    }
+        return LaunchEnd{!any_node_has(status, RAYA_STATUS_LEFT), any_node_has(status, RAYA_STATUS_CUT)};
+    };
+    launches_.run(session_, label, work, target_s, launch_part, end, queues_, ray_links_.outboxes(),
+                  ray_links_.inboxes(), return_links_.outboxes(), return_links_.inboxes(), returns_, status_, events_,
+                  made_, ended_);
 }
 
 void NodeArray::inject(Slots nodes) {
-    if (nodes.count == 0) return;
-    launch_until_done("inject", nodes, plan_.inject(), [&](node_kernels::Work work, node_kernels::Resume resume) {
+    launch_until_done("inject", nodes, [&](node_kernels::Work work, node_kernels::Resume resume) {
         session_.launch("inject", inject_, nodes.count, options_.group_size, memories_, starts_, run_,
                         node_kernels::FirstNode{nodes.first}, work, resume,
                         local_words(RAYA_INJECT_WORDS(options_.group_size, options_.lanes)), queues_, status_, events_,
@@ -153,17 +152,15 @@ void NodeArray::inject(Slots nodes) {
 }
 
 void NodeArray::trace_voxel(Slots nodes, Reserve reserve) {
-    if (nodes.count == 0) return;
-    const auto launch = [&](node_kernels::Work work, node_kernels::Resume resume) {
+    launch_until_done("trace_voxel", nodes, [&](node_kernels::Work work, node_kernels::Resume resume) {
         session_.launch("trace_voxel", trace_, nodes.count, options_.group_size, memories_, starts_, run_,
                         node_kernels::FirstNode{nodes.first}, reserve, work, resume, local_words(RAYA_COUNT_WORDS),
                         queues_, status_, events_, made_, ended_, processed_);
-    };
-    launch_until_done("trace_voxel", nodes, plan_.trace_voxel(), launch);
+    });
 }
 
 void NodeArray::route() {
-    launch_until_done("route", all(), plan_.route(), [&](node_kernels::Work work, node_kernels::Resume resume) {
+    launch_until_done("route", all(), [&](node_kernels::Work work, node_kernels::Resume resume) {
         session_.launch("route", route_, nodes_, options_.group_size, memories_, starts_, run_,
                         node_kernels::FirstNode{0}, work, resume, local_words(RAYA_ROUTE_WORDS(options_.group_size)),
                         queues_, ray_links_.outboxes(), return_links_.outboxes(), returns_, status_, ended_);
@@ -171,8 +168,7 @@ void NodeArray::route() {
 }
 
 void NodeArray::accept(Slots nodes, Reserve reserve, std::uint32_t superstep) {
-    if (nodes.count == 0) return;
-    launch_until_done("accept", nodes, plan_.accept(), [&](node_kernels::Work work, node_kernels::Resume resume) {
+    launch_until_done("accept", nodes, [&](node_kernels::Work work, node_kernels::Resume resume) {
         session_.launch("accept", accept_, nodes.count, options_.group_size, memories_, starts_, run_, reserve,
                         Uint<"turn">{superstep}, node_kernels::FirstNode{nodes.first}, inbox_of_link_,
                         ray_links_.sent_flags(), return_links_.sent_flags(), work, resume,
@@ -216,12 +212,9 @@ NodeStatus NodeArray::read_status() {
     std::vector<std::uint32_t> own_status(status_.size());
     session_.read("read status", status_, own_status);
     if (any_node_has(own_status, RAYA_STATUS_CUT))
-        throw truncated_loops_error("read status", session_.device().name, kTruncatedLoopRemedy);
-    const std::vector<std::uint32_t> all_status =
-        ranks_.all_gather(std::span<const std::uint32_t>(own_status), distribution_.sizes_of_ranks(RAYA_STATUS_WORDS));
-    const NodeStatus status(distribution_.in_order_of_nodes(all_status, RAYA_STATUS_WORDS));
-    plan_.update(status);
-    return status;
+        throw truncated_loops_error("read status", session_.device().name, launches_.remedy());
+    superstep_s_ = seconds_since(std::exchange(last_status_, Clock::now()));
+    return NodeStatus(distribution_.all_gather(std::move(own_status), RAYA_STATUS_WORDS));
 }
 
 void NodeArray::report_work(const NodeStatus& injected, const NodeWorkSink& sink) {
@@ -257,10 +250,7 @@ void NodeArray::finish_gather(std::vector<raya_head>& returns) {
 std::vector<std::uint64_t> NodeArray::gather_counters(const Buffer<std::uint64_t>& counters) {
     std::vector<std::uint64_t> own_counters(counters.size());
     session_.read("read counters", counters, own_counters);
-    const std::size_t per_node = counters.size() / nodes_;
-    const std::vector<std::uint64_t> all_counters =
-        ranks_.gather(std::span<const std::uint64_t>(own_counters), distribution_.sizes_of_ranks(per_node));
-    return all_counters.empty() ? all_counters : distribution_.in_order_of_nodes(all_counters, per_node);
+    return distribution_.gather(std::move(own_counters), counters.size() / nodes_);
 }
 
 EventCounts NodeArray::read_own_events() {
@@ -279,6 +269,27 @@ std::pair<PacketCounts, PacketCounts> NodeArray::read_packets(const Buffer<std::
     for (const PacketCounts& rank_counts : ranks_.all_gather(own_counts))
         for (std::size_t kind = 0; kind < RAYA_KINDS; ++kind) total_counts[kind] += rank_counts[kind];
     return {total_counts, own_counts};
+}
+
+void NodeArray::visit_state(RenderState& state, NodeStatus& status) {
+    if (state.restores()) clear();
+    state.buffer(status_);
+    if (state.restores()) status = read_status();
+    for (std::uint32_t node = 0; node < distribution_.all(); ++node) {
+        bool fits = std::max(status.at(node, RAYA_STATUS_QUEUE), status.at(node, RAYA_STATUS_HOST)) <= buffers_.queue;
+        for (const std::uint32_t boxes :
+             {RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX})
+            for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
+                fits &= status.at(node, boxes + link) <= buffers_.box;
+        if (!fits) throw UserError("damaged");
+    }
+    for (Buffer<std::uint64_t>* counters : {&events_, &made_, &ended_}) state.buffer(*counters);
+    ray_links_.visit_state(state, status);
+    return_links_.visit_state(state, status);
+    state.parts(queues_, [&](std::uint32_t node) {
+        return std::vector<RenderState::Part>{
+            {std::size_t{distribution_.slot_of(node)} * buffers_.queue, status.at(node, RAYA_STATUS_QUEUE)}};
+    });
 }
 
 }  // namespace raya

@@ -1,20 +1,21 @@
 // The torus nodes on the device of this rank: their memories, queues and counters, and the launches of their kernels.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "host/cl/kernels.hpp"
+#include "host/array/render.hpp"
+#include "host/base/clock.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/ranks/ranks.hpp"
-#include "host/torus/launch_plan.hpp"
 #include "host/torus/link_exchange.hpp"
-#include "host/torus/node_distribution.hpp"
 #include "host/torus/node_memory.hpp"
+#include "host/torus/topology.hpp"
 #include "host/torus/torus_result.hpp"
 #include "host/torus/torus_settings.hpp"
-#include "host/torus/torus_state.hpp"
 #include "kernels/shared/traffic.h"
 
 namespace raya {
@@ -135,38 +136,27 @@ class NodeArray {
 
     /// Returns [node][RAYA_LINKS]: number of messages over the link since clear(), for the nodes of all ranks.
     std::vector<std::uint64_t> link_packets() const;
-    bool links_by_kernel() const { return links_by_kernel_; }          // see TorusResult
-    const std::string& links_origin() const { return links_origin_; }  // see TorusResult
     const LinkExchange& ray_links() const { return ray_links_; }
     const LinkExchange& return_links() const { return return_links_; }
     const std::string& build_options() const { return build_options_; }
 
-    /// Collective: returns the state between read_status() after routing, which has returned `status`, and exchange().
-    /// Ranks other than 0 get only the counts. finish_gather() must have been called.
-    NodesState save(const NodeStatus& status);
-    /// Collective: continues from a state, whose contents only rank 0 needs. read_status() then returns the status of
-    /// save(), and exchange() is next.
-    void restore(NodesState state);
+    /// Collective: saves or restores the state between read_status() after routing, which has returned `status`, and
+    /// exchange(). finish_gather() must have been called. If the state is restored, sets `status`.
+    void visit_state(RenderState& state, NodeStatus& status);
     bool copies_words_to_local() const { return options_.words_local; }  // kernels copy a node's words to local memory
 
   private:
     NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
               const NodeDistribution& distribution, Ranks& ranks);
     void write_inbox_table();
-    void choose_link_method(Kernels& kernels);
-    void use_kernel(const ExchangeKernel& kernel);
-    double measure_exchange_s();
     /// Repeats `launch(work, resume)` until no node of `nodes` has work left.
     template <class Launch>
-    void launch_until_done(const std::string& label, Slots nodes, const LaunchBudget& budget, Launch&& launch);
-    std::vector<PacketRecord> gather_records(const std::vector<PacketRecord>& own_records);
+    void launch_until_done(const std::string& label, Slots nodes, const Launch& launch);
     /// Reads counters [slot][...] of all ranks. Returns [node][...] in rank 0, and an empty vector in other ranks.
     std::vector<std::uint64_t> gather_counters(const Buffer<std::uint64_t>& counters);
     /// Returns the local memory of a kernel: `work_group_words` words, plus the node's words if kernels copy them.
     LocalMemory<std::uint32_t> local_words(std::size_t work_group_words) const;
     std::pair<PacketCounts, PacketCounts> read_packets(const Buffer<std::uint64_t>& counters);
-    std::vector<std::uint32_t> scatter_packets(const NodeStatus& status, const std::vector<std::uint32_t>& all);
-    void write_packets(const NodeStatus& status, std::span<const std::uint32_t> words);
 
     Session& session_;
     const TorusSettings settings_;
@@ -175,7 +165,6 @@ class NodeArray {
     Ranks& ranks_;
     std::uint32_t nodes_, node_words_;  // number of nodes of this rank; number of words of the fullest of these nodes
     KernelOptions options_;
-    LaunchPlan plan_;
     Buffer<std::uint32_t> memories_, starts_;
     Buffer<raya_run> run_;
     Buffer<raya_packet> queues_;
@@ -185,16 +174,16 @@ class NodeArray {
     std::size_t returns_pending_ = 0;  // number of returns that returns_readback_ is reading
     Buffer<std::uint64_t> events_, made_, ended_;
     Buffer<raya_processed> processed_;
-    LaunchGuard<raya_packet, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t, raya_head, std::uint32_t,
-                std::uint64_t, std::uint64_t, std::uint64_t>
-        guard_;
+    LaunchLoop<raya_packet, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t, raya_head, std::uint32_t,
+               std::uint64_t, std::uint64_t, std::uint64_t>
+        launches_{"fewer objects in a voxel (--voxels), a shorter --queue"};
+    Clock::time_point last_status_;          // time of the last read_status()
+    std::optional<double> superstep_s_;      // time between the last two; empty in the first superstep
     LinkExchange ray_links_, return_links_;  // mailboxes of rays; mailboxes of returns
     node_kernels::Inject inject_;
     node_kernels::TraceVoxel trace_;
     node_kernels::Route route_;
     node_kernels::Accept accept_;
-    bool links_by_kernel_ = false;
-    std::string links_origin_;
     std::string build_options_;
 };
 

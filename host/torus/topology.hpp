@@ -1,10 +1,15 @@
 // The torus machine's nodes and links (kernels/shared/torus.h).
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "host/array/render.hpp"
 #include "kernels/shared/torus.h"
+#include "kernels/shared/traffic.h"
 
 namespace raya {
 
@@ -27,5 +32,52 @@ std::uint32_t links_of_node(const raya_torus& torus);
 
 /// Returns text such as "4x4x4".
 std::string sides_text(const std::array<std::uint32_t, 3>& sides);
+
+// Distribution of the torus nodes over ranks, and the status words of nodes.
+
+/// Returns [node]: rank of the node, 0..ranks - 1; rank 0 has the root. Each rank gets a cuboid of nodes. Recursive
+/// bisection cuts each cuboid across its longest side, between two layers of nodes, so that the numbers of nodes of
+/// both parts are as nearly proportional to their numbers of ranks as possible. Throws UserError for more ranks than
+/// nodes.
+std::vector<std::uint32_t> ranks_of_nodes(const raya_torus& torus, std::uint32_t ranks);
+
+/// Distribution of the nodes over the ranks. The first slots are those of the inner nodes, whose links all end in the
+/// same rank. The slots of the border nodes follow.
+class NodeDistribution : public Distribution {
+  public:
+    explicit NodeDistribution(const raya_torus& torus, Ranks& ranks = Ranks::single());
+
+    const raya_torus& torus() const { return torus_; }
+    /// Number of inner nodes of this rank.
+    std::uint32_t inner_nodes() const { return inner_nodes_; }
+
+    /// Number of inboxes that this rank has for each link direction. The first inboxes belong to links that start at
+    /// nodes of this rank, and are indexed by the slot of the start. Inboxes of links from other ranks follow. All
+    /// directions have the same number of inboxes: the maximum that a direction needs.
+    std::uint32_t inboxes() const { return inboxes_; }
+
+    /// Returns the index of the inbox for packets that `sender` sends over its link `link`. The sender or the node at
+    /// the end of the link must be in this rank.
+    std::uint32_t inbox_from(std::uint32_t sender, std::uint32_t link) const;
+
+  private:
+    bool is_inner(std::uint32_t node) const;
+
+    raya_torus torus_;
+    std::uint32_t inner_nodes_ = 0, inboxes_ = 0;
+    // [link]: nodes of other ranks whose link in that direction ends in this rank, ascending
+    std::vector<std::vector<std::uint32_t>> remote_senders_;
+};
+
+/// Host copy of the nodes' status words: [node][RAYA_STATUS_WORDS].
+class NodeStatus {
+  public:
+    explicit NodeStatus(std::uint32_t nodes) : words(std::size_t{nodes} * RAYA_STATUS_WORDS) {}
+    explicit NodeStatus(std::vector<std::uint32_t> status_words) : words(std::move(status_words)) {}
+    std::uint32_t at(std::uint32_t node, std::uint32_t word) const {
+        return words[std::size_t{node} * RAYA_STATUS_WORDS + word];
+    }
+    std::vector<std::uint32_t> words;
+};
 
 }  // namespace raya

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "host/cl/tuned.hpp"
+#include "host/base/encoding.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/error.hpp"
 #include "host/scene/packer.hpp"
 #include "host/torus/topology.hpp"
+#include "host/version.hpp"
 #include "kernels/shared/packet.h"
 #include "kernels/shared/traffic.h"
 
@@ -28,9 +30,9 @@ PackedJob header_only_job(const raya_job& header, bool has_patches) {
     return job;
 }
 
-NodeBuffers buffers_of(const Scene& scene, const NodeSizes& sizes, const TorusSettings& s, const NodeTrial& trial) {
+NodeBuffers buffers_of(const Scene& scene, const NodeSizes& sizes, const TorusSettings& s) {
     return plan_buffers(scene.name, sizes, s.torus, s.memory_bytes, s.queue,
-                        raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces), trial);
+                        raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces));
 }
 
 // The part of a TorusJob that is the same in all ranks: all but the nodes' words and their starts.
@@ -66,13 +68,13 @@ TorusJob divide_scene(const Session& session, const Scene& scene, const TorusSet
     const SpanLog::Span span = session.span("divide scene");
     const Partition partition = raya::partition(job, s.format, s.voxels);
     const NodeSizes sizes = node_sizes(job, partition, s.torus);
-    for (std::uint32_t rank = 0; rank < ranks.count(); ++rank) check_words(sizes, distribution.nodes_of(rank));
-    const NodeBuffers buffers = buffers_of(scene, sizes, s, make_node_trial(job, s.format, s.voxels));
-    check_device_memory(scene.name, buffers, distribution.max_nodes_of_rank(), session.device().name, device);
+    for (std::uint32_t rank = 0; rank < ranks.count(); ++rank) check_words(sizes, distribution.pes_of(rank));
+    const NodeBuffers buffers = buffers_of(scene, sizes, s);
+    check_device_memory(scene.name, buffers, distribution.max_count(), session.device().name, device);
     const std::vector<PixelWindow> windows = pixel_windows(job.header(), partition.grid, s.torus, s.format);
     TorusJobHeader header{job.header(), job.has_patches(), scale, buffers, sizes.words[sizes.fullest()], sizes.copies};
     const auto memories_of = [&](std::uint32_t rank) {
-        const std::vector<std::uint32_t>& nodes = distribution.nodes_of(rank);
+        const std::vector<std::uint32_t>& nodes = distribution.pes_of(rank);
         NodeMemories memories = pack_nodes(job, partition, s.torus, nodes);
         set_windows(memories, windows, nodes);
         return memories;
@@ -90,11 +92,24 @@ TorusJob receive_job(const NodeDistribution& distribution, Ranks& ranks) {
     TorusJobHeader header;
     ranks.broadcast(header);
     NodeMemories m;
-    m.starts.resize(distribution.nodes() + 1);
+    m.starts.resize(distribution.count() + 1);
     ranks.receive(0, std::span(m.starts));
     m.words.resize(m.starts.back());
     ranks.receive(0, std::span(m.words));
     return with_memories(header, std::move(m));
+}
+
+// Collective: returns, in rank 0, a hash of the words of all nodes. It does not depend on the number of ranks.
+std::string memories_hash(const NodeMemories& memories, const NodeDistribution& distribution) {
+    std::vector<char> digits;
+    for (std::uint32_t slot = 0; slot < distribution.count(); ++slot) {
+        const std::size_t words = memories.starts[slot + 1] - memories.starts[slot];
+        const std::string hash = words_hash(std::span(memories.words).subspan(memories.starts[slot], words));
+        digits.insert(digits.end(), hash.begin(), hash.end());
+    }
+    constexpr std::size_t kHashDigits = 32;
+    const std::vector<char> all = distribution.gather(std::move(digits), kHashDigits);
+    return bytes_hash({all.data(), all.size()});
 }
 
 }  // namespace
@@ -137,30 +152,13 @@ std::uint64_t traced_pixels(const TorusSettings& s) {
     return s.pixels.first < image_pixels ? (image_pixels - s.pixels.first - 1) / s.pixels.stride + 1 : 0;
 }
 
-KernelOptions kernel_options(const TorusSettings& s, const PackedJob& job) {
-    return {.lanes = s.kernels.lanes,
-            .group_size = s.kernels.group_size,
-            .bounces = s.bounces,
-            .format = s.format,
-            .exact_divide = s.kernels.exact_arithmetic,
-            .exact_fma = s.kernels.exact_arithmetic,
-            .words_local = s.kernels.local_words,
-            .filter = s.kernels.filter && (job.header().objects.spheres > 0 || job.has_polygons()) &&
-                      filters_are_valid(s.format, job.header().extent),
-            .polygons = job.has_polygons(),
-            .patches = job.has_patches(),
-            .cones = job.has_cones(),
-            .costs = s.history,
-            .tuning = s.kernels.tuning};
-}
-
 NodeNeeds node_needs(const Scene& scene, const TorusSettings& s) {
     check_packet_fields(s, scene);
     const LengthScale scale = length_scale(scene, s.format);
     const PackedJob job = pack_job(scene, job_settings(s, scale));
     const NodeSizes sizes = node_sizes(job, partition(job, s.format, s.voxels), s.torus);
     const std::uint64_t words = sizes.words[sizes.fullest()];
-    const NodeBuffers buffers = buffers_of(scene, sizes, s, {});
+    const NodeBuffers buffers = buffers_of(scene, sizes, s);
     return {scale, words, node_bytes(words, buffers, links_of_node(s.torus))};
 }
 
@@ -176,6 +174,24 @@ TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusS
                         const std::function<void()>& packed) {
     if (!ranks.is_first()) return receive_job(distribution, ranks);
     return divide_scene(session, scene, settings, distribution, device, ranks, packed);
+}
+
+StateSettings state_settings(const TorusSettings& s, const TorusJob& job, const NodeDistribution& distribution) {
+    return {{"raya", raya_version()},
+            {"a machine of type", "torus"},
+            {"--size", fmt::format("{}x{}", s.width, s.height)},
+            {"--nodes", sides_text({s.torus.nodes[0], s.torus.nodes[1], s.torus.nodes[2]})},
+            {"--links", links_name(s.links)},
+            {"--voxels", sides_text(s.voxels)},
+            {"--inject", s.inject == Injection::kRoot ? "root" : "all"},
+            {"--returns", s.packets.one_return_per_ray ? "rays" : "terms"},
+            {"--packet-words", std::to_string(s.packets.ray_words)},
+            {"--queue", std::to_string(job.buffers.queue)},
+            {"--format", format_name(s.format)},
+            {"--bounces", std::to_string(s.bounces)},
+            {"--sampling", s.sampling == Sampling::kCorners ? "corners" : "centres"},
+            {"every Nth pixel, from", fmt::format("{}, {}", s.pixels.stride, s.pixels.first)},
+            {"another scene, camera or light", memories_hash(job.memories, distribution)}};
 }
 
 }  // namespace raya

@@ -6,18 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "host/base/checkpoint.hpp"
 #include "host/cl/commands.hpp"
-#include "host/cl/device_info.hpp"
+#include "host/cl/device.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/model/mapping_rule.hpp"
 #include "host/model/number_format.hpp"
 #include "host/ranks/ranks.hpp"
-#include "host/scene/length_scale.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
 #include "host/torus/buffer_plan.hpp"
-#include "host/torus/node_distribution.hpp"
 #include "host/torus/node_memory.hpp"
+#include "host/torus/topology.hpp"
 #include "host/torus/torus_settings.hpp"
 #include "kernels/shared/node.h"
 
@@ -53,8 +53,6 @@ TorusSettings checked_settings(TorusSettings settings, const Scene& scene, const
 /// Returns the number of pixels to trace.
 std::uint64_t traced_pixels(const TorusSettings& settings);
 
-KernelOptions kernel_options(const TorusSettings& settings, const PackedJob& job);
-
 /// Job of a rank.
 struct TorusJob {
     PackedJob header_only;  // the job's header, without objects
@@ -86,5 +84,8 @@ DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks);
 TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& settings,
                         const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks,
                         const std::function<void()>& packed = {});
+
+/// Collective: returns the settings that determine the state of a render, for checkpoints.
+StateSettings state_settings(const TorusSettings& settings, const TorusJob& job, const NodeDistribution& distribution);
 
 }  // namespace raya

@@ -7,11 +7,11 @@
 #include <tuple>
 #include <utility>
 
+#include "host/array/checkpoints.hpp"
 #include "host/base/clock.hpp"
 #include "host/torus/buffer_plan.hpp"
 #include "host/torus/composer.hpp"
 #include "host/torus/node_array.hpp"
-#include "host/torus/torus_checkpoint.hpp"
 #include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_result.hpp"
 
@@ -34,7 +34,7 @@ struct TorusRenderer::Impl {
     double build_s = 0;
 
     void build();
-    std::optional<DeadlockFigures> run_supersteps(TorusRun& run, TorusCheckpoints& checkpoints,
+    std::optional<DeadlockFigures> run_supersteps(TorusRun& run, Checkpoints& checkpoints,
                                                   const ProgressCallback& progress, const RenderObservers& observers);
     void add_superstep(TorusRun& run, const NodeStatus& status, const MachineState& state,
                        const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const;
@@ -44,15 +44,17 @@ struct TorusRenderer::Impl {
     void collect(TorusResult& result);
     void check(const TorusResult& result) const;
     void describe(TorusResult& result) const;
+    void visit_state(RenderState& state, TorusRun& run, NodeStatus& status);
 };
 
 TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks,
                              const std::function<void()>& packed) {
     const TorusSettings chosen = checked_settings(settings, scene, session.device());
-    const NodeDistribution distribution(chosen.torus, ranks.count(), ranks.rank());
+    const NodeDistribution distribution(chosen.torus, ranks);
     const DeviceMemory device_memory = smallest_device_memory(session.device(), ranks);
     TorusJob job = make_torus_job(session, scene, chosen, distribution, device_memory, ranks, packed);
-    const KernelOptions options = kernel_options(chosen, job.header_only);
+    KernelOptions options = kernel_options(chosen, job.header_only);
+    options.costs = chosen.history;
     impl_.reset(new Impl{.session = session,
                          .ranks = ranks,
                          .settings = chosen,
@@ -76,32 +78,9 @@ void TorusRenderer::set_pixels(const PixelSubset& pixels) {
 void TorusRenderer::set_queue(std::uint32_t queue) {
     Impl& p = *impl_;
     const NodeBuffers buffers = buffers_for(queue);
-    check_device_memory(p.scene_name, buffers, p.distribution.max_nodes_of_rank(), p.session.device().name,
-                        p.device_memory);
+    check_device_memory(p.scene_name, buffers, p.distribution.max_count(), p.session.device().name, p.device_memory);
     p.job.buffers = buffers;
     p.build();
-}
-
-bool TorusRenderer::runs_without_deadlock() {
-    Impl& p = *impl_;
-    TorusRun run;
-    TorusCheckpoints none(nullptr, p.settings, p.job, p.distribution, p.ranks);
-    return !p.run_supersteps(run, none, {}, {});
-}
-
-QueueTrial TorusRenderer::queue_trial() {
-    Impl& p = *impl_;
-    return {
-        .node_bytes =
-            [&p](const NodeBuffers& b) { return node_bytes(p.job.fullest_words, b, links_of_node(p.settings.torus)); },
-        .node_memory = p.settings.memory_bytes.value_or(UINT64_MAX),
-        .fits_device =
-            [&p](const NodeBuffers& b) { return fits_device(b, p.distribution.max_nodes_of_rank(), p.device_memory); },
-        .completes =
-            [this](const NodeBuffers& b) {
-                set_queue(b.queue);
-                return runs_without_deadlock();
-            }};
 }
 
 void TorusRenderer::Impl::build() {
@@ -130,14 +109,14 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Render
     if (checkpointing != nullptr && (observers.work || observers.packets || observers.supersteps))
         throw std::logic_error("a render with observers cannot save checkpoints");
     p.session.clear_profile();
-    const Clock::time_point start = Clock::now();
     const SpanLog::Span rendering = p.session.span("render");
     const RankTraffic traffic_before = p.ranks.traffic();
     TorusRun run;
     run.returns.reserve(std::min<std::uint64_t>(2 * traced_pixels(p.settings), kReservedReturns));
     RenderObservers own_observers = observers;
     if (!p.ranks.is_first()) own_observers.supersteps = {};
-    TorusCheckpoints checkpoints(checkpointing, p.settings, p.job, p.distribution, p.ranks);
+    Checkpoints checkpoints(checkpointing, p.session, p.distribution,
+                            checkpointing ? state_settings(p.settings, p.job, p.distribution) : StateSettings{});
     if (const auto deadlock = p.run_supersteps(run, checkpoints, progress, own_observers))
         throw TorusDeadlock(*deadlock);
     TorusResult result;
@@ -146,7 +125,7 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Render
     result.link_words = std::move(run.link_words);
     p.collect(result);
     result.earlier_s = checkpoints.earlier_s();
-    result.render_s = result.earlier_s + seconds_since(start);
+    result.render_s = checkpoints.seconds();
     result.traffic = p.ranks.traffic() - traffic_before;
     p.describe(result);
     if (p.ranks.is_first()) p.check(result);
@@ -174,20 +153,21 @@ void TorusRenderer::Impl::add_superstep(TorusRun& run, const NodeStatus& status,
 // Runs supersteps until the image is complete; on a deadlock, returns the state of the machine. All ranks read the
 // status of all nodes, so they make the same decisions. While packets are transferred between ranks, the inner nodes
 // compute the next superstep.
-std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusRun& run, TorusCheckpoints& checkpoints,
+std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusRun& run, Checkpoints& checkpoints,
                                                                    const ProgressCallback& progress,
                                                                    const RenderObservers& observers) {
     const SpanLog::Span span = session.span("supersteps");
     nodes->clear();
     run.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
-    bool resumes = checkpoints.resume(*nodes, run);
+    NodeStatus status(0);
+    const auto visit = [&](RenderState& state) { visit_state(state, run, status); };
+    bool resumes = checkpoints.resume(visit);
     if (!resumes) compute(nodes->all(), run.reserve, true, observers.work);
     for (;; ++run.superstep, resumes = false) {
-        const NodeStatus status = resumes ? nodes->read_status() : route(run, observers);
+        if (!resumes) status = route(run, observers);
         const MachineState state = machine_state(status, raya_nodes(settings.torus), job.buffers.queue);
         run.max_live = std::max(run.max_live, state.live);
-        if (!resumes)
-            checkpoints.save_if_due(*nodes, status, run, progress_of(state, run.returns.size(), run.max_live));
+        if (!resumes) checkpoints.save_if_due(progress_of(state, run.returns.size(), run.max_live), visit);
         const std::vector<std::uint64_t> words = nodes->exchange(status);
         nodes->accept(nodes->inner(), run.reserve, run.superstep);
 
@@ -214,6 +194,21 @@ std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusRun& run
         if (nodes->border().count > 0) compute(nodes->border(), next_reserve, injects, observers.work);
         run.reserve = next_reserve;
     }
+}
+
+// Saves or restores the state between routing and the transfer of packets.
+void TorusRenderer::Impl::visit_state(RenderState& state, TorusRun& run, NodeStatus& status) {
+    if (!state.restores()) nodes->finish_gather(run.returns);
+    for (std::uint32_t* number : {&run.superstep, &run.stalled}) state.value(*number);
+    state.value(run.reserve);
+    state.value(run.max_live);
+    state.rank_0(run.supersteps, true);
+    state.rank_0(run.link_words);
+    state.rank_0(run.returns, true);
+    if (ranks.is_first() &&
+        (run.supersteps.size() != run.superstep || run.stalled > 2 || run.reserve > Reserve::kTight))
+        throw UserError("damaged");
+    nodes->visit_state(state, status);
 }
 
 // Moves packets from the queues to the outboxes, and starts to read the returns. Returns the status of all nodes.
@@ -283,9 +278,7 @@ void TorusRenderer::Impl::describe(TorusResult& result) const {
     result.buffers = job.buffers;
     result.copied_words = nodes->copies_words_to_local() ? job.memories.words.size() : 0;
     result.node_bytes = node_bytes(job.fullest_words, job.buffers, links_of_node(settings.torus));
-    result.links_by_kernel = nodes->links_by_kernel();
-    result.links_origin = nodes->links_origin();
-    result.parts_of_rank = distribution.nodes();
+    result.parts_of_rank = distribution.count();
     result.lanes = settings.kernels.lanes;
     result.group_size = settings.kernels.group_size;
     result.build_options = nodes->build_options();

@@ -6,10 +6,9 @@
 #include <memory>
 
 #include "host/base/checkpoint.hpp"
-#include "host/base/progress.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/commands.hpp"
 #include "host/ranks/ranks.hpp"
-#include "host/scene/length_scale.hpp"
 #include "host/scene/scene.hpp"
 #include "host/torus/buffer_plan.hpp"
 #include "host/torus/torus_result.hpp"
@@ -46,12 +45,6 @@ class TorusRenderer {
     /// Sets the capacity of the queues, in packets, for the following images. The queues may exceed a node's memory.
     /// Throws UserError if the queues do not fit the device, and DeviceError if the device fails.
     void set_queue(std::uint32_t queue);
-
-    /// Runs the supersteps of an image without composing it. Returns false on a deadlock.
-    bool runs_without_deadlock();
-
-    /// Returns limits and callbacks for find_longer_queue(). The callbacks use this renderer and change its queues.
-    QueueTrial queue_trial();
 
   private:
     struct Impl;

@@ -14,13 +14,6 @@ namespace {
 
 constexpr std::uint64_t kWordBytes = sizeof(std::uint32_t);
 
-std::uint64_t launches_of(const TorusResult& result, const std::string& label) {
-    std::uint64_t launches = 0;
-    for (const LabelSummary& c : result.commands)
-        if (c.label == label && c.kind == "kernel") launches += c.launches;
-    return launches;
-}
-
 // Returns the total size of the packets in bytes.
 std::uint64_t packet_bytes(const PacketCounts& made) {
     std::uint64_t words = 0;
@@ -71,10 +64,10 @@ double stepwise_ms(const std::vector<Superstep>& supersteps) {
 
 }  // namespace
 
-TorusDeadlock::TorusDeadlock(const DeadlockFigures& state, const std::string& remedy)
+TorusDeadlock::TorusDeadlock(const DeadlockFigures& state)
     : UserError(fmt::format("{}: deadlock in superstep {}: {} packets wait for each other, {} of {} queues are full at "
-                            "{} packets; {}",
-                            state.scene, state.superstep, state.live, state.full, state.nodes, state.queue, remedy)),
+                            "{} packets; use a longer queue",
+                            state.scene, state.superstep, state.live, state.full, state.nodes, state.queue)),
       figures(state) {}
 
 std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const TorusResult& r) {
@@ -84,7 +77,7 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
         inject_events[event] = std::exchange(trace_events[event], 0);
     PacketCounts primary_packets{}, other_packets = r.rank_made;
     primary_packets[RAYA_KIND_PRIMARY] = std::exchange(other_packets[RAYA_KIND_PRIMARY], 0);
-    const auto copied_bytes = [&](const char* label) { return launches_of(r, label) * kWordBytes * r.copied_words; };
+    const auto copied_bytes = [&](const char* label) { return r.launches(label) * kWordBytes * r.copied_words; };
 
     KernelWork inject = work_of("inject", inject_events), trace = work_of("trace_voxel", trace_events);
     inject.bytes = copied_bytes("inject") + packet_bytes(primary_packets);

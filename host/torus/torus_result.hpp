@@ -12,10 +12,10 @@
 #include "host/error.hpp"
 #include "host/image/image.hpp"
 #include "host/model/machine.hpp"
-#include "host/model/time_model.hpp"
+#include "host/model/t805.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/report/roofline.hpp"
-#include "host/scene/length_scale.hpp"
+#include "host/scene/scene.hpp"
 #include "host/torus/torus_settings.hpp"
 #include "kernels/shared/packet.h"
 #include "kernels/shared/torus.h"
@@ -68,10 +68,7 @@ struct RenderObservers {
 using PacketCounts = std::array<std::uint64_t, RAYA_KINDS>;
 
 /// Result of a render.
-struct TorusResult {
-    Image image;                          // pixels outside TorusSettings::pixels are 0
-    EventCounts events{}, rank_events{};  // of all ranks; of this rank
-    Load load;                            // modelled cycles of each node
+struct TorusResult : RenderResult {  // pixels outside TorusSettings::pixels are 0
     std::vector<Superstep> supersteps;
     PacketCounts made{}, ended{};             // packets that nodes created, and packets that nodes processed to the end
     PacketCounts rank_made{};                 // packets that this rank's nodes created
@@ -83,21 +80,10 @@ struct TorusResult {
     std::uint64_t received_returns = 0;              // of this rank's nodes
     std::uint64_t queue_max = 0;                     // maximum number of packets in a queue
     std::uint64_t copies = 0;                        // see NodeSizes
-    LengthScale scale;
     NodeBuffers buffers;
     std::uint64_t node_bytes = 0;     // number of bytes of the fullest node: words and buffers
     std::uint64_t copied_words = 0;   // number of words that this rank's nodes copy to local memory in each launch
-    bool links_by_kernel = false;     // true: a kernel transferred packets over links; false: buffer copies did
-    std::string links_origin;         // origin of this choice: "options", "FILE, DATE" (tuned), "measured", "defaults"
     std::uint64_t contributions = 0;  // number of return packets that reached the host
-    std::uint32_t parts_of_rank = 0;  // number of nodes of this rank
-    RankTraffic traffic;              // messages that this rank has sent during the render
-    std::uint32_t lanes = 0, group_size = 0;
-    std::string build_options;
-    std::string tuned;                 // source of lanes, group size and related settings (host/cl/tuned.hpp)
-    double build_s = 0, render_s = 0;  // host times of the kernel build, and of the render after it
-    double earlier_s = 0;              // part of render_s that earlier runs took, before a resume
-    std::vector<LabelSummary> commands;
 };
 
 /// State of a machine in a deadlock: no packet can move, because full nodes wait for each other.
@@ -110,10 +96,9 @@ struct DeadlockFigures {
     std::uint32_t queue = 0;  // capacity of a queue, packets
 };
 
-/// Thrown if the torus is in a deadlock. Longer queues prevent the deadlock; find_longer_queue()
-/// (host/torus/buffer_plan.hpp) finds a sufficient length.
+/// Thrown if the torus is in a deadlock. Longer queues prevent the deadlock.
 struct TorusDeadlock : UserError {
-    explicit TorusDeadlock(const DeadlockFigures& state, const std::string& remedy = "use a longer queue");
+    explicit TorusDeadlock(const DeadlockFigures& state);
 
     DeadlockFigures figures;
 };
@@ -139,5 +124,26 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
 ///     for each word over the busiest link direction (packets of 6 words). The word's transfer takes 83 cycles.
 /// So overlapped <= stepwise. Throws std::invalid_argument if `result` is for another torus.
 TorusTime torus_time(const raya_torus& torus, const TorusResult& result);
+
+// State of a torus render on the host.
+
+/// Number of free queue slots that a packet needs before a node accepts or processes it (kernels/shared/traffic.h).
+enum class Reserve : std::uint32_t {
+    kWholeTree,  // enough for the packet's whole ray tree
+    kTight       // the minimum, used after a superstep without progress
+};
+
+/// Progress of a render, on the host.
+struct TorusRun {
+    std::uint32_t superstep = 0;
+    std::uint32_t stalled = 0;  // consecutive supersteps without progress
+    Reserve reserve = Reserve::kWholeTree;
+    std::uint64_t max_live = 0;  // maximum number of live packets so far
+    // Only in rank 0: counts of the finished supersteps; [node][RAYA_LINKS]: words charged for the link; returns that
+    // have reached the host
+    std::vector<Superstep> supersteps{};
+    std::vector<std::uint64_t> link_words{};
+    std::vector<raya_head> returns{};
+};
 
 }  // namespace raya

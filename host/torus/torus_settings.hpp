@@ -5,10 +5,8 @@
 #include <optional>
 
 #include "host/accel/partition.hpp"
-#include "host/cl/kernel_options.hpp"
-#include "host/model/machine.hpp"
+#include "host/array/render.hpp"
 #include "host/model/t805.hpp"
-#include "host/scene/packer.hpp"
 #include "host/torus/topology.hpp"
 
 namespace raya {
@@ -32,8 +30,7 @@ struct PixelSubset {
 /// Default number of nodes along x, y and z (Yoshitani & Yamazaki).
 inline constexpr std::array<std::uint32_t, 3> kDefaultNodes = {4, 4, 4};
 
-struct TorusSettings {
-    Machine machine;
+struct TorusSettings : RenderSettings {
     std::uint32_t width = 0, height = 0;  // pixels
     raya_torus torus{};
     Links links = Links::kTorus3d;  // topology of `torus`
@@ -43,12 +40,7 @@ struct TorusSettings {
     std::uint32_t queue = 0;                    // capacity of a node's queue, packets; 0: plan_buffers() chooses
     std::optional<std::uint64_t> memory_bytes;  // memory of a node; empty: no limit
     PixelSubset pixels;
-    std::uint32_t bounces = 8;  // maximum number of reflections and refractions after the primary ray
-    NumberFormat format;
-    Sampling sampling = Sampling::kCentres;
-    KernelChoice kernels;
-    std::uint32_t work_per_launch = 0;  // LaunchBudget::work of all launches; 0: LaunchPlan chooses budgets
-    bool history = false;               // record the cost of each packet; required by RenderObservers::work
+    bool history = false;  // record the cost of each packet; required by RenderObservers::work
 };
 
 }  // namespace raya

@@ -32,10 +32,10 @@ Json to_json(const TunedEntry& entry) {
             {"scene", entry.scene}};
 }
 
-// Returns the index in `names` of the text of member `key`. Throws JsonError if `names` does not contain the text.
+// Returns the index in `names` of the text of member `key`. Throws UserError if `names` does not contain the text.
 std::uint32_t choice_of(const Json& json, const char* key, const std::vector<std::string>& names) {
-    const auto found = std::find(names.begin(), names.end(), json.at(key).text());
-    if (found == names.end()) throw JsonError(fmt::format("unknown {} \"{:.40}\"", key, json.at(key).text()));
+    const auto found = std::find(names.begin(), names.end(), json_text(json.at(key)));
+    if (found == names.end()) throw UserError(fmt::format("unknown {} \"{:.40}\"", key, json_text(json.at(key))));
     return static_cast<std::uint32_t>(found - names.begin());
 }
 
@@ -44,10 +44,11 @@ TunedEntry entry_of(const Json& json, const DeviceInfo& device) {
                              .accel = choice_of(json, "accel", {kAccelNames.begin(), kAccelNames.end()}),
                              .fp32 = choice_of(json, "format", {"fp32", "reduced"}) == 0},
                      .values = values_of(json.at("values")),
-                     .speedup = json.at("speedup").number(),
-                     .scene = json.at("scene").text()};
+                     .speedup = json_number(json.at("speedup")),
+                     .scene = json_text(json.at("scene"))};
     const KernelChoice kernels = with_values({}, entry.values);
-    check_kernel_options({.lanes = kernels.lanes, .group_size = kernels.group_size, .tuning = kernels.tuning}, device);
+    check_kernel_options(
+        {.lanes = kernels.lanes, .group_size = kernels.group_size, .sphere_batch = kernels.sphere_batch}, device);
     return entry;
 }
 
@@ -59,23 +60,24 @@ Json device_json(const DeviceInfo& device) {
 // Throws UserError unless raya tune wrote the file for this device and driver, with this version of raya and of the
 // file format.
 void check_origin(const Json& json, const DeviceInfo& device) {
-    if (!json.find("kind") || json.at("kind").text() != kKind) throw UserError(fmt::format("not a file of {}", kKind));
+    if (!find_member(json, "kind") || json_text(json.at("kind")) != kKind)
+        throw UserError(fmt::format("not a file of {}", kKind));
     const auto check = [](const std::string& stored, const std::string& required, const char* property) {
         if (stored != required)
             throw UserError(fmt::format("written for another {}: {}, not {}", property, stored, required));
     };
-    check(std::to_string(json.at("version").integer()), std::to_string(kFileFormatVersion),
+    check(std::to_string(json_integer(json.at("version"))), std::to_string(kFileFormatVersion),
           "version of the file format");
-    check(json.at("raya").text(), raya_version(), "version of raya");
+    check(json_text(json.at("raya")), raya_version(), "version of raya");
     const Json current = device_json(device), &stored = json.at("device");
-    for (const std::string& key : current.keys())
-        check(stored.at(key).text(), current.at(key).text(), ("device's " + key).c_str());
+    for (const auto& [key, value] : current.items())
+        check(json_text(stored.at(key)), json_text(value), ("device's " + key).c_str());
 }
 
 TunedFile file_of(const Json& json, const DeviceInfo& device) {
     check_origin(json, device);
-    TunedFile file{.date = json.at("date").text(), .entries = {}};
-    for (const Json& entry : json.at("tuned").elements()) file.entries.push_back(entry_of(entry, device));
+    TunedFile file{.date = json_text(json.at("date")), .entries = {}};
+    for (const Json& entry : json_array(json.at("tuned"))) file.entries.push_back(entry_of(entry, device));
     return file;
 }
 
@@ -123,7 +125,7 @@ Json to_json(const TunedValues& values) {
 TunedValues values_of(const Json& json) {
     TunedValues values;
     for (const auto& [name, value] : kTunedNames)
-        values.*value = static_cast<std::uint32_t>(json.at(name).integer(UINT32_MAX));
+        values.*value = static_cast<std::uint32_t>(json_integer(json.at(name), UINT32_MAX));
     return values;
 }
 

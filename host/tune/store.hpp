@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "host/base/json.hpp"
-#include "host/cl/tuned.hpp"
+#include "host/cl/kernel_options.hpp"
 
 namespace raya {
 
 /// Returns the JSON form of tuned values, for files and for messages between processes.
 Json to_json(const TunedValues& values);
 
-/// Inverse of to_json(). Throws JsonError if a value is missing or not an unsigned 32-bit integer.
+/// Inverse of to_json(). Throws Json::exception if a value is missing or not an unsigned 32-bit integer.
 TunedValues values_of(const Json& json);
 
 /// Tuned values of one kind of render.

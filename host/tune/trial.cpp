@@ -1,4 +1,4 @@
-#include "host/tune/trial.hpp"
+// The process of a trial.
 
 #include <fmt/core.h>
 
@@ -17,8 +17,8 @@
 #include "host/scene/nff.hpp"
 #include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_renderer.hpp"
-#include "host/tune/search.hpp"
 #include "host/tune/store.hpp"
+#include "host/tune/tune.hpp"
 
 namespace raya {
 namespace {
@@ -44,11 +44,6 @@ const Variant& variant_named(const std::string& name) {
 
 constexpr std::uint32_t kBounces = 8;
 
-struct TrialInput {
-    Scene scene;
-    ImageSize size;
-};
-
 Scene scene_of(const TrialSetup& render, const Variant& variant) {
     constexpr const char* kSpheres = "scenes/spheres.nff";
     constexpr int kLevel = 4;
@@ -58,77 +53,38 @@ Scene scene_of(const TrialSetup& render, const Variant& variant) {
     return parse_nff(embedded_files().at(kSpheres), kSpheres);
 }
 
-TrialInput input_of(const TrialRequest& request) {
-    const Variant& variant = variant_named(request.workload.variant);
-    const ImageSize& size = request.render.size;
-    return {scene_of(request.render, variant), size.width ? size : ImageSize{variant.side, variant.side}};
-}
-
-RingSettings ring_settings(const TrialRequest& request, const ImageSize& size, const KernelChoice& kernels) {
+RingSettings ring_settings(const Workload& workload, const ImageSize& size, std::uint32_t pes,
+                           const KernelChoice& kernels) {
     RingSettings s;
     s.machine = machine_named("grande");
-    const std::uint32_t pes = std::min(request.render.pes, size.width * size.height);
-    s.mapping = make_mapping(cyclic_mapping(16 % size.width, Fold::kCyclic), size, pes);
+    s.mapping =
+        make_mapping(cyclic_mapping(16 % size.width, Fold::kCyclic), size, std::min(pes, size.width * size.height));
     s.bounces = kBounces;
-    s.format = request.workload.format;
-    s.accel.kind = variant_named(request.workload.variant).accel;
+    s.format = workload.format;
+    s.accel.kind = variant_named(workload.variant).accel;
     s.kernels = kernels;
     return s;
 }
 
-TorusSettings torus_settings(const TrialRequest& request, const ImageSize& size, const KernelChoice& kernels) {
+TorusSettings torus_settings(const Workload& workload, const ImageSize& size, const KernelChoice& kernels) {
     TorusSettings s = default_torus(size);
     s.bounces = kBounces;
-    s.format = request.workload.format;
+    s.format = workload.format;
     s.kernels = kernels;
     return s;
 }
-
-const EventCounts& events_of(const RingResult& result) { return result.all.events; }
-const EventCounts& events_of(const TorusResult& result) { return result.events; }
 
 /// Renders one image with kernels that are already built. Returns the seconds from the packed scene to the image.
 using TimedRender = std::function<double()>;
 
-// Writes the lines "built" and "check" of candidate `number`, whose kernels `renderer` has built. Renders the first
-// image for "check". Returns a function that renders further images.
+// Renders the first image. Writes the line "check" if `lines` is a descriptor. Returns a function that renders further
+// images.
 template <class Renderer>
-TimedRender prepare_candidate(int lines, std::size_t number, std::shared_ptr<Renderer> renderer) {
-    send_line(lines, {{"built", number}});
-    const auto first_result = renderer->render();
-    const std::string check =
-        fmt::format("{}, {} rays", pixel_hash(first_result.image), ray_count(events_of(first_result)));
-    send_line(lines, {{"check", check}, {"build_s", first_result.build_s}});
+TimedRender first_image(int lines, std::shared_ptr<Renderer> renderer) {
+    const RenderResult result = renderer->render();
+    const std::string check = fmt::format("{}, {} rays", pixel_hash(result.image), ray_count(result.events));
+    if (lines >= 0) send_line(lines, {{"check", check}});
     return [renderer] { return renderer->render().render_s; };
-}
-
-double min_seconds(const std::vector<double>& seconds) { return *std::min_element(seconds.begin(), seconds.end()); }
-
-std::vector<std::vector<double>> samples_of(const std::vector<TimedRender>& renders, const TrialRequest& request) {
-    std::vector<std::vector<double>> samples(renders.size());
-    for (std::uint32_t i = 0; i < request.samples; ++i) {
-        for (std::size_t n = 0; n < renders.size(); ++n) samples[n].push_back(mean_seconds(renders[n]));
-        const bool may_stop = request.stop_early && samples.front().size() >= kMinSamples;
-        if (may_stop && min_seconds(samples.back()) > kDropRatio * min_seconds(samples.front())) break;
-    }
-    return samples;
-}
-
-TrialRequest request_of(const Json& json) {
-    const auto number = [](const Json& value) { return static_cast<std::uint32_t>(value.integer(UINT32_MAX)); };
-    const std::vector<Json>& size = json.at("size").elements();
-    TrialRequest request{.render = {.device = json.at("device").text(),
-                                    .scene = json.at("scene").text(),
-                                    .kernel_dir = json.at("kernel_dir").text(),
-                                    .strict = json.at("strict").integer(1) == 1,
-                                    .size = {number(size.at(0)), number(size.at(1))},
-                                    .pes = number(json.at("pes"))},
-                         .workload = {json.at("variant").text(), parse_format(json.at("format").text())},
-                         .candidates = {},
-                         .samples = number(json.at("samples")),
-                         .stop_early = json.at("stop_early").integer(1) == 1};
-    for (const Json& values : json.at("candidates").elements()) request.candidates.push_back(values_of(values));
-    return request;
 }
 
 }  // namespace
@@ -150,47 +106,6 @@ std::vector<Workload> default_workloads() {
             {"torus", parse_format("fp32")}};
 }
 
-Json to_json(const TrialRequest& request) {
-    Json candidates = Json::array();
-    for (const TunedValues& values : request.candidates) candidates.push_back(to_json(values));
-    const TrialSetup& render = request.render;
-    return {{"device", render.device},
-            {"scene", render.scene},
-            {"kernel_dir", render.kernel_dir},
-            {"strict", render.strict ? 1 : 0},
-            {"size", std::array{render.size.width, render.size.height}},
-            {"pes", render.pes},
-            {"variant", request.workload.variant},
-            {"format", format_name(request.workload.format)},
-            {"candidates", candidates},
-            {"samples", request.samples},
-            {"stop_early", request.stop_early ? 1 : 0}};
-}
-
-double median_ratio(const std::vector<double>& seconds, const std::vector<double>& reference) {
-    std::vector<double> ratios;
-    for (std::size_t i = 0; i < std::min(seconds.size(), reference.size()); ++i)
-        ratios.push_back(seconds[i] / reference[i]);
-    if (ratios.empty()) return 1;
-    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::nth_element(ratios.begin(), middle, ratios.end());
-    return *middle;
-}
-
-double ratio_of(const Trial& trial) {
-    if (trial.samples.empty() || trial.samples.front().empty() || trial.samples.back().empty()) return 1;
-    const std::vector<double>&last = trial.samples.back(), &first = trial.samples.front();
-    return std::max(min_seconds(last) / min_seconds(first), median_ratio(last, first));
-}
-
-bool wins_significantly(const Trial& trial) {
-    if (trial.status != TrialStatus::kCorrect || ratio_of(trial) > kMaxWinRatio) return false;
-    const std::vector<double>&last = trial.samples.back(), &first = trial.samples.front();
-    std::size_t lost_pairs = 0;
-    for (std::size_t i = 0; i < last.size(); ++i) lost_pairs += last[i] >= first[i];
-    return lost_pairs <= last.size() / 9;
-}
-
 double mean_seconds(const std::function<double()>& render) {
     constexpr double kMinSeconds = 0.02;
     double sum = 0;
@@ -199,24 +114,45 @@ double mean_seconds(const std::function<double()>& render) {
     return sum / calls;
 }
 
-void run_trial(int lines, const Json& json) {
-    const TrialRequest request = request_of(json);
-    const TrialInput input = input_of(request);
-    Session session(choose_device(request.render.device));
+// `request`: see request_json() in tune.cpp.
+void run_trial(int lines, const Json& request) {
+    const auto number = [](const Json& value) { return static_cast<std::uint32_t>(json_integer(value, UINT32_MAX)); };
+    const Json& sides = json_array(request.at("size"));
+    const TrialSetup setup{.device = json_text(request.at("device")),
+                           .scene = json_text(request.at("scene")),
+                           .kernel_dir = json_text(request.at("kernel_dir")),
+                           .strict = json_integer(request.at("strict"), 1) == 1,
+                           .size = {number(sides.at(0)), number(sides.at(1))},
+                           .pes = number(request.at("pes"))};
+    const Workload workload{json_text(request.at("variant")), parse_format(json_text(request.at("format")))};
+    const Variant& variant = variant_named(workload.variant);
+    const ImageSize size = setup.size.width ? setup.size : ImageSize{variant.side, variant.side};
+    const Scene scene = scene_of(setup, variant);
+    Session session(choose_device(setup.device));
     std::vector<TimedRender> renders;
-    for (const TunedValues& values : request.candidates) {
-        const KernelChoice kernels = with_values({.sources = {.folder = request.render.kernel_dir}}, values);
-        const std::size_t number = renders.size();
-        if (request.workload.key().torus)
-            renders.push_back(prepare_candidate(
-                lines, number,
-                std::make_shared<TorusRenderer>(session, input.scene, torus_settings(request, input.size, kernels))));
+    const Json& candidates = json_array(request.at("candidates"));
+    for (const Json& values : candidates) {
+        const int check_lines = renders.size() + 1 == candidates.size() ? lines : -1;
+        const KernelChoice kernels = with_values({.sources = {.folder = setup.kernel_dir}}, values_of(values));
+        const auto render_with = [&]<class Renderer>(std::shared_ptr<Renderer> renderer) {
+            send_line(lines, {{"built", renders.size() + 1}});
+            renders.push_back(first_image(check_lines, std::move(renderer)));
+        };
+        if (workload.key().torus)
+            render_with(std::make_shared<TorusRenderer>(session, scene, torus_settings(workload, size, kernels)));
         else
-            renders.push_back(prepare_candidate(
-                lines, number,
-                std::make_shared<RingRenderer>(session, input.scene, ring_settings(request, input.size, kernels))));
+            render_with(
+                std::make_shared<RingRenderer>(session, scene, ring_settings(workload, size, setup.pes, kernels)));
     }
-    send_line(lines, {{"samples", samples_of(renders, request)}});
+    const bool stops_early = json_integer(request.at("stop_early"), 1) == 1;
+    std::vector<std::vector<double>> samples(renders.size());
+    for (std::uint32_t i = 0; i < number(request.at("samples")); ++i) {
+        for (std::size_t n = 0; n < renders.size(); ++n) samples[n].push_back(mean_seconds(renders[n]));
+        if (stops_early && samples.front().size() >= kMinSamples &&
+            *std::ranges::min_element(samples.back()) > kDropRatio * *std::ranges::min_element(samples.front()))
+            break;
+    }
+    send_line(lines, {{"samples", samples}});
 }
 
 }  // namespace raya

@@ -3,270 +3,227 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 #include "host/base/child_process.hpp"
 #include "host/base/clock.hpp"
 #include "host/base/json.hpp"
 #include "host/error.hpp"
-#include "host/version.hpp"
+#include "host/tune/store.hpp"
 
 namespace raya {
 namespace {
 
-// Builds a Trial from the lines that the trial's process writes.
-class TrialReader {
-  public:
-    TrialReader(const TrialRequest& request, const std::string& expected_check)
-        : request_(request), expected_check_(expected_check) {
-        trial_.values = request.candidates.back();
-    }
+using Values = std::vector<std::uint32_t>;
 
-    void take_line(const Json& line) {
-        if (const Json* error = line.find("error")) {
-            if (line.at("kind").text() == "user") throw UserError(error->text());
-            end(failure_status(), error->text());
-        }
-        if (const Json* built = line.find("built")) built_candidates_ = built->integer() + 1;
-        if (line.find("check")) take_check(line);
-        if (const Json* samples = line.find("samples")) take_samples(*samples);
-    }
-
-    // Ends the trial with the first line of `error`, unless the trial has already ended.
-    void end(TrialStatus status, const std::string& error) {
-        if (ended_) return;
-        ended_ = true;
-        trial_.status = status;
-        trial_.error = error.substr(0, error.find('\n'));
-    }
-
-    // Returns the status of a trial that fails now: kCompile until all kernels are built, then kRuntime.
-    TrialStatus failure_status() const {
-        return built_candidates_ < request_.candidates.size() ? TrialStatus::kCompile : TrialStatus::kRuntime;
-    }
-    bool ended() const { return ended_; }
-    Trial trial() const { return trial_; }
-
-  private:
-    void take_check(const Json& line) {
-        trial_.build_s = line.at("build_s").number();
-        trial_.check = line.at("check").text();
-        if (!expected_check_.empty() && trial_.check != expected_check_)
-            end(TrialStatus::kCorrectness, fmt::format("image is {}; expected {}", trial_.check, expected_check_));
-    }
-
-    void take_samples(const Json& samples) {
-        for (const Json& candidate_samples : samples.elements()) {
-            trial_.samples.emplace_back();
-            for (const Json& seconds : candidate_samples.elements()) trial_.samples.back().push_back(seconds.number());
-        }
-        end(TrialStatus::kCorrect, "");
-    }
-
-    const TrialRequest& request_;
-    const std::string& expected_check_;  // empty: accept any check
-    Trial trial_;
-    std::size_t built_candidates_ = 0;  // number of candidates built so far
-    bool ended_ = false;
-};
-
-// Runs a trial in a child process, because drivers may crash or hang, and ends the process after `limit_s` seconds.
-// `expected_check`: the expected Trial::check; empty: accept any check. Throws UserError if the process reports a user
-// error.
-Trial supervise_trial(const TrialRequest& request, double limit_s, const std::string& expected_check,
-                      const TrialProgress& progress) {
-    const Clock::time_point start = Clock::now();
-    TrialReader reader(request, expected_check);
-    ChildProcess process(kTrialTask, to_json(request));
-    while (!reader.ended()) {
-        std::string line;
-        const ChildProcess::Read read = process.read(line, std::chrono::milliseconds(200));
-        if (read == ChildProcess::Read::kLine) reader.take_line(Json::parse(line, {"the trial's process"}));
-        if (read == ChildProcess::Read::kEnd)
-            reader.end(reader.failure_status(), "ended by " + ending_text(process.wait()));
-        if (read == ChildProcess::Read::kNothing) progress(request.candidates.back(), seconds_since(start));
-        if (seconds_since(start) > limit_s)
-            reader.end(TrialStatus::kTimeout, fmt::format("not done in {:.0f} s", limit_s));
-    }
-    Trial trial = reader.trial();  // ~ChildProcess() ends the process if it still runs
-    trial.wall_s = seconds_since(start);
-    trial.ended_at = utc_text("%Y-%m-%dT%H:%M:%SZ");
-    return trial;
+// Returns the powers of two in minimum..maximum, or `maximum` if there are none; `minimum` is a power of two.
+Values group_sizes(std::uint32_t minimum, std::uint32_t maximum) {
+    Values sizes;
+    for (std::uint32_t size = minimum; size <= maximum; size *= 2) sizes.push_back(size);
+    if (sizes.empty()) sizes.push_back(maximum);
+    return sizes;
 }
 
+// Inserts the default value if `values` does not contain it.
+void add_default(Values& values, std::uint32_t value) {
+    if (std::find(values.begin(), values.end(), value) == values.end())
+        values.insert(std::lower_bound(values.begin(), values.end(), value), value);
+}
+
+std::string value_text(const TuningParameter& parameter, std::uint32_t value) {
+    if (parameter.value == &TunedValues::local_words) return value ? "yes" : "no";
+    return value ? std::to_string(value) : "default";
+}
+
+constexpr double kMaxWinRatio = 0.98;
 constexpr std::uint32_t kSamples = 5, kFinalSamples = 9;  // samples per candidate: search; final comparison
-constexpr double kLimitFactor = 10;  // factor of limit_s for the first trial of the defaults and for final comparisons
+// Time limits in seconds, builds included: of a candidate; of the first trial of the defaults and the final comparison.
+constexpr double kCandidate_s = 20, kComparison_s = 200;
 
-class Tuner {
-  public:
-    Tuner(const DeviceInfo& device, const Workload& workload, const TuneSettings& settings,
-          const TrialProgress& progress)
-        : settings_(settings), progress_(progress) {
-        result_.workload = workload;
-        result_.space = space_of(device, workload.key());
-    }
+double min_of(const std::vector<double>& seconds) { return *std::ranges::min_element(seconds); }
 
-    Tuning run() {
-        check_ = measure_defaults().check;
-        const ShouldStop time_is_over = [this] { return elapsed_s() >= settings_.seconds; };
-        const MeasureRatio ratio = [this](const Candidate& best, const Candidate& candidate) {
-            return measure(best, candidate, remaining_s());
-        };
-        const SearchResult found = search(result_.space, ratio, time_is_over);
-        result_.complete = found.complete;
-        result_.seconds = elapsed_s();
-        confirm(result_.space.values_of(found.best));
-        if (settings_.exhaustive)
-            measure_all_candidates(result_.best == result_.space.defaults ? result_.space.start : found.best);
-        return std::move(result_);
-    }
-
-  private:
-    double elapsed_s() const { return seconds_since(start_); }
-
-    // Returns the time left for a candidate in seconds. It is at least 2, so that the last candidate can finish
-    // although the time of the search is over.
-    double remaining_s() const { return std::max(2.0, settings_.seconds - elapsed_s()); }
-
-    Trial run_trial_of(const std::vector<TunedValues>& candidates, std::uint32_t samples, double limit_s,
-                       bool stop_early) {
-        const TrialRequest request{settings_.render, result_.workload, candidates, samples, stop_early};
-        return supervise_trial(request, limit_s, check_, progress_);
-    }
-
-    Trial measure_defaults() {
-        const Trial first = run_trial_of({result_.space.defaults}, 1, kLimitFactor * settings_.limit_s, false);
-        if (first.status == TrialStatus::kCorrect) return first;
-        throw DeviceError(fmt::format(
-            "{}: the render with the default parameters failed: {}; remedy: run raya verify to find the error",
-            result_.workload.name(), first.error));
-    }
-
-    // Runs a trial. Returns the candidate's time divided by the best's, or nullopt if the candidate is dropped.
-    std::optional<double> measure(const Candidate& best, const Candidate& candidate, double max_s) {
-        const Space& space = result_.space;
-        const double limit = std::min(settings_.limit_s, max_s);
-        Trial t = run_trial_of({space.values_of(best), space.values_of(candidate)}, kSamples, limit, true);
-        if (t.status == TrialStatus::kTimeout && limit < settings_.limit_s) t.status = TrialStatus::kUnfinished;
-        result_.trials.push_back(t);
-        return t.status == TrialStatus::kCorrect ? std::optional(ratio_of(t)) : std::nullopt;
-    }
-
-    // Sets the result to `found` if a new comparison with the defaults confirms that `found` is faster. The search's
-    // own measurement of `found` is biased: the best of many measurements is often a lucky one.
-    void confirm(const TunedValues& found) {
-        result_.best = result_.space.defaults;
-        if (found == result_.best) return;
-        const Trial comparison =
-            run_trial_of({result_.best, found}, kFinalSamples, kLimitFactor * settings_.limit_s, false);
-        if (!wins_significantly(comparison)) return;
-        result_.best = found;
-        result_.ratio = median_ratio(comparison.samples[1], comparison.samples[0]);
-    }
-
-    // Measures every candidate, and compares the best of them with the search's result.
-    void measure_all_candidates(const Candidate& start) {
-        const Tuning search_result = result_;
-        const MeasureRatio ratio = [this](const Candidate& best, const Candidate& candidate) {
-            return measure(best, candidate, settings_.limit_s);
-        };
-        const SearchResult all = search_all(result_.space, start, ratio, [] { return false; });
-        result_ = search_result;  // discards the trials of search_all()
-        result_.exhaustive_tried = all.tried;
-        result_.exhaustive_best = result_.space.values_of(all.best);
-        if (*result_.exhaustive_best == result_.best) return;
-        const Trial comparison = run_trial_of({*result_.exhaustive_best, result_.best}, kFinalSamples,
-                                              kLimitFactor * settings_.limit_s, false);
-        if (comparison.status == TrialStatus::kCorrect)
-            result_.exhaustive_ratio = median_ratio(comparison.samples[1], comparison.samples[0]);
-    }
-
-    const TuneSettings& settings_;
-    const TrialProgress& progress_;
-    const Clock::time_point start_ = Clock::now();
-    std::string check_;  // Trial::check of the defaults
-    Tuning result_;
-};
-
-constexpr const char* kSchemaVersion = "1.0.0";
-
-const char* invalidity(TrialStatus status) {
-    switch (status) {
-        case TrialStatus::kCompile:
-            return "compile";
-        case TrialStatus::kRuntime:
-            return "runtime";
-        case TrialStatus::kCorrectness:
-            return "correctness";
-        case TrialStatus::kTimeout:
-            return "timeout";
-        default:
-            return "correct";
-    }
+// Returns the median of the ratios of the samples of two candidates.
+double median_ratio(const std::vector<double>& seconds, const std::vector<double>& reference) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < std::min(seconds.size(), reference.size()); ++i)
+        ratios.push_back(seconds[i] / reference[i]);
+    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::ranges::nth_element(ratios, middle);
+    return *middle;
 }
 
-Json measurement(const char* name, double value, const char* unit) {
-    return {{"name", name}, {"value", value}, {"unit", unit}};
+Json request_json(const Workload& workload, const TrialSetup& render, const std::vector<TunedValues>& candidates,
+                  std::uint32_t samples) {
+    Json values = Json::array();
+    for (const TunedValues& candidate : candidates) values.push_back(to_json(candidate));
+    return {{"device", render.device},
+            {"scene", render.scene},
+            {"kernel_dir", render.kernel_dir},
+            {"strict", render.strict ? 1 : 0},
+            {"size", std::array{render.size.width, render.size.height}},
+            {"pes", render.pes},
+            {"variant", workload.variant},
+            {"format", format_name(workload.format)},
+            {"candidates", values},
+            {"samples", samples},
+            {"stop_early", samples == kSamples ? 1 : 0}};
 }
 
-Json result_json(const Tuning& tuning, const Trial& trial) {
-    Json configuration = Json::object();
-    for (const TuningParameter& parameter : tuning.space.parameters)
-        configuration[parameter.name()] = trial.values.*parameter.value;
-    configuration["workload"] = tuning.workload.name();
-    const bool correct = trial.status == TrialStatus::kCorrect;
-    Json runtimes = Json::array(), measurements = Json::array();
-    if (correct) {
-        const std::vector<double>& seconds = trial.samples.back();
-        for (const double s : seconds) runtimes.push_back(1e3 * s);
-        measurements.push_back(measurement("time", 1e3 * *std::min_element(seconds.begin(), seconds.end()), "ms"));
-        measurements.push_back(measurement("ratio", ratio_of(trial), ""));
+// Reads the lines of a trial's process until it is done, fails, or has run for `limit_s` seconds.
+Trial read_trial(ChildProcess& process, const std::vector<TunedValues>& candidates, const std::string& expected_check,
+                 double limit_s, const TrialProgress& progress) {
+    const Clock::time_point start = Clock::now();
+    Trial trial{.values = candidates.back(), .error = {}, .check = {}, .samples = {}};
+    std::size_t built = 0;  // number of candidates whose kernels are built
+    const auto failed = [&](const std::string& why) {
+        trial.error = (built < candidates.size() ? "compile: " : "runtime: ") + why.substr(0, why.find('\n'));
+        return trial;
+    };
+    for (;;) {
+        std::string text;
+        const ChildProcess::Read read = process.read(text, std::chrono::milliseconds(200));
+        if (read == ChildProcess::Read::kEnd) return failed("ended by " + ending_text(process.wait()));
+        if (read == ChildProcess::Read::kNothing) progress(trial.values, seconds_since(start));
+        if (seconds_since(start) > limit_s) {
+            trial.error = fmt::format("timeout: not done in {:.0f} s", limit_s);
+            return trial;
+        }
+        if (read != ChildProcess::Read::kLine) continue;
+        const Json line = parse_json(text, {"the trial's process"});
+        if (const Json* error = find_member(line, "error")) {
+            if (json_text(line.at("kind")) == "user") throw UserError(json_text(*error));
+            return failed(json_text(*error));
+        }
+        if (const Json* count = find_member(line, "built")) built = json_integer(*count);
+        if (const Json* check = find_member(line, "check")) {
+            trial.check = json_text(*check);
+            if (!expected_check.empty() && trial.check != expected_check) {
+                trial.error = fmt::format("correctness: image is {}; expected {}", trial.check, expected_check);
+                return trial;
+            }
+        }
+        if (const Json* all_samples = find_member(line, "samples")) {
+            all_samples->get_to(trial.samples);
+            return trial;
+        }
     }
-    return {{"timestamp", trial.ended_at},
-            {"configuration", configuration},
-            {"objectives", std::vector<std::string>{"time"}},
-            {"times",
-             {{"compilation_time", 1e3 * trial.build_s},
-              {"runtimes", runtimes},
-              {"framework", 1e3 * trial.wall_s},
-              {"search_algorithm", 0},
-              {"validation", 0}}},
-            {"invalidity", invalidity(trial.status)},
-            {"correctness", trial.status == TrialStatus::kCorrectness ? 0 : 1},
-            {"measurements", measurements}};
 }
 
 }  // namespace
 
-std::size_t Tuning::count(TrialStatus status) const {
-    return static_cast<std::size_t>(
-        std::count_if(trials.begin(), trials.end(), [&](const Trial& t) { return t.status == status; }));
+const char* TuningParameter::name() const {
+    return std::find_if(kTunedNames.begin(), kTunedNames.end(), [this](const auto& n) { return n.second == value; })
+        ->first;
 }
 
-std::size_t Tuning::dropped() const {
-    return trials.size() - count(TrialStatus::kCorrect) - count(TrialStatus::kUnfinished);
+std::vector<TunedValues> Space::candidates() const {
+    std::vector<TunedValues> all = {defaults};
+    for (const TuningParameter& parameter : parameters) {
+        std::vector<TunedValues> combined;
+        for (TunedValues values : all)
+            for (const std::uint32_t value : parameter.values) {
+                values.*parameter.value = value;
+                combined.push_back(values);
+            }
+        all = std::move(combined);
+    }
+    std::ranges::stable_sort(all, {}, [this](const TunedValues& values) {
+        return std::ranges::count_if(parameters,
+                                     [&](const TuningParameter& p) { return values.*p.value != defaults.*p.value; });
+    });
+    return all;
+}
+
+Space space_of(const DeviceInfo& device, const TuningKey& key) {
+    Space space{.parameters = {}, .defaults = default_values(device, key)};
+    const bool cpu = device.type == "cpu", tests_all_objects = key.accel == RAYA_ACCEL_NONE;
+    const auto add = [&](std::uint32_t TunedValues::*value, Values values) {
+        add_default(values, space.defaults.*value);
+        space.parameters.push_back({value, std::move(values)});
+    };
+    const std::uint32_t max_group = max_group_size_of(device);
+    // Only llvmpipe ends loops early. It vectorises over work-items, so one lane suffices, and it needs minutes and
+    // gigabytes of memory to compile kernels with several lanes.
+    const bool llvmpipe = device.ends_loops_early;
+    add(&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16});
+    // Torus nodes on a CPU keep their default group size, which preserves the order of packets (docs/packets.md).
+    const std::uint32_t max_cpu_group = key.torus ? space.defaults.group : std::min(llvmpipe ? 16u : 4u, max_group);
+    add(&TunedValues::group, cpu ? group_sizes(1, max_cpu_group) : group_sizes(16, max_group));
+    if (tests_all_objects) add(&TunedValues::local_words, {0, 1});
+    if (tests_all_objects && key.fp32 && !key.torus)
+        add(&TunedValues::batch, cpu ? Values{0, 8, 16} : Values{0, 4, 8, 16, 32});
+    return space;
+}
+
+std::string change_text(const Space& space, const TunedValues& old_values, const TunedValues& new_values) {
+    std::string text;
+    for (const TuningParameter& parameter : space.parameters) {
+        std::string name = parameter.name();
+        std::replace(name.begin(), name.end(), '_', ' ');
+        text +=
+            fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value_text(parameter, old_values.*parameter.value));
+        if (old_values.*parameter.value != new_values.*parameter.value)
+            text += " -> " + value_text(parameter, new_values.*parameter.value);
+    }
+    return text;
+}
+
+double ratio_of(const Trial& trial) {
+    if (trial.samples.empty()) return 1;
+    const std::vector<double>&last = trial.samples.back(), &first = trial.samples.front();
+    return std::max(min_of(last) / min_of(first), median_ratio(last, first));
+}
+
+bool wins_significantly(const Trial& trial) {
+    if (!trial.error.empty() || ratio_of(trial) > kMaxWinRatio) return false;
+    const std::vector<double>&last = trial.samples.back(), &first = trial.samples.front();
+    std::size_t lost_pairs = 0;
+    for (std::size_t i = 0; i < last.size(); ++i) lost_pairs += last[i] >= first[i];
+    return lost_pairs <= last.size() / 9;
 }
 
 Tuning tune(const DeviceInfo& device, const Workload& workload, const TuneSettings& settings,
             const TrialProgress& progress) {
-    return Tuner(device, workload, settings, progress).run();
-}
-
-std::string t4_text(const DeviceInfo& device, const std::vector<Tuning>& tunings) {
-    Json results = Json::array();
-    for (const Tuning& tuning : tunings)
-        for (const Trial& trial : tuning.trials)
-            if (trial.status != TrialStatus::kUnfinished) results.push_back(result_json(tuning, trial));
-    return Json{{"schema_version", kSchemaVersion},
-                {"metadata",
-                 {{"timeunit", "milliseconds"},
-                  {"program", name_and_version()},
-                  {"device", device.name},
-                  {"platform", device.platform},
-                  {"driver", device.driver}}},
-                {"results", results}}
-               .dump(1) +
-           "\n";
+    const Clock::time_point start = Clock::now();
+    Tuning result;
+    result.workload = workload;
+    result.space = space_of(device, workload.key());
+    const TunedValues defaults = result.best = result.space.defaults;
+    std::string expected_check;
+    // Each trial runs in a child process, because drivers may crash or hang; ~ChildProcess() ends it.
+    const auto trial_of = [&](const std::vector<TunedValues>& candidates, std::uint32_t samples, double limit_s) {
+        ChildProcess process(kTrialTask, request_json(workload, settings.render, candidates, samples));
+        return read_trial(process, candidates, expected_check, limit_s, progress);
+    };
+    const Trial first = trial_of({defaults}, 1, kComparison_s);
+    if (!first.error.empty())
+        throw DeviceError(
+            fmt::format("{}: the render with the default parameters failed: {}; remedy: run raya verify to find the "
+                        "error",
+                        workload.name(), first.error));
+    expected_check = first.check;
+    TunedValues found = defaults;
+    for (const TunedValues& candidate : result.space.candidates()) {
+        if (candidate == defaults) continue;
+        const double left_s = settings.seconds - seconds_since(start);
+        result.complete = left_s > 0;
+        if (!result.complete) break;
+        const double limit_s = std::min(kCandidate_s, std::max(2.0, left_s));  // the last candidate may finish
+        Trial trial = trial_of({found, candidate}, kSamples, limit_s);
+        ++result.tried;
+        if (trial.error.empty() && ratio_of(trial) <= kMaxWinRatio) found = candidate;
+        if (!trial.error.empty() && (limit_s == kCandidate_s || !trial.error.starts_with("timeout")))
+            result.dropped.push_back(std::move(trial));
+    }
+    result.seconds = seconds_since(start);
+    if (found == defaults) return result;
+    // The search's own measurement of `found` is biased: the best of many measurements is often a lucky one.
+    const Trial comparison = trial_of({defaults, found}, kFinalSamples, kComparison_s);
+    if (!wins_significantly(comparison)) return result;
+    result.best = found;
+    result.ratio = median_ratio(comparison.samples[1], comparison.samples[0]);
+    return result;
 }
 
 }  // namespace raya

@@ -1,11 +1,51 @@
 // Finds out which setting makes a failing check pass.
 #pragma once
+#include <cstddef>
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "host/verify/supervisor.hpp"
 
 namespace raya {
+
+// Repeats one check in a child process with other settings, to find the cause of its failure.
+
+/// How to run a check.
+struct CheckRun {
+    std::string name;                                  // for people: "-cl-opt-disable"
+    std::string selector;                              // of the device, as in choose_device()
+    VerifySettings settings;                           // select one check
+    std::map<std::string, std::string> environment{};  // variables of the child process
+};
+
+/// A build or a launch of a run; see Capture (host/cl/capture.hpp).
+struct Step {
+    std::string name;
+    bool done = false;
+    std::map<std::string, std::string> outputs{};  // hashes by argument
+};
+
+/// One run of a check.
+struct Observation {
+    std::vector<Step> steps;   // steps[n - 1] is step n
+    std::size_t expected = 0;  // step of which the check gave the correct words; 0: none
+    bool passed = false;
+};
+
+/// Returns the settings to run only the check of this name, "LAYER NAME", once.
+VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name);
+
+/// Runs the check of `run`. Captures step number `step`, if not 0, in `folder`. Ends the run after
+/// settings.timeout_s, or, if `ends_at_step`, when the inputs of the step have been captured.
+Observation observe(const CheckRun& run, std::size_t step = 0, const std::filesystem::path& folder = {},
+                    bool ends_at_step = false);
+
+/// Returns the value of RAYA_BUILD_OPTIONS with one more option.
+std::string with_build_option(const std::string& option);
 
 /// Searches for a smallest set of changes with which the failed check `full_name` passes: build options, macros of the
 /// kernels, one lane, groups of one work-item, and for PoCL its environment variables. Runs the check a few times for

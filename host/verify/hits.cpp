@@ -8,9 +8,9 @@
 #include <functional>
 
 #include "host/accel/partition.hpp"
-#include "host/cl/kernels.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/embedded.hpp"
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 #include "host/scene/nff.hpp"
 #include "host/scene/split_mix.hpp"
 #include "host/verify/verify.hpp"

@@ -11,7 +11,7 @@
 #include "host/model/number_format.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
-#include "host/verify/check_runner.hpp"
+#include "host/verify/verdict.hpp"
 
 namespace raya {
 

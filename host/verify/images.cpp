@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/torus/history.hpp"
@@ -38,7 +38,7 @@ std::uint64_t sum(std::span<const std::uint64_t> numbers) {
 // Returns a fault if the trace passes had another number of launches than Rendering::work_per_launch causes: one, or
 // with a small limit many.
 std::string launches_fault(const Rendering& r, const DeviceInfo& device, const std::vector<LabelSummary>& commands) {
-    if (r.work_per_launch == 0 && is_llvmpipe(device)) return "";  // launches are limited for its sake
+    if (r.work_per_launch == 0 && device.ends_loops_early) return "";  // launches are limited for its sake
     for (const LabelSummary& command : commands)
         if (command.kind == "kernel" && (command.label == kTracePass || command.label == kSupersamplePass))
             if (r.work_per_launch ? command.launches < 5 : command.launches > 1)
@@ -67,9 +67,9 @@ Rendered render_on_ring(const KernelChoice& kernels, Session& session, const Ren
     settings.record_costs = !r.packets;
     if (r.pe_bytes) settings.machine.pe_memory_bytes = r.pe_bytes;
     RingResult result = RingRenderer(session, scene_of(image), settings).render();
-    std::vector<std::pair<const char*, std::uint64_t>> cycles = {{"cycles", sum(result.all.load.per_pe)}};
+    std::vector<std::pair<const char*, std::uint64_t>> cycles = {{"cycles", sum(result.load.per_pe)}};
     if (!r.packets) cycles.emplace_back("pixel_cycles", sum(result.cost().cycles));
-    const std::string counts = counts_text(result.all.events, cycles);
+    const std::string counts = counts_text(result.events, cycles);
     return {std::move(result.image), result.build_options, counts,
             launches_fault(r, session.device(), result.commands)};
 }
@@ -90,7 +90,6 @@ Rendered render_on_torus(const KernelChoice& kernels, Session& session, const Re
     s.sampling = image.sampling;
     s.work_per_launch = r.work_per_launch;
     s.kernels = kernels_for(kernels, r);
-    s.kernels.link_move = r.link_move;
     s.history = r.history;
     s.queue = r.queue;
     HistoryRecorder recorder(s.torus, s.packets);
@@ -163,17 +162,17 @@ Verdict check_rendering(const Verification& v, Session& session, const Rendering
 // Asks the driver for the binaries of a rendering's kernels, as programs that store kernels do. PoCL compiles all of
 // them once more then, without knowing the size of a group; PoCL 6.0 aborts (docs/defects.md).
 Verdict check_binaries(const Verification& v, Session& session, const Rendering& r) {
-    std::vector<KernelBuild> builds;
-    session.record_builds(&builds);
+    KernelBuilds builds;
+    session.observe(builds);
     render(v.kernels(r.lanes, r.group_size), session, r);
-    session.record_builds(nullptr);
-    if (builds.empty()) throw std::logic_error("check_binaries: no build was recorded");
-    for (const KernelBuild& build : builds) {
+    session.ignore(builds);
+    if (builds.all.empty()) throw std::logic_error("check_binaries: no build was recorded");
+    for (const KernelBuild& build : builds.all) {
         const auto sizes = guarded("querying the binary of " + build.name,
                                    [&] { return build.program.getInfo<CL_PROGRAM_BINARY_SIZES>(); });
         if (sizes.empty() || sizes[0] == 0) return failed(build.name + " has no binary", {.options = build.options});
     }
-    return passed(counted(builds.size(), "program"));
+    return passed(counted(builds.all.size(), "program"));
 }
 
 }  // namespace

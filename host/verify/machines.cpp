@@ -9,14 +9,14 @@
 #include <utility>
 #include <vector>
 
-#include "host/cl/kernels.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/model/mapping_rule.hpp"
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/scene/split_mix.hpp"
 #include "host/torus/topology.hpp"
-#include "host/verify/check_runner.hpp"
 #include "host/verify/transfers.hpp"
+#include "host/verify/verdict.hpp"
 #include "host/verify/verify.hpp"
 #include "kernels/shared/neighbours.h"
 #include "kernels/shared/node_counts.h"

@@ -6,9 +6,9 @@
 #include <bit>
 #include <cmath>
 
-#include "host/cl/kernels.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/cl/measure.hpp"
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 #include "host/verify/verify.hpp"
 #include "kernels/shared/chains.h"
 

@@ -9,7 +9,6 @@
 
 #include "host/cl/kernel_source.hpp"
 #include "host/model/number_format.hpp"
-#include "host/verify/check_runner.hpp"
 #include "host/verify/verdict.hpp"
 
 namespace raya {

@@ -185,11 +185,9 @@ Verdict compare_images(const Image& expected, const Image& got) {
 
 std::string counts_text(const EventCounts& events,
                         const std::vector<std::pair<const char*, std::uint64_t>>& other_counts) {
-    std::istringstream names(
-        "primary primary_hits reflected refracted shadow shadow_hits sphere_tests plane_tests "
-        "polygon_tests cone_tests shaded lit highlights walks steps discarded");
-    std::string text, name;
-    for (const std::uint64_t number : events) text += fmt::format("{} {} ", (names >> name, name), number);
+    std::string text;
+    for (std::size_t event = 0; event < RAYA_EVENTS; ++event)
+        text += fmt::format("{} {} ", kEvents[event].name, events[event]);
     for (const auto& [counter, number] : other_counts) text += fmt::format("{} {} ", counter, number);
     text.pop_back();
     return text;

@@ -11,7 +11,7 @@
 #include "host/image/image.hpp"
 #include "host/model/machine.hpp"
 #include "host/model/number_format.hpp"
-#include "host/ring/antialias.hpp"
+#include "host/ring/neighbour_exchange.hpp"
 #include "host/ring/ring_plan.hpp"
 #include "host/scene/scene.hpp"
 #include "host/verify/verdict.hpp"

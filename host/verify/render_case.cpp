@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "host/error.hpp"
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/torus/torus_plan.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <variant>
 
-#include "host/cl/tuned.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/model/mapping_rule.hpp"
 #include "host/ring/ring_plan.hpp"
 #include "host/scene/scene.hpp"

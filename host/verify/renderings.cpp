@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 #include "host/torus/topology.hpp"
 
 namespace raya {
@@ -30,7 +30,6 @@ std::string Rendering::name() const {
                                            accel == AccelKind::kNone ? "" : ", " + check_kind());
     if (mapping.kind == RAYA_FOLD_BLOCK) text += ", block fold";
     if (work_per_launch) text += ", launches of " + counted(work_per_launch, torus ? "unit" : "test");
-    if (link_move == LinkMove::kKernel) text += ", links by a kernel";
     if (pe_bytes) text += fmt::format(", PEs of {} bytes", pe_bytes);
     if (history) text += ", history";
     if (global_words) text += ", global words";
@@ -98,11 +97,7 @@ std::vector<Rendering> standard_renderings() {
         {.image = "cones fp32", .lanes = 8, .group_size = 1, .accel = AccelKind::kBvh, .fallback_code = true},
         {.image = "polygons fp32", .lanes = 4, .group_size = 1, .accel = AccelKind::kBvh, .fallback_code = true},
         {.image = "polygons fp32", .min_depth = Depth::kQuick, .torus = true},
-        {.image = "polygons fp32",
-         .min_depth = Depth::kQuick,
-         .work_per_launch = 1,
-         .torus = true,
-         .link_move = LinkMove::kKernel},
+        {.image = "polygons fp32", .min_depth = Depth::kQuick, .work_per_launch = 1, .torus = true},
         {.image = "far fp32",
          .min_depth = Depth::kQuick,
          .group_size = 64,

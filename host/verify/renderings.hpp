@@ -29,7 +29,6 @@ struct Rendering {
     std::array<std::uint32_t, 3> voxels = {nodes[0] + 1, nodes[1] + 2, nodes[2]};
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
-    LinkMove link_move = LinkMove::kCopies;
     std::uint32_t queue = 0;     // capacity of the queues of the torus, packets; 0: default
     std::uint32_t pe_bytes = 0;  // memory of a PE of the ring; 0: no limit
     bool history = false;        // record the cycles of each packet and check their sum in each node

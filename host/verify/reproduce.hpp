@@ -8,6 +8,14 @@
 
 namespace raya {
 
+// The files of a self-contained case of a failed check.
+
+/// Adds the host program, its header, Makefile and README to the captured files in `folder`. `step`: name of the
+/// captured step; `reference`: source of the expected words; `kernels`: folder of the kernels, empty for raya's own.
+/// With other kernels, also writes raya's own kernel, right.cl. Throws UserError.
+void write_case(const std::filesystem::path& folder, const DeviceChecks& device, const Check& check,
+                const std::string& step, const std::string& reference, const std::filesystem::path& kernels);
+
 /// Writes a case of the failed check `check` into the folder `folder`, which must not exist or be empty. `selector`
 /// selects the device, as in choose_device().
 ///

@@ -40,25 +40,27 @@ namespace {
 // --- Functions of the child process
 
 VerifySettings settings_of(const Json& json) {
-    const std::string& depth = json.at("depth").text();
-    const auto number = [&](const char* key) { return static_cast<std::uint32_t>(json.at(key).integer(UINT32_MAX)); };
+    const std::string& depth = json_text(json.at("depth"));
+    const auto number = [&](const char* key) {
+        return static_cast<std::uint32_t>(json_integer(json.at(key), UINT32_MAX));
+    };
     const auto has_depth = [&](Depth named) { return depth == depth_name(named); };
     return {.depth = has_depth(Depth::kFull)    ? Depth::kFull
                      : has_depth(Depth::kBrief) ? Depth::kBrief
                                                 : Depth::kQuick,
-            .sources = {.folder = json.at("kernel_dir").text()},
-            .only = json.at("only").text(),
-            .skip = json.at("skip").text(),
+            .sources = {.folder = json_text(json.at("kernel_dir"))},
+            .only = json_text(json.at("only")),
+            .skip = json_text(json.at("skip")),
             .shard = number("shard"),
             .shards = number("shards"),
             .repeat = number("repeat"),
-            .soak_s = json.at("soak_s").number(),
-            .seed = json.at("seed").integer(),
-            .is_whole_name = json.at("is_whole_name").integer() != 0,
+            .soak_s = json_number(json.at("soak_s")),
+            .seed = json_integer(json.at("seed")),
+            .is_whole_name = json_integer(json.at("is_whole_name")) != 0,
             .lanes = number("lanes"),
             .group_size = number("group_size"),
-            .as = json.at("as").text(),
-            .done = static_cast<std::size_t>(json.at("done").integer(SIZE_MAX))};
+            .as = json_text(json.at("as")),
+            .done = static_cast<std::size_t>(json_integer(json.at("done"), SIZE_MAX))};
 }
 
 struct SelectedDevices {
@@ -142,7 +144,7 @@ class Supervision {
             const ChildProcess::Read read = process.read(line, std::chrono::seconds(1));
             if (read == ChildProcess::Read::kEnd) break;
             if (read == ChildProcess::Read::kLine)
-                take(Json::parse(line, {"the process of the checks"}));
+                take(parse_json(line, {"the process of the checks"}));
             else if (sink_.running && running_)
                 sink_.running(running_->layer, running_->name, check_seconds());
             if (running_ && settings_.timeout_s > 0 && check_seconds() > settings_.timeout_s) {
@@ -166,14 +168,14 @@ class Supervision {
     double check_seconds() const { return seconds_since(start_); }
 
     void take(const Json& line) {
-        if (const Json* error = line.find("error")) refuse(line.at("kind").text(), error->text());
-        if (line.find("devices")) take_device(line);
-        if (const Json* started = line.find("started")) {
-            running_ = Running{started->at("layer").text(), started->at("name").text()};
+        if (const Json* error = find_member(line, "error")) refuse(json_text(line.at("kind")), json_text(*error));
+        if (find_member(line, "devices")) take_device(line);
+        if (const Json* started = find_member(line, "started")) {
+            running_ = Running{json_text(started->at("layer")), json_text(started->at("name"))};
             start_ = Clock::now();
         }
-        if (const Json* check = line.find("check")) finish(check_of(*check));
-        ended_ = ended_ || line.find("ended");
+        if (const Json* check = find_member(line, "check")) finish(check_of(*check));
+        ended_ = ended_ || find_member(line, "ended");
     }
 
     [[noreturn]] static void refuse(const std::string& kind, const std::string& error) {
@@ -184,10 +186,10 @@ class Supervision {
 
     void take_device(const Json& line) {
         if (devices_ > 0) return;  // already reported by the first process
-        devices_ = line.at("devices").integer();
+        devices_ = json_integer(line.at("devices"));
         all_ = device_checks_of(line.at("device"));
-        all_.names = line.at("names").strings();
-        if (sink_.device) sink_.device(all_, line.at("left_out").strings(), devices_);
+        all_.names = json_strings(line.at("names"));
+        if (sink_.device) sink_.device(all_, json_strings(line.at("left_out")), devices_);
     }
 
     void finish(Check check) {
@@ -257,8 +259,8 @@ DeviceChecks supervise(const std::string& selector, std::size_t index, const Ver
 void run_checks(int pipe, const Json& request, const std::function<RenderCase(const std::string&)>& render_case) {
     VerifySettings settings = settings_of(request);
     if (!settings.as.empty()) settings.render = std::make_shared<RenderCase>(render_case(settings.as));
-    const std::string& selector = request.at("device").text();
-    const std::size_t index = request.at("index").integer();
+    const std::string& selector = json_text(request.at("device"));
+    const std::size_t index = json_integer(request.at("index"));
     const SelectedDevices selected = selected_devices(selector, index);
     if (settings.done == 0)
         for (const cl::Device& device : selected.devices) refuse_empty_selection(device, settings);
@@ -269,8 +271,8 @@ void run_checks(int pipe, const Json& request, const std::function<RenderCase(co
                      {"device", to_json(device_checks_of(device_info(device)))},
                      {"names", check_names(device, full)}});
     std::optional<Capture> capture;
-    if (const Json* c = request.find("capture"))
-        capture.emplace(c->at("step").integer(), c->at("folder").text(),
+    if (const Json* c = find_member(request, "capture"))
+        capture.emplace(json_integer(c->at("step")), json_text(c->at("folder")),
                         [&](const Json& line) { send_line(pipe, line); });
     const CheckSink sink{.started =
                              [&](const std::string& layer, const std::string& name) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/cl/kernels.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/verify/verdict.hpp"
 #include "kernels/shared/torus.h"
 

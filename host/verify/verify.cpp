@@ -8,8 +8,8 @@
 
 #include "host/base/clock.hpp"
 #include "host/base/json.hpp"
+#include "host/cl/kernel_source.hpp"
 #include "host/cl/program.hpp"
-#include "host/cl/spirv.hpp"
 #include "host/error.hpp"
 #include "host/scene/split_mix.hpp"
 #include "host/verify/render_case.hpp"
@@ -175,8 +175,8 @@ std::vector<std::string> compiler_remedies() {
 }
 
 Check check_of(const Json& json) {
-    const auto text = [&](const char* key) { return json.at(key).text(); };
-    Check check{text("layer"), text("name"), json.at("seconds").number(), {Outcome::kPass, text("result"), {}}};
+    const auto text = [&](const char* key) { return json_text(json.at(key)); };
+    Check check{text("layer"), text("name"), json_number(json.at("seconds")), {Outcome::kPass, text("result"), {}}};
     for (const Outcome outcome : {Outcome::kFail, Outcome::kSkip, Outcome::kExpectedFail, Outcome::kUnexpectedPass})
         if (text("status") == outcome_name(outcome)) check.verdict.outcome = outcome;
     if (!has_failed(check.verdict.outcome)) return check;
@@ -184,7 +184,7 @@ Check check_of(const Json& json) {
                            .expected = text("expected"),
                            .got = text("got"),
                            .options = text("build_options"),
-                           .remedies = json.at("remedies").strings()};
+                           .remedies = json_strings(json.at("remedies"))};
     return check;
 }
 

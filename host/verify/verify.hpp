@@ -9,7 +9,7 @@
 #include "host/base/json.hpp"
 #include "host/cl/commands.hpp"
 #include "host/cl/device.hpp"
-#include "host/cl/kernels.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/verify/verdict.hpp"
 
 namespace raya {

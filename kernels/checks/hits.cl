@@ -33,9 +33,7 @@ RAYA_KERNEL_BODY hit searched_hit(words job, const ray* r, int shadow) {
     ray_pool pool;
     clear_tree(&t);
     open_pool(&pool);
-    put_rays(job, &pool, 0, &t, r->limit > 0.0f, r, shadow);
-    find_hits(job, &pool, shadow);
-    return take_hit(&pool, 0, &t);
+    return cast_rays(job, &pool, &t, r->limit > 0.0f, r, shadow);
 }
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))

@@ -58,22 +58,18 @@ static inline void next_points(words scene, tree* t, pixel_store* store, tree_pi
 
 // Traces the trees until no pixels are left or a lane has done `work` tests and steps. Returns 1 if trees are
 // unfinished or the PE has pixels that no work-item has taken; else 0.
-static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree_pixels* pixels,
+static inline int trace_trees(words scene, pixel_store* store, tree* t, tree_pixels* pixels,
                               volatile __local uint* next, uint work) {
     ray_pool pool;
     open_pool(&pool);
     // The minimum number of idle lanes that take new points. If all start together, their rays remain similar.
     const uint refill = RAYA_MAKES_PACKETS ? RAYA_LANES : 1;
     for (;;) {
-        int active = 0;
-        for (uint i = 0; i < RAYA_TREES; ++i) {
-            const uint idle = popcount(mask_bits(mask_not(trees[i].active)));
-            if (idle >= refill) next_points(scene, &trees[i], store, &pixels[i], next);
-            active |= mask_any(trees[i].active);
-        }
-        if (!active) return !store->drained;
+        const uint idle = popcount(mask_bits(mask_not(t->active)));
+        if (idle >= refill) next_points(scene, t, store, pixels, next);
+        if (!mask_any(t->active)) return !store->drained;
         if (mask_any(pool.spent >= (index)(work))) return 1;
-        follow_trees(scene, trees, &pool);
+        follow_trees(scene, t, &pool);
     }
 }
 
@@ -81,19 +77,17 @@ static inline int trace_trees(words scene, pixel_store* store, tree* trees, tree
 // (`last_state`). Saves unfinished trees to `new_state`.
 RAYA_KERNEL_BODY int trace_share(words scene, pixel_store* store, volatile __local uint* next, uint work,
                                  save_cursor last_state, save_cursor new_state, int resumes) {
-    tree trees[RAYA_TREES];
-    tree_pixels pixels[RAYA_TREES];
+    tree t;
+    tree_pixels pixels;
     index left = (index)(0);
     if (resumes) transfer_index(&last_state, &left);
-    for (uint i = 0; i < RAYA_TREES; ++i) {
-        clear_tree(&trees[i]);
-        clear_pixels(&pixels[i]);
-    }
-    if (mask_any(left != (index)(0))) transfer_trees(last_state, trees, pixels);
-    left = (index)(trace_trees(scene, store, trees, pixels, next, work));
+    clear_tree(&t);
+    clear_pixels(&pixels);
+    if (mask_any(left != (index)(0))) transfer_trees(last_state, &t, &pixels);
+    left = (index)(trace_trees(scene, store, &t, &pixels, next, work));
     transfer_index(&new_state, &left);
     if (!mask_any(left != (index)(0))) return 0;
-    transfer_trees(new_state, trees, pixels);
+    transfer_trees(new_state, &t, &pixels);
     return 1;
 }
 

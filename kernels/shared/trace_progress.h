@@ -15,16 +15,12 @@ typedef struct {
 } raya_trace_progress;
 RAYA_SHARED_SIZE(raya_trace_progress, 4 * 3);
 
-// Default number of ray trees that a lane traces concurrently. With a grid a lane traces several trees, because rays
-// visit different numbers of voxels and lanes with one tree would wait for one another.
-#define RAYA_DEFAULT_TREES(accel, lanes) ((accel) == RAYA_ACCEL_GRID && (lanes) > 1 ? 4 : 1)
-
 // Returns the maximum number of words that a work-item saves for each lane (kernels/ring/saved_trees.clh): one word
-// that is not 0 if trees follow; then for each tree three words of state, its colour, current ray, event counts and
-// pending rays, and four words and the colour of its pixel.
-RAYA_SHARED_FUNCTION raya_u32 raya_saved_words(raya_u32 trees, raya_u32 bounces) {
+// that is not 0 if a tree follows; then three words of state, its colour, current ray, event counts and pending rays,
+// and four words and the colour of its pixel.
+RAYA_SHARED_FUNCTION raya_u32 raya_saved_words(raya_u32 bounces) {
     const raya_u32 ray = 7, colour = 3;
-    return 1 + trees * (3 + colour + ray + RAYA_EVENTS + bounces * ray + 4 + colour);
+    return 1 + 3 + colour + ray + RAYA_EVENTS + bounces * ray + 4 + colour;
 }
 
 #endif

@@ -1,6 +1,5 @@
 // exchange: copies outboxes to the inboxes at the ends of their links. One launch copies either all outboxes of rays or
-// all outboxes of returns. The kernel replaces buffer copies (host/torus/link_exchange.cpp) on devices on which
-// starting a copy takes longer than moving a mailbox.
+// all outboxes of returns.
 //
 // Work-group g copies the outbox of link g / nodes of the node in slot g mod nodes. If the outbox holds packets and the
 // inbox at the end of the link is empty, the work-group sets `sent` to 1 and copies the outbox; else it sets `sent` to

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <iterator>
 
-#include "host/base/temporary_folder.hpp"
+#include "host/base/child_process.hpp"
 
 namespace raya {
 

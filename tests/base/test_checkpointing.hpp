@@ -1,10 +1,12 @@
 // Checkpoints in tests: a render that stops after a number of checkpoints, and resumes from the bytes of one.
 #pragma once
+#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "host/base/checkpoint.hpp"
+#include "host/base/encoding.hpp"
 
 namespace raya {
 
@@ -42,14 +44,43 @@ class TestCheckpointing {
 /// Returns the header of a checkpoint.
 inline Json checkpoint_header(const std::string& bytes) {
     const std::size_t magic_end = bytes.find('\n') + 1;
-    return Json::parse(bytes.substr(magic_end, bytes.find('\n', magic_end) - magic_end), {"the header"});
+    return parse_json(bytes.substr(magic_end, bytes.find('\n', magic_end) - magic_end), {"the header"});
 }
+
+/// The vectors of a checkpoint, for damage with a valid hash.
+struct CheckpointBody {
+    explicit CheckpointBody(const std::string& bytes)
+        : header(bytes.substr(0, bytes.find('\n', bytes.find('\n') + 1) + 1)),
+          body(bytes.substr(header.size(), bytes.size() - header.size() - bytes_hash("").size())) {}
+
+    std::string bytes() const { return header + body + bytes_hash(header + body); }
+
+    /// Returns the position of the number of elements of a vector; the elements follow after 8 bytes. `element_bytes`:
+    /// size of an element, for each of the vectors before it.
+    std::size_t vector_at(const std::vector<std::size_t>& element_bytes) const {
+        std::size_t at = 0;
+        for (const std::size_t size : element_bytes) at += 8 + size * number<std::uint64_t>(at);
+        return at;
+    }
+    template <class T>
+    T number(std::size_t at) const {
+        T value{};
+        std::memcpy(&value, &body.at(at), sizeof value);
+        return value;
+    }
+    template <class T>
+    void set(std::size_t at, T value) {
+        std::memcpy(&body.at(at), &value, sizeof value);
+    }
+
+    std::string header, body;
+};
 
 /// Returns the settings in a checkpoint.
 inline StateSettings saved_settings(const std::string& bytes) {
     const Json header = checkpoint_header(bytes);
     StateSettings settings;
-    for (const std::string& name : header.at("of").keys()) settings.emplace_back(name, header.at("of").at(name).text());
+    for (const auto& [name, value] : header.at("of").items()) settings.emplace_back(name, json_text(value));
     return settings;
 }
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <thread>
 
-#include "host/base/progress.hpp"
+#include "host/base/log.hpp"
 
 namespace raya {
 namespace {

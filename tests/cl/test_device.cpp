@@ -7,7 +7,7 @@
 
 #include "host/cl/device.hpp"
 #include "host/cl/error_names.hpp"
-#include "host/cl/spirv.hpp"
+#include "host/cl/kernel_source.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -9,7 +9,7 @@
 #include <ctime>
 #include <thread>
 
-#include "host/cl/host_counters.hpp"
+#include "host/cl/profile.hpp"
 
 namespace raya {
 namespace {

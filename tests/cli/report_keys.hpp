@@ -43,7 +43,7 @@ inline std::set<std::string> default_report_keys() {
                                   "image.height count",
                                   "image.file string",
                                   "image.hash string",
-                                  "image.codes null",
+                                  "image.exposure null",
                                   "view.from[] number",
                                   "view.at[] number",
                                   "view.up[] number",

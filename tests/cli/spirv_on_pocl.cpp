@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "host/base/temporary_folder.hpp"
+#include "host/base/child_process.hpp"
 
 namespace {
 

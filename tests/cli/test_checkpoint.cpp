@@ -1,6 +1,7 @@
 // render --checkpoint and --resume: resumed renders, and files that a checkpoint must not overwrite.
 #include <filesystem>
 
+#include "host/base/checkpoint.hpp"
 #include "host/base/whole_file.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
@@ -92,7 +93,7 @@ TEST_CASE("render --checkpoint: refuses a file that is not a checkpoint, and lea
         refused({"--checkpoint", file}, "is not a checkpoint; name another file");
         refused({"--checkpoint", file, "--resume"}, "is not a checkpoint; name another file");
     }
-    write_whole_file(file, "raya state 3\nhours of work");
+    write_whole_file(file, std::string(kStateMagic) + "hours of work");
     refused({"--checkpoint", file}, "add --resume");
 }
 

@@ -92,7 +92,6 @@ TEST_CASE("help: the parser accepts every example, and its scenes exist", "[cli]
 
 TEST_CASE("help: the parser refuses wrong examples (control)", "[cli][help]") {
     CHECK(calls_in("a=b raya x -o - | raya y >z && raya w") == std::vector<Arguments>{{"x", "-o", "-"}, {"y"}, {"w"}});
-    CHECK(calls_in("source <(raya completion bash)") == std::vector<Arguments>{{"completion", "bash"}});
     for (const Arguments& call :
          {Arguments{"rendr", "x.nff"}, Arguments{"render", "x.nff", "-o", "x.png", "--no-such-option"},
           Arguments{"render", "x.nff", "-o"}, Arguments{"render", "x.nff"},

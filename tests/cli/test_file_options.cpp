@@ -9,7 +9,7 @@
 
 #include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
-#include "host/cli/file_options.hpp"
+#include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/tune/store.hpp"
 #include "tests/cli/all_commands.hpp"
@@ -184,20 +184,6 @@ TEST_CASE("file options: derived output names (replay) overwrite no input and no
     for (const std::string& file : {platform, history})
         check_unchanged(file, render_with(file, packets), {"--replay", file, "SCENE"});
     CHECK_FALSE(fs::exists(image));
-}
-
-TEST_CASE("tune --report: refuses the file of tuned values", "[cli][file_options]") {
-    const ScratchFolder cache;
-    const DeviceInfo device = device_info(choose_device(""));
-    fs::create_directory(cache / "raya");
-    const std::string file = cache / "raya" / tuned_file_name(device);
-    write_whole_file(file, "content");
-    const RunOutcome run =
-        run_raya({"tune", "--seconds", "1", "--report", file}, {.variables = {{"XDG_CACHE_HOME", cache.path()}}});
-    INFO(run.describe());
-    CHECK(run.code == 2);
-    CHECK_THAT(run.err, Catch::Contains("tune ") && Catch::Contains("the same file as --report"));
-    CHECK(file_contents(file) == "content");
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // help_text() of a small example program at several widths.
 #include <catch2/catch.hpp>
 #include <sstream>
-#include <stdexcept>
 
 #include "host/cli/command_text.hpp"
 #include "tests/cli/run_program.hpp"
@@ -38,7 +37,7 @@ CommandText small_command() {
     return command;
 }
 
-TEST_CASE("help_text: usage first, then sections below headings", "[manual]") {
+TEST_CASE("help_text: usage first, then sections below headings", "[help]") {
     CHECK(help_text(small_command(), "raya draw", 80) == R"(Usage: raya draw SCENE -o FILE [OPTIONS]
 
 Draw one object after another, in the order in which they occur
@@ -71,7 +70,7 @@ Environment:
 }
 
 TEST_CASE("help_text: in a narrow terminal texts are below names, and example lines continue with a backslash",
-          "[manual]") {
+          "[help]") {
     CHECK(help_text(small_command(), "raya draw", 40) == R"(Usage: raya draw SCENE -o FILE [OPTIONS]
 
 Draw one object after another, in the
@@ -113,7 +112,7 @@ Environment:
 )");
 }
 
-TEST_CASE("help_text: no line exceeds the width, except a single long word", "[manual]") {
+TEST_CASE("help_text: no line exceeds the width, except a single long word", "[help]") {
     for (std::size_t width = 40; width <= 120; ++width)
         CHECK(longest_line(help_text(small_command(), "raya draw", width)) <= width);
     CommandText command = small_command();
@@ -121,7 +120,7 @@ TEST_CASE("help_text: no line exceeds the width, except a single long word", "[m
     CHECK_THAT(help_text(command, "raya draw", 40), Catch::Contains("\nSee\n" + std::string(50, 'x') + "\nfor more\n"));
 }
 
-TEST_CASE("help_text: a command with subcommands lists them", "[manual]") {
+TEST_CASE("help_text: a command with subcommands lists them", "[help]") {
     CommandText program;
     program.name = "raya";
     program.commands = {small_command()};
@@ -130,19 +129,19 @@ TEST_CASE("help_text: a command with subcommands lists them", "[manual]") {
           "which they occur\n");
 }
 
-TEST_CASE("short_form: has the options of the short help in their order, and names --help-all", "[manual]") {
+TEST_CASE("short_form: has the options with a brief text and the general ones, and names --help-all", "[help]") {
     CommandText command = small_command();
     CHECK(help_text(short_form(command, "raya draw"), "raya draw", 80) == help_text(command, "raya draw", 80));
-    command.short_help = {{"--colour", "First", "Its colour"}, {"--output", "Second", ""}};
+    command.options[1].brief = "Its colour";
+    command.options[3].group = kGeneralOptions;
+    CHECK(help_text(short_form(command, "raya draw"), "raya draw", 80) == help_text(command, "raya draw", 80));
+    command.options.resize(8, command.options[1]);
     const CommandText text = short_form(command, "raya draw");
-    REQUIRE(text.options.size() == 2);
+    REQUIRE(text.options.size() == 6);
     CHECK(text.options[0].names.back() == "--colour");
     CHECK(text.options[0].help == "Its colour");
-    CHECK(text.options[0].group == "First");
-    CHECK(text.options[1].help == command.options[0].help);
-    CHECK(text.footer.starts_with("raya draw --help-all prints all 4 options in full.\n\nExit codes: "));
-    command.short_help = {{"--none", "First", ""}};
-    CHECK_THROWS_AS(short_form(command, "raya draw"), std::logic_error);
+    CHECK(text.options[1].help == command.options[3].help);
+    CHECK(text.footer.starts_with("raya draw --help-all prints all 8 options in full.\n\nExit codes: "));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "host/verify/ci_reports.hpp"
+#include "host/verify/device_checks.hpp"
 #include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 
@@ -150,7 +150,7 @@ TEST_CASE("verify: refuses times that are no times; --reproduce leaves no folder
 
 TEST_CASE("every command has --help-all", "[cli][hostile]") {
     for (const char* command : {"render", "devices", "machines", "info", "generate", "bench", "tune", "study", "page",
-                                "explore", "verify", "ping", "manual", "completion", "help"}) {
+                                "explore", "verify", "ping", "help"}) {
         const RunOutcome run = run_raya({command, "--help-all"});
         INFO(run.describe());
         CHECK(run.code == 0);
@@ -164,7 +164,7 @@ TEST_CASE("JUnit is XML for texts that are not UTF-8", "[cli][hostile]") {
     DeviceChecks device{.name = "device \x80", .platform = "p", .version = "v", .driver = "d"};
     device.checks = {check};
     const std::string text = junit_report("raya verify", {device});
-    CHECK(Json::parse(Json(text).dump(), {"text"}).text() == text);  // only UTF-8
+    CHECK(json_text(parse_json(json_dump(text), {"text"})) == text);  // only UTF-8
     CHECK_THAT(text, Catch::Contains("name \xef\xbf\xbd"));
 }
 

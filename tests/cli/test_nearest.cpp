@@ -1,7 +1,7 @@
 // Suggestions for misspelt names.
 #include <catch2/catch.hpp>
 
-#include "host/cli/nearest.hpp"
+#include "host/cli/parse_failure.hpp"
 
 namespace raya {
 namespace {

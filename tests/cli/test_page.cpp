@@ -117,8 +117,8 @@ TEST_CASE("page: the error for a file that is not a report names the reason, and
     std::ofstream(inputs / "list.json") << "[1, 2]";
     const std::vector<Row> rows = {
         {inputs / "none.json", page, "cannot be read: No such file"},
-        {inputs / "c.pfm", page, "not valid JSON (byte"},
-        {inputs / "broken.json", page, "not valid JSON (byte"},
+        {inputs / "c.pfm", page, "not valid JSON: "},
+        {inputs / "broken.json", page, "not valid JSON: "},
         {inputs / "list.json", page, "not a report of raya render, bench, verify or gpu_day"},
         {scene_file("planes"), page, "not valid JSON"},
         {inputs / "r.json", folder / "p.png", "choose a name that ends in .html"},

@@ -31,28 +31,12 @@ std::string refusal_of_value(Value& value, const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("parse_links, parse_antialias, parse_points, parse_sampling: accept only the names of values", "[parse]") {
-    for (const Links links : {Links::kTorus3d, Links::kTorus2d}) CHECK(parse_links(links_name(links)) == links);
-    for (const AntialiasMethod method :
-         {AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample})
-        CHECK(parse_antialias(antialias_name(method)) == method);
-    CHECK(parse_points("axes") == RAYA_POINTS_AXES);
-    CHECK(parse_points("diagonals") == RAYA_POINTS_DIAGONALS);
-    CHECK(parse_exchange("ring") == ExchangeMethod::kRing);
-    CHECK(parse_exchange("bus") == ExchangeMethod::kBus);
-    CHECK(parse_exchange("bus-broadcast") == ExchangeMethod::kBroadcast);
-    CHECK(parse_sampling("centres") == Sampling::kCentres);
-    CHECK(parse_sampling("corners") == Sampling::kCorners);
-    for (const std::string text : {"", "torus", "torus4d", "Torus3d", "torus3d ", "none ", "axis", "centers"}) {
-        CAPTURE(text);
-        CHECK_THROWS_AS(parse_links(text), UserError);
-        CHECK_THROWS_WITH(parse_links(text),
-                          Contains("--links " + text + ":") && Contains("torus3d") && Contains("torus2d"));
-        CHECK_THROWS_WITH(parse_antialias(text), Contains("--antialias " + text + ":") && Contains("supersample"));
-        CHECK_THROWS_WITH(parse_exchange(text), Contains("--exchange " + text + ":") && Contains("bus-broadcast"));
-        CHECK_THROWS_WITH(parse_points(text), Contains("--points " + text + ":") && Contains("axes or diagonals"));
-        CHECK_THROWS_WITH(parse_sampling(text), Contains("--sampling " + text + ":") && Contains("centres or corners"));
-    }
+TEST_CASE("parse_choice: accepts only the names of values", "[parse]") {
+    const Choices<int> choices = {{"ring", 1}, {"bus", 2}, {"bus-broadcast", 3}};
+    for (const auto& [name, value] : choices) CHECK(parse_choice("--x", name, choices) == value);
+    for (const std::string text : {"bu", "Ring", "ring ", "bus-"})
+        CHECK_THROWS_WITH(parse_choice("--x", text, choices), "--x " + text + ": must be ring, bus or bus-broadcast");
+    CHECK_THROWS_WITH(parse_choice("--x", "", choices), "--x must not be empty");
 }
 
 TEST_CASE("parse_image_size: reads N and WxH", "[parse]") {

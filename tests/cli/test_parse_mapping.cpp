@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "host/cli/parse_mapping.hpp"
+#include "host/cli/parse.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/schedule.hpp"
@@ -31,8 +31,6 @@ TEST_CASE("parse_mapping: reads every form", "[parse]") {
         CHECK_FALSE(parse_mapping(text).takes_offset_option);
     CHECK(parse_mapping("cyclic:3").name() == "cyclic");
     CHECK(parse_mapping("rows").name() == "rows");
-    CHECK(parse_fold("cyclic") == Fold::kCyclic);
-    CHECK(parse_fold("block") == Fold::kBlock);
 }
 
 TEST_CASE("parse_mapping: inverts mapping_text", "[parse]") {
@@ -69,8 +67,6 @@ TEST_CASE("parse_mapping: refuses other texts and names the valid form", "[parse
     }
     for (const char* text : {"random:", "random:x", "random:-1", "random:4294967296"})
         refuses(text, "random:seed with a seed 0..4294967295, or random");
-    CHECK_THROWS_WITH(parse_fold("none"), Contains("--fold none") && Contains("cyclic or block"));
-    CHECK_THROWS_AS(parse_fold(""), UserError);
 }
 
 TEST_CASE("parse_dynamic: reads dynamic and hybrid, refuses other texts and names the valid form", "[parse]") {

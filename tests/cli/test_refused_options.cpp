@@ -57,7 +57,7 @@ TEST_CASE("render --mapping: refuses wrong syntax, and conflicts with image, PEs
          {{"--mapping", "column", "--offset", "4"}, {"--offset 4 with --mapping column", "offset is 0"}},
          {{"--mapping", "rows", "--offset", "0"}, {"--offset 0 with --mapping rows", "no offset", "choose cyclic"}},
          {{"--mapping", "tiles:4x4", "--fold", "cyclic"},
-          {"--fold cyclic with --mapping tiles:4x4", "no slots to fold", "cyclic or column"}},
+          {"--fold with --mapping tiles:4x4", "no slots to fold", "cyclic or column"}},
          {{"--mapping", "random", "--antialias", "filter"},
           {"--antialias filter with --mapping random:1", "the neighbours of a pixel are on random PEs",
            "use cyclic, column, rows, blocks, grid or tiles"}}});

@@ -59,7 +59,7 @@ void check_signal(const Folders& folders, const Phase& phase, int signal) {
     if (run_options.error_file.empty()) CHECK(run.err.ends_with("raya: interrupted\n"));
     CHECK_FALSE(has_file(folders.outputs.path(), ".tmp"));
     CHECK_FALSE(has_file(folders.inputs.path(), ".tmp"));  // inputs may contain complete files of a study
-    if (phase.arguments[0] != "manual") CHECK(folders.outputs.entries() == 0);
+    CHECK(folders.outputs.entries() == 0);
 }
 
 void check_phases(const Folders& folders, const std::vector<Phase>& phases, const std::vector<int>& signals) {
@@ -132,8 +132,7 @@ std::vector<Phase> writing_phases(const Folders& folders, const std::string& cal
           Arguments{"verify", "--brief", "--only", "number", "--report", output_path + ".json"},
           small_command("explore", {"-o", output_path + ".html"}),
           Arguments{"page", report, "-o", output_path + ".html"},
-          Arguments{"generate", "random", "9", "-o", output_path + ".nff"}, Arguments{"manual", "-o", folder},
-          Arguments{"completion", "bash", "-o", output_path}})
+          Arguments{"generate", "random", "9", "-o", output_path + ".nff"}})
         phases.push_back({arguments[0] + " in " + call,
                           arguments,
                           [folder] { return has_file(folder, ".tmp"); },
@@ -195,9 +194,8 @@ TEST_CASE("signals: end every command that is blocked on its output", "[cli][sig
     const std::string pipe = folders.fifo("pipe"), planes = scene_file("planes");
     const FullPipe full_pipe(pipe);
     std::vector<Phase> phases;
-    for (const Arguments& arguments :
-         {Arguments{"info", planes}, Arguments{"devices"}, Arguments{"help", "render"}, Arguments{"manual"},
-          Arguments{"completion", "bash"}, Arguments{"generate", "random", "9", "-o", "-"}}) {
+    for (const Arguments& arguments : {Arguments{"info", planes}, Arguments{"devices"}, Arguments{"help", "render"},
+                                       Arguments{"generate", "random", "9", "-o", "-"}}) {
         phases.push_back({arguments[0] + " prints", arguments, {}, 500, {.out_file = pipe}});
         phases.push_back({arguments[0] + " prints", arguments, {}, 500, {.error_file = pipe, .out_file = pipe}});
     }

@@ -1,5 +1,4 @@
-// render --exposure, --gamma, --tone: the options change the values in 8-bit images. The report and the image file
-// contain the options.
+// render --exposure: changes the values in 8-bit images. The report and the image file contain it.
 #include <OpenImageIO/imageio.h>
 
 #include "tests/cli/refusals.hpp"
@@ -8,17 +7,15 @@
 namespace raya {
 namespace {
 
-TEST_CASE("render --tone: changes the 8-bit values, not the hash; report and image contain the options", "[cli]") {
-    const Arguments tone = {"--exposure", "-1.5", "--gamma", "2.2", "--tone", "reinhard"};
+TEST_CASE("render --exposure: changes the 8-bit values, not the hash; report and image contain it", "[cli]") {
+    const Arguments tone = {"--exposure", "-1.5"};
     const RenderFiles default_render("planes", {}, ".ppm");
-    CHECK(default_render.report()["image"]["codes"] ==
-          Document({{"exposure", 0.0}, {"tone", "clip"}, {"gamma", nullptr}}));
+    CHECK(default_render.report()["image"]["exposure"] == 0.0);
     for (const std::string extension : {".ppm", ".png", ".tif", ".jpg"}) {
         CAPTURE(extension);
         const RenderFiles toned_render("planes", tone, extension);
         CHECK(toned_render.report()["image"]["hash"] == default_render.report()["image"]["hash"]);
-        CHECK(toned_render.report()["image"]["codes"] ==
-              Document({{"exposure", -1.5}, {"tone", "reinhard"}, {"gamma", 2.2}}));
+        CHECK(toned_render.report()["image"]["exposure"] == -1.5);
         if (extension == ".ppm") {
             CHECK(file_contents(toned_render.image()) != file_contents(default_render.image()));
             continue;
@@ -27,16 +24,14 @@ TEST_CASE("render --tone: changes the 8-bit values, not the hash; report and ima
         REQUIRE(image);
         if (extension != ".png") {
             const std::string description = image->spec().get_string_attribute("ImageDescription");
-            CHECK_THAT(description, Catch::EndsWith("raya:exposure=-1.5\nraya:tone=reinhard\nraya:gamma=2.2"));
+            CHECK_THAT(description, Catch::EndsWith("raya:exposure=-1.5"));
             continue;
         }
         CHECK(image->spec().get_string_attribute("raya:exposure") == "-1.5");
-        CHECK(image->spec().get_string_attribute("raya:tone") == "reinhard");
-        CHECK(image->spec().get_string_attribute("raya:gamma") == "2.2");
     }
 }
 
-TEST_CASE("render --tone: refuses wrong values, and linear image formats", "[cli]") {
+TEST_CASE("render --exposure: refuses wrong values, and linear image formats", "[cli]") {
     const ScratchFolder outputs;
     const auto refused = [&](const std::string& image, const Arguments& options, const Arguments& message) {
         Arguments arguments = {"render", scene_file("planes"), "-o", outputs / image};
@@ -45,15 +40,10 @@ TEST_CASE("render --tone: refuses wrong values, and linear image formats", "[cli
     };
     for (const char* image : {"x.exr", "x.pfm"}) {
         refused(image, {"--exposure", "1"}, {"--exposure applies to 8-bit images", image, "name a .png"});
-        refused(image, {"--gamma", "2"}, {"--gamma applies to 8-bit images"});
-        refused(image, {"--tone", "clip"}, {"--tone applies to 8-bit images"});
     }
     refused("x.ppm", {"--exposure", "65"}, {"--exposure 65: must be -64..64 stops"});
     refused("x.ppm", {"--exposure", "nan"}, {"--exposure nan: must be -64..64 stops"});
     refused("x.ppm", {"--exposure", "bright"}, {"--exposure bright: not a number"});
-    for (const char* gamma : {"0", "-1", "0.09", "10.1", "inf"})
-        refused("x.ppm", {"--gamma", gamma}, {std::string("--gamma ") + gamma, "must be 0.1..10"});
-    refused("x.ppm", {"--tone", "filmic"}, {"--tone filmic: must be clip or reinhard"});
 }
 
 }  // namespace

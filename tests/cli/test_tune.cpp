@@ -1,5 +1,4 @@
 // raya tune: it drops candidates that render a wrong image, fail, crash or hang; later renders use the stored values.
-#include <set>
 
 #include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
@@ -33,36 +32,23 @@ const SourcePatch kFaults = {"shading/tree.clh", "    t->sum = vec_choose(m, vec
 #endif
     t->sum = vec_choose(m, vec_mad(value, weight, t->sum), t->sum);)"};
 
-/// Returns the outcomes of the candidates whose tuning parameter `parameter` has this value. `report`: in the T4 format
-/// of Kernel Tuner (docs/tuning.md).
-std::set<std::string> outcomes_of(const Document& report, const std::string& parameter, std::uint32_t value) {
-    std::set<std::string> outcomes;
-    for (const Document& result : report["results"])
-        if (result["configuration"][parameter] == value) outcomes.insert(result["invalidity"]);
-    return outcomes;
-}
-
 TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; later renders use the stored values",
           "[cli][slow]") {
     const ScratchFolder kernels, cache, outputs;
-    const std::string patched_kernels = write_kernels(kernels / "kernels", {kFaults}), report = outputs / "t4.json";
+    const std::string patched_kernels = write_kernels(kernels / "kernels", {kFaults});
     const RunOptions run_options = options_with_cache(cache);
     const RunOutcome run = run_raya({"tune", "--variants", "none", "--format", "fp32", "--size", "16", "--pes", "1",
-                                     "--candidate-seconds", "12", "--kernel-dir", patched_kernels, "--report", report},
+                                     "--kernel-dir", patched_kernels},
                                     run_options);
     INFO(run.describe());
     REQUIRE(run.code == 0);
     CHECK_FALSE(contains(run.err, "raya: "));  // stderr has only the compilers' messages
-    const Document t4 = Document::parse(file_contents(report));
-    using Outcomes = std::set<std::string>;
-    CHECK(outcomes_of(t4, "lanes", 8) == Outcomes{"compile"});
-    CHECK(outcomes_of(t4, "group", 2) == Outcomes{"correctness"});
-    CHECK(outcomes_of(t4, "local_words", 0) == Outcomes{"runtime"});
-    CHECK(outcomes_of(t4, "batch", 8) == Outcomes{"timeout"});
-    CHECK(outcomes_of(t4, "lanes", 1) == Outcomes{"correct"});
-    for (const char* part : {"ring none fp32", "not built: ", "wrong: image is",
-                             "failed: ended by signal 11 (SIGSEGV)", "too long: not done in 12 s", "stored in "})
-        CHECK_THAT(run.out, Catch::Contains(part));
+    for (const char* line : {"dropped: ring none fp32: lanes 8, group 1, local words yes, batch default: compile: ",
+                             "dropped: ring none fp32: lanes 4, group 2, local words yes, batch default: correctness: ",
+                             "lanes 4, group 1, local words no, batch default: runtime: ended by signal 11 (SIGSEGV)",
+                             "lanes 4, group 1, local words yes, batch 8: timeout: not done in 20 s", "stored in "})
+        CHECK_THAT(run.out, Catch::Contains(line));
+    CHECK_FALSE(contains(run.out, "dropped: ring none fp32: lanes 1, group 1, local words yes, batch default"));
 
     REQUIRE(std::distance(fs::directory_iterator(cache / "raya"), {}) == 1);
     const std::string file = fs::directory_iterator(cache / "raya")->path();
@@ -70,9 +56,9 @@ TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; la
     REQUIRE(stored.size() == 1);
     CHECK((stored[0]["machine"] == "ring" && stored[0]["accel"] == "none" && stored[0]["format"] == "fp32"));
     const auto lanes = stored[0]["values"]["lanes"].get<int>();
-    CHECK((lanes == 1 || lanes == 4));
-    CHECK((stored[0]["values"]["group"] == 1 && stored[0]["values"]["local_words"] == 1 &&
-           stored[0]["values"]["batch"] == 0));
+    CHECK(lanes != 8);
+    CHECK((stored[0]["values"]["group"] != 2 && stored[0]["values"]["local_words"] == 1 &&
+           stored[0]["values"]["batch"] != 8));
 
     const auto report_of_render = [&](const Arguments& extra_options) {
         Arguments arguments = {
@@ -102,7 +88,7 @@ TEST_CASE("tune: drops candidates that fail, crash, hang or change the image; la
                   "grande", "--accel", "none", "--report", outputs / "r.json"},
                  run_options);
     CHECK(warned_run.code == 0);
-    CHECK_THAT(warned_run.err, Catch::Contains("raya: warning: " + file + ":1: not valid JSON"));
+    CHECK_THAT(warned_run.err, Catch::Contains("raya: warning: " + file + ": not valid JSON: parse error at line 1"));
     CHECK(Document::parse(file_contents(outputs / "r.json"))["warnings"].size() == 1);
 }
 
@@ -127,7 +113,6 @@ TEST_CASE("tune: refuses wrong options in one line", "[cli]") {
     };
     refused({"tune", "--lanes", "4"}, {"tune: no option --lanes"});
     refused({"tune", "--seconds", "0"}, {"--seconds 0", "1..86400 seconds"});
-    refused({"tune", "--candidate-seconds", "1e9"}, {"--candidate-seconds", "1..3600 seconds"});
     refused({"tune", "--variants", "octree"}, {"--variants octree", "none, grid, bvh or torus"});
     refused({"tune", "--size", "0"}, {"--size 0"});
     refused({"tune", "--size", "20000"}, {"--size 20000x20000", "1..16384 pixels"});

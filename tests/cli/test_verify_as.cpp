@@ -11,9 +11,9 @@ namespace raya {
 namespace {
 
 // A light is lost with four lanes and a BVH.
-const SourcePatch kLostLight{"shading/shade.clh", "const uint lights = ((job_words)scene)->lights;\n    tree_hit met",
-                             "const uint lights = ((job_words)scene)->lights - (RAYA_ACCEL == RAYA_ACCEL_BVH && "
-                             "RAYA_LANES == 4);\n    tree_hit met"};
+const SourcePatch kLostLight{"shading/shade.clh", "const uint light_count = ((job_words)scene)->lights;",
+                             "const uint light_count = ((job_words)scene)->lights - (RAYA_ACCEL == RAYA_ACCEL_BVH && "
+                             "RAYA_LANES == 4);"};
 
 // For --as: the folder of the sources may have blanks in its name.
 std::string quoted_scene(const std::string& name) { return "'" + scene_file(name) + "'"; }

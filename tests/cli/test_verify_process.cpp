@@ -48,7 +48,7 @@ TEST_CASE("verify: a driver crash before any check causes exit code 3", "[cli][v
 
 TEST_CASE("--worker: raya refuses it from users", "[cli][verify]") {
     const ScratchFolder outputs;
-    check_refused(outputs, {"--worker", "x"}, 2, {"--worker:1: not valid JSON"});
+    check_refused(outputs, {"--worker", "x"}, 2, {"--worker: not valid JSON"});
     check_refused(outputs, {"--worker", "{}"}, 2, {"--worker", "verbosity"});
     check_refused(outputs, {"--worker"}, 2, {"no option --worker"});
     check_refused(outputs, {"verify", "--lines", "1"}, 2, {"no option --lines"});

@@ -46,8 +46,7 @@ std::vector<WritingCommand> commands(const std::string& folder) {
     };
     return {
         {"generate", {"generate", "balls", "--level", "1", "-o", file("x.nff")}},
-        {"completion", {"completion", "bash", "-o", file("x.bash")}},
-        {"manual", {"manual", "render"}, true, false, "", true},
+        {"help", {"help", "render"}, true, false, "", true},
         {"page", {"page", file("saved.json"), "-o", file("x.html")}, true, false, "saved.json"},
         {"render", render({"-o", file("x.ppm"), "--report", file("x.json"), "--trace", file("t.json")})},
         {"render -o -", render({"-o", "-"}), true, false, "", true},

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "host/base/temporary_folder.hpp"
+#include "host/base/child_process.hpp"
 
 namespace raya::fuzz {
 

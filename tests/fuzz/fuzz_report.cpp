@@ -2,7 +2,6 @@
 // or reject it with an error.
 #include "host/cli/page.hpp"
 #include "host/error.hpp"
-#include "host/report/bench_compare.hpp"
 #include "host/report/bench_report.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

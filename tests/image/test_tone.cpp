@@ -1,10 +1,10 @@
-// The conversion of linear colours to 8-bit codes: exposure, tone curve and gamma.
+// The conversion of linear colours to 8-bit codes: exposure and the sRGB curve.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "host/image/tone.hpp"
+#include "host/image/image.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/image/read_image.hpp"
 
@@ -13,15 +13,7 @@ namespace {
 
 using Codes = std::array<std::uint8_t, 3>;
 
-/// Returns combinations of exposure, curve and gamma.
-std::vector<Tone> tone_combinations() {
-    std::vector<Tone> tones;
-    for (const double exposure : {0.0, -2.0, 1.0, 0.3})
-        for (const ToneCurve curve : {ToneCurve::kClip, ToneCurve::kReinhard})
-            for (const std::optional<double> gamma : {std::optional<double>(), {2.2}, {1.0}})
-                tones.push_back({exposure, curve, gamma});
-    return tones;
-}
+constexpr double kExposures[] = {0.0, -2.0, 1.0, 0.3};
 
 /// Returns a random colour, dark or bright. Some of the colours have a component of 0.
 std::array<float, 3> random_colour(SplitMix& random) {
@@ -32,8 +24,8 @@ std::array<float, 3> random_colour(SplitMix& random) {
     return rgb;
 }
 
-TEST_CASE("ToneCodes: the default tone gives the sRGB code of each value", "[tone]") {
-    const ToneCodes codes{Tone{}};
+TEST_CASE("ToneCodes: exposure 0 gives the sRGB code of each value", "[tone]") {
+    const ToneCodes codes;
     SplitMix random(41);
     for (int i = 0; i < 20'000; ++i) {
         const std::array<float, 3> rgb = random_colour(random);
@@ -44,19 +36,15 @@ TEST_CASE("ToneCodes: the default tone gives the sRGB code of each value", "[ton
 
 TEST_CASE("ToneCodes: codes equal those of the formulas up to rounding", "[tone]") {
     SplitMix random(42);
-    for (const Tone& tone : tone_combinations()) {
-        const ToneCodes codes(tone);
-        CAPTURE(tone.exposure, tone_curve_name(tone.curve), tone.gamma.value_or(0));
+    for (const double exposure : kExposures) {
+        const ToneCodes codes(exposure);
+        CAPTURE(exposure);
         for (int i = 0; i < 500; ++i) {
             const std::array<float, 3> rgb = random_colour(random);
-            const double stops = std::pow(2.0, tone.exposure);
-            const double luminance = stops * (0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]);
+            const double stops = std::pow(2.0, exposure);
             const Codes found = codes(rgb.data());
             for (std::size_t c = 0; c < 3; ++c) {
-                double v = stops * rgb[c];
-                if (tone.curve == ToneCurve::kReinhard) v /= 1 + luminance;
-                v = std::min(v, 1.0);
-                const double exact = 255 * (tone.gamma ? std::pow(v, 1 / *tone.gamma) : srgb_curve(v));
+                const double exact = 255 * srgb_curve(std::min(stops * rgb[c], 1.0));
                 CAPTURE(i, c, rgb[c], exact);
                 REQUIRE(std::abs(found[c] - exact) <= 0.5 + 1e-5);
             }
@@ -66,28 +54,27 @@ TEST_CASE("ToneCodes: codes equal those of the formulas up to rounding", "[tone]
 
 TEST_CASE("ToneCodes: one more stop has the same effect as twice the light", "[tone]") {
     SplitMix random(43);
-    for (Tone tone : tone_combinations()) {
-        const ToneCodes codes(tone);
-        tone.exposure += 1;
-        const ToneCodes brighter(tone);
+    for (const double exposure : kExposures) {
+        const ToneCodes codes(exposure);
+        const ToneCodes brighter(exposure + 1);
         for (int i = 0; i < 300; ++i) {
             const std::array<float, 3> rgb = random_colour(random);
             const std::array<float, 3> twice = {2 * rgb[0], 2 * rgb[1], 2 * rgb[2]};
-            CAPTURE(i, tone.exposure);
+            CAPTURE(i, exposure);
             REQUIRE(brighter(rgb.data()) == codes(twice.data()));
         }
     }
 }
 
 TEST_CASE("ToneCodes: a grey has three equal codes, which do not decrease with its brightness", "[tone]") {
-    for (const Tone& tone : tone_combinations()) {
-        const ToneCodes codes(tone);
+    for (const double exposure : kExposures) {
+        const ToneCodes codes(exposure);
         int previous_code = 0;
         for (double v = 1e-6; v < 1e6; v *= 1.01) {
             const auto value = static_cast<float>(v);
             const std::array<float, 3> grey = {value, value, value};
             const Codes found = codes(grey.data());
-            CAPTURE(v, tone.exposure);
+            CAPTURE(v, exposure);
             REQUIRE(found[0] >= previous_code);
             REQUIRE(found[0] == found[1]);
             REQUIRE(found[1] == found[2]);
@@ -97,34 +84,16 @@ TEST_CASE("ToneCodes: a grey has three equal codes, which do not decrease with i
     }
 }
 
-TEST_CASE("ToneCodes: Reinhard's curve keeps different bright greys different, and preserves hues", "[tone]") {
-    const ToneCodes clip{Tone{}}, reinhard{Tone{0, ToneCurve::kReinhard, {}}};
-    const std::array<float, 3> bright = {2, 2, 2}, brighter = {4, 4, 4};
-    CHECK(clip(bright.data()) == clip(brighter.data()));
-    CHECK(reinhard(bright.data())[0] < reinhard(brighter.data())[0]);
-    const ToneCodes linear{Tone{0, ToneCurve::kReinhard, 1.0}};
-    const std::array<float, 3> orange = {1.5f, 0.75f, 0.3f};
-    const Codes found = linear(orange.data());
-    CHECK(found[0] / 1.5 == Approx(found[1] / 0.75).margin(1.5));
-    CHECK(found[1] / 0.75 == Approx(found[2] / 0.3).margin(3));
-}
-
 TEST_CASE("ToneCodes: an infinity is converted like the largest float, NaN like 0", "[tone]") {
     const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-    for (const Tone& tone : tone_combinations()) {
-        const ToneCodes codes(tone);
+    for (const double exposure : kExposures) {
+        const ToneCodes codes(exposure);
         const std::array<float, 3> white = {inf, inf, inf}, black = {nan, -inf, -1}, mixed = {nan, 1e30f, 0};
-        CAPTURE(tone.exposure, tone_curve_name(tone.curve));
+        CAPTURE(exposure);
         CHECK(codes(white.data()) == Codes{255, 255, 255});
         CHECK(codes(black.data()) == Codes{0, 0, 0});
         CHECK(codes(mixed.data()) == Codes{0, 255, 0});
     }
-}
-
-TEST_CASE("tone_attributes: returns only values other than the defaults", "[tone]") {
-    CHECK(tone_attributes({}).empty());
-    const ImageAttributes expected = {{"exposure", "-1.5"}, {"tone", "reinhard"}, {"gamma", "2.2"}};
-    CHECK(tone_attributes({-1.5, ToneCurve::kReinhard, 2.2}) == expected);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/cl/kernels.hpp"
-#include "host/verify/check_runner.hpp"
+#include "host/cl/kernel_options.hpp"
+#include "host/verify/verdict.hpp"
 #include "tests/kernels/unoptimised.hpp"
 #include "tests/paths.h"
 

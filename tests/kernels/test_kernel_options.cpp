@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "host/cl/kernel_options.hpp"
-#include "host/cl/tuned.hpp"
 #include "host/error.hpp"
 
 using namespace raya;
@@ -116,7 +115,7 @@ TEST_CASE(
     "on llvmpipe, which vectorises over work-items, the defaults are one lane and groups of 8 (torus: 1) work-items",
     "[ring]") {
     DeviceInfo llvmpipe = device_with("cpu", 1, 1024);
-    llvmpipe.max_loop_iterations = 65'535;
+    llvmpipe.ends_loops_early = true;
     CHECK(default_lanes(llvmpipe) == 1);
     CHECK(default_group_size(llvmpipe) == 8);
     CHECK(default_group_size(llvmpipe, true) == 1);
@@ -124,12 +123,12 @@ TEST_CASE(
     for (const bool torus : {false, true}) {
         const KernelChoice defaults = chosen_kernels({}, llvmpipe, {.torus = torus});
         CHECK(defaults.group_size == default_group_size(llvmpipe, torus));
-        CHECK(defaults.tuning.sphere_batch == (torus ? 0 : 16));
+        CHECK(defaults.sphere_batch == (torus ? 0 : 16));
         const KernelChoice with_lanes = chosen_kernels({.lanes = 4}, llvmpipe, {.torus = torus});
         CHECK((with_lanes.lanes == 4 && with_lanes.group_size == defaults.group_size));
-        CHECK(with_lanes.tuning.sphere_batch == defaults.tuning.sphere_batch);
+        CHECK(with_lanes.sphere_batch == defaults.sphere_batch);
     }
     for (const TuningKey& key :
          {TuningKey{.accel = RAYA_ACCEL_GRID}, TuningKey{.accel = RAYA_ACCEL_BVH}, {.fp32 = false}})
-        CHECK(chosen_kernels({}, llvmpipe, key).tuning.sphere_batch == 0);
+        CHECK(chosen_kernels({}, llvmpipe, key).sphere_batch == 0);
 }

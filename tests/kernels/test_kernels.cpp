@@ -1,10 +1,10 @@
 // Every DescribedKernel agrees with the kernel of its name in the kernel file, and each file is built once.
 #include <catch2/catch.hpp>
 
-#include "host/cl/kernels.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/error.hpp"
-#include "host/ring/smoothing.hpp"
-#include "host/ring/tracer.hpp"
+#include "host/ring/neighbour_exchange.hpp"
+#include "host/ring/ring_plan.hpp"
 #include "host/torus/composer.hpp"
 #include "host/torus/link_exchange.hpp"
 #include "host/torus/node_array.hpp"

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "host/mesh/mesh_scene.hpp"
-#include "host/scene/outline.hpp"
-#include "host/scene/view.hpp"
+#include "host/scene/polygon.hpp"
+#include "host/scene/scene.hpp"
 #include "tests/mesh/mesh_files.hpp"
 
 namespace raya {

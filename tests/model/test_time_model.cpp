@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "host/model/budget.hpp"
-#include "host/model/time_model.hpp"
+#include "host/model/t805.hpp"
 #include "host/scene/split_mix.hpp"
 
 namespace raya {

@@ -2,7 +2,7 @@
 // always differ.
 #include <catch2/catch.hpp>
 
-#include "host/model/unit_text.hpp"
+#include "host/model/number_format.hpp"
 
 namespace raya {
 namespace {

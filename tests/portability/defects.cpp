@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/cl/spirv.hpp"
+#include "host/cl/kernel_source.hpp"
 #include "host/verify/verify.hpp"
 #include "tests/paths.h"
 

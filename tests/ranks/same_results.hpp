@@ -15,8 +15,8 @@ inline void check_same(const RingResult& single, const RingResult& distributed) 
     CHECK(single.image.rgb == distributed.image.rgb);
     CHECK(single.mask.rgb == distributed.mask.rgb);
     CHECK(single.recomputed == distributed.recomputed);
-    CHECK(single.all.events == distributed.all.events);
-    CHECK(single.all.load.per_pe == distributed.all.load.per_pe);
+    CHECK(single.events == distributed.events);
+    CHECK(single.load.per_pe == distributed.load.per_pe);
     CHECK(single.requests == distributed.requests);
     REQUIRE(single.phases.size() == distributed.phases.size());
     for (std::size_t i = 0; i < single.phases.size(); ++i) {

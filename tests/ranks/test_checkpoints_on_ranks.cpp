@@ -2,7 +2,8 @@
 // same image and counts as a render on one rank.
 #include <catch2/catch.hpp>
 
-#include "host/torus/torus_state.hpp"
+#include "host/torus/topology.hpp"
+#include "host/torus/torus_result.hpp"
 #include "tests/base/test_checkpointing.hpp"
 #include "tests/ranks/same_results.hpp"
 #include "tests/ranks/thread_ranks.hpp"
@@ -71,7 +72,12 @@ void check_stops(SplitMix& random, const Render& render,
 /// Returns true if a node of the checkpoint has status `word`, or one of the next `words` - 1, above 0.
 bool any_status(const std::string& bytes, const TorusSettings& settings, std::uint32_t word, std::uint32_t words) {
     const std::uint32_t nodes = raya_nodes(settings.torus);
-    const NodeStatus status(read_state(bytes, saved_settings(bytes), nodes, buffers_for(settings.queue)).nodes.status);
+    const CheckpointBody state(bytes);
+    // Vectors before the status: superstep, stalled, reserve, max_live, supersteps, link_words, returns.
+    const std::size_t status_at = state.vector_at({4, 4, 4, 8, sizeof(Superstep), 8, sizeof(raya_head)}) + 8;
+    NodeStatus status(nodes);
+    for (std::size_t i = 0; i < status.words.size(); ++i)
+        status.words[i] = state.number<std::uint32_t>(status_at + 4 * i);
     for (std::uint32_t node = 0; node < nodes; ++node)
         for (std::uint32_t i = 0; i < words; ++i)
             if (status.at(node, word + i) > 0) return true;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "host/base/temporary_folder.hpp"
+#include "host/base/child_process.hpp"
 #include "tests/document.hpp"
 #include "tests/ranks/run_ranks.hpp"
 #include "tests/report/trace_schema.hpp"

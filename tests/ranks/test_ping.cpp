@@ -26,7 +26,7 @@ TEST_CASE("the network fit returns exact alpha and beta for exact times, and nev
     CHECK(fitted_network(steep).beta_s == Approx(1.2));
 }
 
-TEST_CASE("a ping-pong report contains every rank", "[ranks]") {
+TEST_CASE("a ping-pong measures messages to a rank on another host", "[ranks]") {
     PingReport report;
     on_ranks(
         3,
@@ -37,13 +37,8 @@ TEST_CASE("a ping-pong report contains every rank", "[ranks]") {
         2);
     CHECK(report.library == "threads");
     CHECK(report.partner == 2);  // on another host than ranks 0 and 1
-    REQUIRE(report.ranks.size() == 3);
-    CHECK(report.ranks[1].host == "host0");
-    CHECK(report.ranks[2].host == "host1");
-    CHECK(report.ranks[0].threads >= 1);
     REQUIRE(report.messages.size() > 4);
     for (const MessageTime& time : report.messages) CHECK(time.seconds > 0);
-    for (const MessageTime& time : report.gathers) CHECK(time.seconds > 0);
     CHECK(report.network.seconds(1) > 0);
 }
 

@@ -42,19 +42,20 @@ TEST_CASE("a rank holds only its own nodes' words, equal to those of a single ra
             make_torus_job(session, scene, settings, NodeDistribution(settings.torus), memory, Ranks::single());
         std::vector<TorusJob> jobs(count, whole_job);
         on_ranks(count, [&](Ranks& ranks) {
-            const NodeDistribution distribution(settings.torus, count, ranks.rank());
+            const NodeDistribution distribution(settings.torus, ranks);
             const Scene empty_scene;
             jobs[ranks.rank()] =
                 make_torus_job(session, ranks.is_first() ? scene : empty_scene, settings, distribution, memory, ranks);
         });
         for (std::uint32_t rank = 0; rank < count; ++rank) {
-            const NodeDistribution distribution(settings.torus, count, rank);
+            Ranks ranks = silent_rank(rank, count);
+            const NodeDistribution distribution(settings.torus, ranks);
             const NodeMemories& own_memories = jobs[rank].memories;
-            REQUIRE(own_memories.starts.size() == distribution.nodes() + 1);
+            REQUIRE(own_memories.starts.size() == distribution.count() + 1);
             CHECK(own_memories.words.size() == own_memories.starts.back());
             bool same = true;
-            for (std::uint32_t slot = 0; slot < distribution.nodes(); ++slot) {
-                const std::uint32_t node = distribution.own_nodes()[slot];
+            for (std::uint32_t slot = 0; slot < distribution.count(); ++slot) {
+                const std::uint32_t node = distribution.own()[slot];
                 const auto first = whole_job.memories.words.begin() + whole_job.memories.starts[node];
                 const auto end = whole_job.memories.words.begin() + whole_job.memories.starts[node + 1];
                 same &= std::equal(first, end, own_memories.words.begin() + own_memories.starts[slot],
@@ -74,10 +75,11 @@ TEST_CASE("torus: a rank's device holds the rank's nodes, plus an inbox for each
     for (const std::uint32_t count : {2u, 4u, 8u}) {
         const std::vector<std::uint64_t> rank_bytes = bytes_of_ranks<TorusRenderer>(count, scene, settings);
         for (std::uint32_t rank = 0; rank < count; ++rank) {
-            const NodeDistribution distribution(settings.torus, count, rank);
+            Ranks ranks = silent_rank(rank, count);
+            const NodeDistribution distribution(settings.torus, ranks);
             // Mailboxes take nearly all memory of these nodes. On a single rank, half of the mailboxes are inboxes.
             // With several ranks, each rank also holds an inbox for each link that enters its nodes from another rank.
-            const double inboxes_per_node = static_cast<double>(distribution.inboxes()) / distribution.nodes();
+            const double inboxes_per_node = static_cast<double>(distribution.inboxes()) / distribution.count();
             CAPTURE(count, rank, single_bytes, rank_bytes[rank], inboxes_per_node);
             CHECK(static_cast<double>(rank_bytes[rank]) <
                   1.05 * static_cast<double>(single_bytes) / count * (1 + inboxes_per_node) / 2);

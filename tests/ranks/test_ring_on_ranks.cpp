@@ -107,21 +107,35 @@ TEST_CASE("more ranks than PEs are refused with both numbers", "[ranks]") {
                       Catch::Contains("4 ranks for 3 PEs") && Catch::Contains("start 3 ranks or fewer"));
 }
 
-TEST_CASE("every PE belongs to one rank, and the ranks' segments differ by at most one PE", "[ranks]") {
+TEST_CASE("every PE belongs to one rank, and the ranks' numbers of PEs differ by at most one", "[ranks]") {
     for (const std::uint32_t pes : {1u, 2u, 5u, 8u, 256u, 1000u, 65'536u})
-        for (std::uint32_t ranks = 1; ranks <= std::min(pes, 9u); ++ranks) {
-            CAPTURE(pes, ranks);
-            std::uint32_t next = 0;
-            for (std::uint32_t rank = 0; rank < ranks; ++rank) {
-                const PeSegment s = segment_of(pes, ranks, rank);
-                CHECK(s.first == next);
-                CHECK((s.count == pes / ranks || s.count == pes / ranks + 1));
-                CHECK(rank_of_pe(pes, ranks, s.first) == rank);
-                CHECK(rank_of_pe(pes, ranks, s.first + s.count - 1) == rank);
-                next += s.count;
+        for (std::uint32_t count = 1; count <= std::min(pes, 9u); ++count) {
+            CAPTURE(pes, count);
+            const std::vector<std::uint32_t> rank_of = ranks_of_pes(pes, count);
+            CHECK(rank_of.size() == pes);
+            CHECK(std::is_sorted(rank_of.begin(), rank_of.end()));
+            for (std::uint32_t rank = 0; rank < count; ++rank) {
+                const auto own = std::count(rank_of.begin(), rank_of.end(), rank);
+                CHECK((own == pes / count || own == pes / count + 1));
             }
-            CHECK(next == pes);
         }
+}
+
+TEST_CASE("elements of PEs are gathered in the order of the PEs, and scattered back", "[ranks]") {
+    on_ranks(3, [](Ranks& ranks) {
+        const Distribution pes({2, 0, 1, 0, 2, 2}, ranks);
+        const auto count = [](std::uint32_t pe) { return std::size_t{pe} % 3; };  // PE n has n % 3 elements: 10 n + i
+        std::vector<std::uint32_t> own, all;
+        for (std::uint32_t pe = 0; pe < pes.all(); ++pe)
+            for (std::uint32_t i = 0; i < count(pe); ++i) {
+                all.push_back(10 * pe + i);
+                if (pes.has(pe)) own.push_back(10 * pe + i);
+            }
+        CHECK(pes.total(count) == all.size());
+        CHECK(pes.gather(own, count) == (ranks.is_first() ? all : std::vector<std::uint32_t>{}));
+        CHECK(pes.scatter(ranks.is_first() ? all : std::vector<std::uint32_t>{}, count) == own);
+        CHECK(pes.all_gather(pes.own(), 1) == std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5});
+    });
 }
 
 }  // namespace raya

@@ -1,7 +1,7 @@
 // The torus distributed over ranks. Image, counts, loads, supersteps and traffic equal those of a single rank.
 #include <catch2/catch.hpp>
 
-#include "host/torus/node_distribution.hpp"
+#include "host/torus/topology.hpp"
 #include "host/torus/torus_result.hpp"
 #include "tests/ranks/same_results.hpp"
 #include "tests/ranks/thread_ranks.hpp"
@@ -80,10 +80,13 @@ TEST_CASE("each rank has a cuboid of nodes, of nearly equal size, and rank 0 has
         }
     }
     const raya_torus cube = make_torus({4, 4, 4}, Links::kTorus3d);
-    for (const std::uint32_t ranks : {1u, 2u, 4u, 8u, 16u, 32u, 64u})
-        CHECK(NodeDistribution(cube, ranks, 0).max_nodes_of_rank() == 64 / ranks);
-    CHECK(NodeDistribution(cube, 3, 0).max_nodes_of_rank() <= 32);
-    CHECK(NodeDistribution(cube, 7, 0).max_nodes_of_rank() <= 16);
+    const auto max_nodes = [&](std::uint32_t count) {
+        Ranks ranks = silent_rank(0, count);
+        return NodeDistribution(cube, ranks).max_count();
+    };
+    for (const std::uint32_t ranks : {1u, 2u, 4u, 8u, 16u, 32u, 64u}) CHECK(max_nodes(ranks) == 64 / ranks);
+    CHECK(max_nodes(3) <= 32);
+    CHECK(max_nodes(7) <= 16);
 }
 
 TEST_CASE("slots, inner nodes and inboxes of a rank agree with the links of its nodes", "[ranks]") {
@@ -94,9 +97,10 @@ TEST_CASE("slots, inner nodes and inboxes of a rank agree with the links of its 
         const std::uint32_t ranks = 1 + random_below(random, std::min(raya_nodes(torus), 9u));
         CAPTURE(kSeed, i, torus_text(torus), ranks);
         for (std::uint32_t rank = 0; rank < ranks; ++rank) {
-            const NodeDistribution distribution(torus, ranks, rank);
-            for (std::uint32_t slot = 0; slot < distribution.nodes(); ++slot) {
-                const std::uint32_t node = distribution.own_nodes()[slot];
+            Ranks this_rank = silent_rank(rank, ranks);
+            const NodeDistribution distribution(torus, this_rank);
+            for (std::uint32_t slot = 0; slot < distribution.count(); ++slot) {
+                const std::uint32_t node = distribution.own()[slot];
                 CHECK(distribution.slot_of(node) == slot);
                 bool inner = true;
                 for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
@@ -105,7 +109,7 @@ TEST_CASE("slots, inner nodes and inboxes of a rank agree with the links of its 
             }
             for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
                 std::vector<int> uses(distribution.inboxes());  // [inbox]: number of links that use it
-                for (const std::uint32_t node : distribution.own_nodes()) {
+                for (const std::uint32_t node : distribution.own()) {
                     const std::uint32_t sender = raya_link_end(torus, node, link ^ 1u),
                                         inbox = distribution.inbox_from(sender, link);
                     REQUIRE(inbox < distribution.inboxes());

@@ -100,6 +100,27 @@ class ThreadTransport final : public Transport {
     std::vector<IncomingMessage> pending_;
 };
 
+/// One of `count` ranks that cannot communicate, for what depends on the numbers only.
+inline Ranks silent_rank(std::uint32_t rank, std::uint32_t count) {
+    struct Silent final : Transport {
+        Silent(std::uint32_t own, std::uint32_t all) : rank_(own), count_(all) {}
+        std::uint32_t rank() const override { return rank_; }
+        std::uint32_t count() const override { return count_; }
+        std::string host() const override { return {}; }
+        std::string library() const override { return {}; }
+        void broadcast(std::span<std::byte>) override {}
+        void all_gather(std::span<const std::byte>, std::span<std::byte>, std::span<const std::size_t>) override {}
+        void start(std::span<const OutgoingMessage>, std::span<const IncomingMessage>) override {}
+        void wait() override {}
+        void poll_failures() override {}
+        void report_failure(const std::string&, int) override {}
+        [[noreturn]] void abort(int code) override { std::exit(code); }
+        void close() override {}
+        std::uint32_t rank_, count_;
+    };
+    return Ranks(std::make_unique<Silent>(rank, count));
+}
+
 /// Runs `work` on `count` concurrent ranks, `ranks_per_host` per host. If ranks throw, rethrows the first exception.
 /// Throws std::logic_error if a sent message was not received.
 inline void on_ranks(std::uint32_t count, const std::function<void(Ranks&)>& work, std::uint32_t ranks_per_host = 8) {

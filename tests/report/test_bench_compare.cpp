@@ -4,7 +4,7 @@
 #include <random>
 
 #include "host/error.hpp"
-#include "host/report/bench_compare.hpp"
+#include "host/report/bench_report.hpp"
 #include "tests/base/scratch_folder.hpp"
 #include "tests/document.hpp"
 
@@ -87,17 +87,18 @@ TEST_CASE("read_bench_report: refuses files that are not valid reports, and name
         Contains(
             "none.json: cannot be read: No such file or directory; remedy: make a baseline with: raya bench --report"));
     CHECK_THROWS_WITH(read_bench_report(folder.path()), Contains("it is a directory"));
-    CHECK_THAT(refusal(folder, ""), Contains("b.json:1: not valid JSON (byte 1)"));
-    CHECK_THAT(refusal(folder, "kernel,lanes\n"), Contains("b.json:1: not valid JSON (byte 1)"));
+    CHECK_THAT(refusal(folder, ""), Contains("b.json: not valid JSON: parse error at line 1"));
+    CHECK_THAT(refusal(folder, "kernel,lanes\n"), Contains("b.json: not valid JSON: parse error at line 1"));
     CHECK_THAT(refusal(folder, good.substr(0, good.size() / 2)), Contains("not valid JSON"));
     CHECK_THAT(refusal(folder, "[]"), Contains("b.json: valid JSON, but not a report of raya bench"));
     CHECK_THAT(refusal(folder, R"({"scene": "centre.nff"})"), Contains("not a report of raya bench"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"].clear(); })),
                Contains("the report has no measurements"));
-    CHECK_THAT(refusal(folder, changed([](auto& j) { j.erase("device"); })), Contains("b.json:1: 'device' is missing"));
+    CHECK_THAT(refusal(folder, changed([](auto& j) { j.erase("device"); })),
+               Contains("b.json: key 'device' not found"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0].erase("hash"); })), Contains("hash"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"][0]["lanes"] = "many"; })),
-               Contains("b.json:1: rows[0].lanes: \"many\" is not a whole number"));
+               Contains("b.json: (/rows/0/lanes) \"many\" is not a whole number"));
     CHECK_THAT(refusal(folder, changed([](auto& j) { j["rows"].push_back(j["rows"][0]); })), Contains("occurs twice"));
     for (const char* part : {"best", "median"})
         for (const double bad : {0.0, -1.0})

@@ -55,8 +55,8 @@ TEST_CASE("cost_json: the cycles can be decoded exactly", "[page]") {
         std::vector<std::uint64_t> cycles = {0, bits == 0 ? 0 : ~std::uint64_t{0} >> (64 - bits)};
         for (std::uint64_t i = 0; i < 209; ++i) cycles.push_back(bits == 0 ? 0 : i * 0x9e3779b97f4a7c15 >> (64 - bits));
         const Json json = cost_json(cycles);
-        const std::string bytes = gunzip(decoded(json.at("gzip").text()));
-        const std::size_t pixels = cycles.size(), byte_planes = json.at("bytes").integer();
+        const std::string bytes = gunzip(decoded(json_text(json.at("gzip"))));
+        const std::size_t pixels = cycles.size(), byte_planes = json_integer(json.at("bytes"));
         CAPTURE(bits);
         CHECK(byte_planes == std::max(1u, (bits + 7) / 8));
         REQUIRE(bytes.size() == pixels * byte_planes);

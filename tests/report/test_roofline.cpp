@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "host/model/budget.hpp"
-#include "host/report/profile_table.hpp"
 #include "host/report/roofline.hpp"
+#include "host/report/table.hpp"
 #include "tests/document.hpp"
 
 namespace raya {

@@ -1,7 +1,7 @@
 // Tests of host spans and device commands in a trace, with times of different clocks.
 #include <catch2/catch.hpp>
 
-#include "host/report/session_trace.hpp"
+#include "host/report/trace_file.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/document.hpp"
 #include "tests/report/trace_schema.hpp"

@@ -14,7 +14,7 @@ namespace {
 
 // Returns the results that do not depend on the accelerator: the image, and all counts except those of tests,
 // traversals and traversal steps.
-std::string image_and_events(const RingResult& r) { return image_and_counts(r.image, r.all.events); }
+std::string image_and_events(const RingResult& r) { return image_and_counts(r.image, r.events); }
 
 RingResult render_with(Session& session, const Scene& scene, const RingCase& c, const Accel& accel) {
     RingSettings settings = raya::settings_of(c);
@@ -48,8 +48,8 @@ TEST_CASE("a grid or BVH changes no bit of the image, for any voxels and format"
         CAPTURE(name, format, accel_text(accel));
         const RingResult result = render_with(session, scene, c, accel);
         CHECK(image_and_events(result) == expected);
-        CHECK(result.all.events[RAYA_WALKS] > 0);
-        if (accel.kind == AccelKind::kGrid) CHECK(result.all.events[RAYA_STEPS] >= result.all.events[RAYA_WALKS]);
+        CHECK(result.events[RAYA_WALKS] > 0);
+        if (accel.kind == AccelKind::kGrid) CHECK(result.events[RAYA_STEPS] >= result.events[RAYA_WALKS]);
     }
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("counts of tests and steps do not depend on lanes, groups and PEs", "[
     const Accel accel = GENERATE_COPY(grid_of(5, 4, 6), bvh);
     if (!thorough() && (format == "fp32") != (accel.kind == AccelKind::kBvh)) return;
     const RingCase c{.width = 32, .height = 24, .pes = 8, .lanes = 1, .group = 1, .format = format};
-    const EventCounts expected = render_with(session, scene, c, accel).all.events;
+    const EventCounts expected = render_with(session, scene, c, accel).events;
     CHECK(expected[RAYA_STEPS] > 0);
     for (const auto& [lanes, group, pes] :
          quick(1, {std::array{4u, 3u, 7u}, {1u, 16u, 1u}, {8u, 3u, 32u}, {16u, 1u, 5u}})) {
@@ -143,31 +143,12 @@ TEST_CASE("counts of tests and steps do not depend on lanes, groups and PEs", "[
         changed.lanes = lanes;
         changed.group = group;
         changed.pes = pes;
-        CHECK(render_with(session, scene, changed, accel).all.events == expected);
+        CHECK(render_with(session, scene, changed, accel).events == expected);
     }
     RingSettings in_global_memory = raya::settings_of(c);
     in_global_memory.accel = accel;
     in_global_memory.kernels.local_words = false;
-    CHECK(RingRenderer(session, scene, in_global_memory).render().all.events == expected);
-}
-
-TEST_CASE("the numbers of ray trees and beams per lane change no bit and no count", "[ring][accel]") {
-    Session session(choose_device(""));
-    Scene scene = project_scene("polygons");
-    for (int i = 0; i < 5; ++i) scene.lights.push_back({{3.0 * i - 6, 5.0 - i, 4}, Colour{0.2, 0.1 * i, 0.3}});
-    const std::string format = GENERATE(from_range(quick(1, {"fp32", "spa22"})));
-    RingCase c{.width = 32, .height = 24, .pes = 3, .lanes = 4, .format = format};
-    const RingResult plain = render_with(session, scene, c, {});
-    c.more_options = {"-DRAYA_TREES=1", "-DRAYA_BEAMS=1"};
-    const RingResult unbatched = render_with(session, scene, c, grid_of(6, 5, 4));
-    CHECK(image_and_events(unbatched) == image_and_events(plain));
-    for (const auto& [trees, beams] : quick(1, {std::pair{"3", "2"}, {"2", "8"}, {"8", "7"}})) {
-        c.more_options = {std::string("-DRAYA_TREES=") + trees, std::string("-DRAYA_BEAMS=") + beams};
-        CAPTURE(format, c.more_options);
-        const RingResult batched = render_with(session, scene, c, grid_of(6, 5, 4));
-        CHECK(image_and_events(batched) == image_and_events(plain));
-        CHECK(batched.all.events == unbatched.all.events);
-    }
+    CHECK(RingRenderer(session, scene, in_global_memory).render().events == expected);
 }
 
 // Returns a scene that has, for each kind of object, twice as many copies of random objects as original objects. The
@@ -232,7 +213,7 @@ TEST_CASE("rays that descend through the BVH together have the same hits", "[rin
         const RingResult together = RingRenderer(session, scene, settings).render();
         CHECK(pixel_hash(together.image) == pixel_hash(alone.image));
         for (std::size_t event = 0; event < RAYA_EVENTS; ++event)
-            CHECK(together.all.events[event] == (event < RAYA_SPHERE_TESTS ? alone.all.events[event] : 0));
+            CHECK(together.events[event] == (event < RAYA_SPHERE_TESTS ? alone.events[event] : 0));
     }
 }
 
@@ -308,8 +289,8 @@ TEST_CASE("a hit at the end of a shadow ray does not count, in any voxel", "[rin
     scene.view.up = {0, 0, 1};
     const RingCase c{.width = 48, .height = 40, .pes = 8, .format = format};
     const RingResult plain = render_with(session, scene, c, {});
-    CHECK(plain.all.events[RAYA_SHADOW_HITS] > 0);
-    CHECK(plain.all.events[RAYA_LIT] > 0);
+    CHECK(plain.events[RAYA_SHADOW_HITS] > 0);
+    CHECK(plain.events[RAYA_LIT] > 0);
     for (const Accel& accel : {bvh, automatic_grid, grid_of(5, 6, 7), grid_of(3, 2, 16)}) {
         CAPTURE(format, accel_text(accel));
         CHECK(image_and_events(render_with(session, scene, c, accel)) == image_and_events(plain));
@@ -335,11 +316,11 @@ TEST_CASE("a grid or BVH saves 95 % of the tests of many small spheres", "[ring]
     CHECK(image_and_events(grid) == image_and_events(plain));
     REQUIRE(grid.accel);
     CHECK(grid.accel->separate == 1);  // the ground polygon
-    CHECK(tests_of(plain.all.events) > 20 * tests_of(grid.all.events));
+    CHECK(tests_of(plain.events) > 20 * tests_of(grid.events));
     CHECK(grid.pe_memory.job_words == plain.pe_memory.job_words + grid.accel->words);
     const RingResult tree = render_with(session, scene, c, bvh);
     CHECK(image_and_events(tree) == image_and_events(plain));
-    CHECK(tests_of(plain.all.events) > 20 * tests_of(tree.all.events));
+    CHECK(tests_of(plain.events) > 20 * tests_of(tree.events));
     CHECK(tree.pe_memory.job_words == plain.pe_memory.job_words + tree.accel->words);
 }
 
@@ -359,7 +340,7 @@ TEST_CASE("every injected fault in the BVH traversal is detected", "[ring][accel
         std::string text;
         for (const Scene& scene : scenes) {
             const RingResult result = RingRenderer(session, scene, settings).render();
-            text += image_and_events(result) + std::to_string(tests_of(result.all.events)) + " ";
+            text += image_and_events(result) + std::to_string(tests_of(result.events)) + " ";
         }
         return text;
     };

@@ -30,12 +30,12 @@ TEST_CASE("fp32 renders agree with the double-precision reference", "[ring]") {
         const auto near = [](std::uint64_t got, std::uint64_t wanted) {
             return std::abs(double(got) - double(wanted)) <= 0.002 * double(wanted) + 2;
         };
-        CHECK(result.all.events[RAYA_PRIMARY] == expected.counts.primary);
-        CHECK(near(result.all.events[RAYA_PRIMARY_HITS], expected.counts.primary_hits));
-        CHECK(near(result.all.events[RAYA_REFLECTED], expected.counts.reflected));
-        CHECK(near(result.all.events[RAYA_REFRACTED], expected.counts.refracted));
-        CHECK(near(result.all.events[RAYA_SHADOW], expected.counts.shadow));
-        CHECK(near(result.all.events[RAYA_SHADOW_HITS], expected.counts.shadow_hits));
+        CHECK(result.events[RAYA_PRIMARY] == expected.counts.primary);
+        CHECK(near(result.events[RAYA_PRIMARY_HITS], expected.counts.primary_hits));
+        CHECK(near(result.events[RAYA_REFLECTED], expected.counts.reflected));
+        CHECK(near(result.events[RAYA_REFRACTED], expected.counts.refracted));
+        CHECK(near(result.events[RAYA_SHADOW], expected.counts.shadow));
+        CHECK(near(result.events[RAYA_SHADOW_HITS], expected.counts.shadow_hits));
     }
 }
 
@@ -71,9 +71,9 @@ TEST_CASE("a scene larger than local memory is read from global memory, with the
     CHECK(large.pe_memory.job_words * sizeof(std::uint32_t) > local_bytes);
     CHECK(large.build_options.find("-DRAYA_WORDS_LOCAL=0") != std::string::npos);
     CHECK(pixel_hash(large.image) == pixel_hash(small.image));
-    CHECK(large.all.events[RAYA_PRIMARY_HITS] == small.all.events[RAYA_PRIMARY_HITS]);
-    CHECK(large.all.events[RAYA_SHADOW_HITS] == small.all.events[RAYA_SHADOW_HITS]);
-    CHECK(large.all.events[RAYA_SPHERE_TESTS] > small.all.events[RAYA_SPHERE_TESTS]);
+    CHECK(large.events[RAYA_PRIMARY_HITS] == small.events[RAYA_PRIMARY_HITS]);
+    CHECK(large.events[RAYA_SHADOW_HITS] == small.events[RAYA_SHADOW_HITS]);
+    CHECK(large.events[RAYA_SPHERE_TESTS] > small.events[RAYA_SPHERE_TESTS]);
 }
 
 }  // namespace raya

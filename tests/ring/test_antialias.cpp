@@ -150,7 +150,7 @@ void check_supersampled(const RingResult& result, const RingResult& plain, const
     CHECK(result.recomputed == marked);
     CHECK(count_differences(result.image, supersampled(plain.image, fine.image, mask, c)) == 0);
     REQUIRE(result.phases.size() == 2);
-    CHECK(result.phases[0].events == plain.all.events);
+    CHECK(result.phases[0].events == plain.events);
     CHECK(result.phases[0].cost().cycles == plain.cost().cycles);
     CHECK(result.phases[1].events[RAYA_PRIMARY] == 4 * marked);
     CHECK(result.phases[1].cost().cycles == supersampling_cost(fine.cost(), mask, c));
@@ -171,7 +171,7 @@ TEST_CASE("the ring's filter gives the same pixels as the filter of the whole im
             CAPTURE(kSeed, format, i, c.width, c.height, c.pes, c.offset, c.fold);
             const RingResult result = render_grid(session, c), &expected = plain.image_of(c);
             CHECK(count_differences(result.image, whole_image::filtered(expected.image, settings_of(c).format)) == 0);
-            CHECK(result.all.events == expected.all.events);
+            CHECK(result.events == expected.events);
             CHECK(result.cost().cycles == expected.cost().cycles);
             CHECK(result.phases.size() == 1);
             CHECK(result.mask.rgb.empty());

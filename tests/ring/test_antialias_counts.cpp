@@ -59,7 +59,7 @@ void check_phase(const Phase& phase, const raya_mapping& m) {
 /// Checks that the totals in `result.all` are the sums over the phases.
 void check_sums(const RingResult& result) {
     EventCounts events{};
-    std::vector<std::uint64_t> loads(result.all.load.per_pe.size());
+    std::vector<std::uint64_t> loads(result.load.per_pe.size());
     std::vector<std::uint64_t> cost(result.cost().cycles.size());
     for (const Phase& phase : result.phases) {
         const auto add = [](auto& sums, const auto& values) {
@@ -70,8 +70,8 @@ void check_sums(const RingResult& result) {
         add(loads, phase.load.per_pe);
         add(cost, phase.cost().cycles);
     }
-    CHECK(result.all.events == events);
-    CHECK(result.all.load.per_pe == loads);
+    CHECK(result.events == events);
+    CHECK(result.load.per_pe == loads);
     CHECK(result.cost().cycles == cost);
 }
 
@@ -150,7 +150,7 @@ TEST_CASE("a second anti-aliased render with the same renderer gives the same re
         const RingResult first = renderer.render(), second = renderer.render();
         CAPTURE(antialias_name(antialias.method));
         CHECK(antialias_results(first) == antialias_results(second));
-        CHECK(first.all.load.per_pe == second.all.load.per_pe);
+        CHECK(first.load.per_pe == second.load.per_pe);
         CHECK(first.communication.rotations == second.communication.rotations);
         CHECK(first.communication.rotation_words == second.communication.rotation_words);
     }

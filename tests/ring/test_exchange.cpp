@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "host/ring/smoothing.hpp"
+#include "host/ring/neighbour_exchange.hpp"
 #include "host/scene/packer.hpp"
 #include "kernels/shared/job.h"
 #include "tests/ring/grid_scene.hpp"
@@ -39,18 +39,20 @@ Smoothed smooth(Kernels& kernels, const Shares& s, ExchangeMethod method) {
     put_record(words, 0, job);
     const ExchangeSetup setup{.session = session,
                               .broadcast = session.buffer<std::uint32_t>("job", words.size()),
-                              .pes = {0, s.mapping.pes},
+                              .pes = Distribution(s.mapping.pes),
                               .capacity = s.capacity};
     Buffer<std::uint32_t> broadcast = setup.broadcast;
     session.write("job", broadcast, words);
     Buffer<float> pixels = session.buffer<float>("pixels", s.pixels.size());
     session.write("pixels", pixels, s.pixels);
     Smoothed smoothed{s.pixels, std::vector<std::uint8_t>(std::size_t{s.mapping.pes} * s.capacity), {}, {}};
-    NeighbourExchange for_contrast(session, smoothed.contrast_communication, s.mapping, s.capacity, s.band, method);
+    NeighbourExchange for_contrast(session, smoothed.contrast_communication, s.mapping, s.capacity, s.band, method,
+                                   setup.pes);
     RingContrast contrast(kernels, setup, s.threshold);
     contrast.apply(pixels, for_contrast);
     session.read("marks", contrast.marks(), smoothed.marks);
-    NeighbourExchange for_filter(session, smoothed.filter_communication, s.mapping, s.capacity, s.band, method);
+    NeighbourExchange for_filter(session, smoothed.filter_communication, s.mapping, s.capacity, s.band, method,
+                                 setup.pes);
     RingFilter(kernels, setup).apply(pixels, for_filter);
     session.read("pixels", pixels, smoothed.filtered);
     return smoothed;

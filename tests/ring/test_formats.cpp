@@ -55,9 +55,9 @@ TEST_CASE("the sphere filter changes no bit of the image and no count", "[ring]"
             const RingResult filtered = render_scene(scene, {.width = 96, .height = 96, .format = format});
             CHECK(plain.build_options.find("RAYA_FILTER") == std::string::npos);
             CHECK(filtered.build_options.find("-DRAYA_FILTER=1") != std::string::npos);
-            CHECK(plain.all.events[RAYA_REFRACTED] > 100);
+            CHECK(plain.events[RAYA_REFRACTED] > 100);
             CHECK(pixel_hash(filtered.image) == pixel_hash(plain.image));
-            CHECK(filtered.all.events == plain.all.events);
+            CHECK(filtered.events == plain.events);
         }
 }
 
@@ -67,7 +67,7 @@ TEST_CASE("the sphere filter changes no image or count of thousands of spheres",
         const RingResult plain = render_scene(scene, {.width = 48, .height = 48, .format = "spa22", .filter = false});
         const RingResult filtered = render_scene(scene, {.width = 48, .height = 48, .format = "spa22"});
         CHECK(pixel_hash(filtered.image) == pixel_hash(plain.image));
-        CHECK(filtered.all.events == plain.all.events);
+        CHECK(filtered.events == plain.events);
     }
 }
 

@@ -27,7 +27,7 @@ TEST_CASE("a sphere of Kd = 1 without lights is as bright as the ambient light",
     scene.surfaces = {{.colour = {1, 1, 1}, .diffuse = 1}};
     scene.spheres = {{{0, 0, 5}, 1, 0}, {{1, 1, 4}, 0.5, 0}};
     const RingResult result = render_scene(scene, {.width = 33, .height = 33, .pes = 33});
-    CHECK(result.all.events[RAYA_PRIMARY_HITS] > 50);
+    CHECK(result.events[RAYA_PRIMARY_HITS] > 50);
     for (const float value : result.image.rgb) CHECK(value == 1.0f);
 }
 
@@ -37,8 +37,8 @@ TEST_CASE("a perfect mirror and clear glass are invisible in uniform surrounding
     scene.surfaces = {{.diffuse = 0, .specular = 1}, {.diffuse = 0, .transmittance = 1, .refraction_index = 1.5}};
     scene.spheres = {{{0, 0, 5}, 1, 0}, {{-1.5, 0, 5}, 0.7, 1}};
     const RingResult result = render_scene(scene, {.width = 32, .height = 32, .pes = 32, .bounces = 31});
-    CHECK(result.all.events[RAYA_REFLECTED] > 20);
-    CHECK(result.all.events[RAYA_REFRACTED] > 20);
+    CHECK(result.events[RAYA_REFLECTED] > 20);
+    CHECK(result.events[RAYA_REFRACTED] > 20);
     for (std::size_t i = 0; i < result.image.rgb.size(); ++i)
         CHECK(result.image.rgb[i] == Approx(0.25 * double(1 + i % 3)).epsilon(1e-6));
 }
@@ -53,7 +53,7 @@ TEST_CASE("the light between two mirrors is a geometric series with one term per
         const RingResult result =
             render_scene(scene, {.width = 1, .height = 1, .pes = 1, .offset = 0, .bounces = bounces});
         const double series = 0.5 * (1 - std::pow(0.5, bounces + 1)) / 0.5;  // ambient 1, no lights
-        CHECK(result.all.events[RAYA_REFLECTED] == bounces);
+        CHECK(result.events[RAYA_REFLECTED] == bounces);
         CHECK(pixel(result, 0, 0, 0) == Approx(series).epsilon(1e-6));
         CHECK(pixel(result, 0, 0, 2) == Approx(0.25 * series).epsilon(1e-6));
     }
@@ -87,7 +87,7 @@ TEST_CASE("glass of index 1 is invisible, and a ray through the centre of a glas
     const RingResult wall = render_scene(scene, c);
     scene.spheres = {{{0, 0, 5}, 1, 0}};
     const RingResult through = render_scene(scene, c);
-    CHECK(through.all.events[RAYA_REFRACTED] > 200);
+    CHECK(through.events[RAYA_REFRACTED] > 200);
     int unequal = 0;  // number of values that differ, because rounding selects another colour at a checker corner
     for (std::size_t i = 0; i < wall.image.rgb.size(); ++i)
         unequal += std::abs(wall.image.rgb[i] - through.image.rgb[i]) > 1e-5f;

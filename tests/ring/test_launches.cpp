@@ -21,7 +21,7 @@ struct LaunchResult {
 };
 
 LaunchResult launch_result_of(const RingResult& r) {
-    return {pixel_hash(r.image), r.all.events, r.all.load.per_pe, r.cost().cycles};
+    return {pixel_hash(r.image), r.events, r.load.per_pe, r.cost().cycles};
 }
 
 std::size_t launches_of(const RingResult& result) {

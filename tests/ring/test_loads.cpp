@@ -19,7 +19,7 @@ TEST_CASE("each PE's load is the sum of its pixels' costs, in every phase", "[ri
         CHECK(phase.load.per_pe == static_load(phase.cost(), settings_of(c).mapping).per_pe);
         CHECK(phase.load.max > 0);
     }
-    CHECK(result.all.load.per_pe == static_load(result.cost(), settings_of(c).mapping).per_pe);
+    CHECK(result.load.per_pe == static_load(result.cost(), settings_of(c).mapping).per_pe);
 }
 
 }  // namespace raya

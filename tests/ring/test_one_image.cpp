@@ -34,7 +34,7 @@ struct ImageAndCounts {
     bool operator==(const ImageAndCounts&) const = default;
 };
 
-ImageAndCounts image_and_counts_of(const RingResult& result) { return {pixel_hash(result.image), result.all.events}; }
+ImageAndCounts image_and_counts_of(const RingResult& result) { return {pixel_hash(result.image), result.events}; }
 
 }  // namespace
 
@@ -151,7 +151,7 @@ TEST_CASE("a second render with the same renderer gives the same result", "[ring
     const RingResult first = renderer.render(), second = renderer.render();
     CHECK(image_and_counts_of(first) == image_and_counts_of(second));
     CHECK(second.communication.broadcasts == 1);
-    CHECK(first.all.load.per_pe == second.all.load.per_pe);
+    CHECK(first.load.per_pe == second.load.per_pe);
 }
 
 }  // namespace raya

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "host/model/machine.hpp"
-#include "host/ring/pe_memory.hpp"
+#include "host/ring/ring_plan.hpp"
 #include "host/scene/split_mix.hpp"
 
 using namespace raya;

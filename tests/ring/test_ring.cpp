@@ -91,7 +91,7 @@ TEST_CASE("P rotations in either direction bring every block back", "[ring]") {
         for (const RingDirection direction : {RingDirection::kDown, RingDirection::kUp}) {
             CAPTURE(kSeed, pes, int(direction));
             Communication counted;
-            Ring ring(session, counted, static_cast<std::uint32_t>(pes), 1, 5);
+            Ring ring(session, counted, Distribution(static_cast<std::uint32_t>(pes)), 1, 5);
             const Bits before = random_words(random, pes * 5);
             ring.load(filled(session, "own", before), 5, 0);
             for (std::size_t n = 1; n <= pes; ++n) {
@@ -113,7 +113,7 @@ TEST_CASE("rotations are counted by the words that were copied", "[ring]") {
         const std::uint32_t down = random_below(random, 5), up = random_below(random, 5);
         CAPTURE(kSeed, i, pes, block, down, up);
         Communication counted;
-        Ring ring(session, counted, static_cast<std::uint32_t>(pes), 1, block);
+        Ring ring(session, counted, Distribution(static_cast<std::uint32_t>(pes)), 1, block);
         const Buffer<float> own_buffer = filled(session, "own", random_words(random, pes * block));
         session.clear_profile();
         ring.load(own_buffer, block, 0);
@@ -142,7 +142,7 @@ TEST_CASE("a band that reaches beyond the share's end loads the remaining words 
         const std::size_t band = 1 + random_below(random, share), begin = random_below(random, share);
         CAPTURE(kSeed, i, pes, rows, share, band, begin);
         Communication counted;
-        Ring ring(session, counted, static_cast<std::uint32_t>(pes), rows, band);
+        Ring ring(session, counted, Distribution(static_cast<std::uint32_t>(pes)), rows, band);
         const Bits own_words = random_words(random, pes * rows * share),
                    stale = random_words(random, pes * rows * band);
         const Buffer<float> own_buffer = filled(session, "own", own_words);
@@ -179,7 +179,7 @@ TEST_CASE("bus transfers and broadcasts are counted by the words that were copie
         const std::uint32_t sent = random_below(random, 5), broadcasts = random_below(random, 5);
         CAPTURE(kSeed, i, pes, rows, share, words, sent, broadcasts);
         Communication counted;
-        Bus bus(session, counted, static_cast<std::uint32_t>(pes));
+        Bus bus(session, counted, Distribution(static_cast<std::uint32_t>(pes)));
         const Bits own_words = random_words(random, pes * rows * share);
         const Buffer<float> own_buffer = filled(session, "own", own_words);
         Buffer<float> blocks = filled(session, "blocks", random_words(random, pes * rows * words));
@@ -210,7 +210,7 @@ TEST_CASE("an exchange brings every band from every distance once, with the pred
         const Bits own_words = random_words(random, std::size_t{m.pes} * capacity * 3);
         const Buffer<float> own_buffer = filled(session, "own", own_words);
         Communication counted;
-        NeighbourExchange exchange(session, counted, m, capacity, band, method);
+        NeighbourExchange exchange(session, counted, m, capacity, band, method, Distribution(m.pes));
         std::uint32_t wrong = 0;
         for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
             const std::vector<std::uint32_t> distances = neighbour_distances(m, side);

@@ -4,7 +4,6 @@
 #include <random>
 
 #include "host/error.hpp"
-#include "host/ring/ring_state.hpp"
 #include "tests/base/test_checkpointing.hpp"
 #include "tests/ranks/same_results.hpp"
 #include "tests/ring/render_scene.hpp"
@@ -20,27 +19,6 @@ RingSettings settings_for(AntialiasMethod method, std::uint64_t device_pixels) {
     settings.antialias.method = method;
     settings.device_pixels = device_pixels;
     return settings;
-}
-
-// Returns the state and the settings in a checkpoint of a render with `settings`.
-std::pair<RingState, StateSettings> parsed(const std::string& bytes, const RingSettings& settings) {
-    const StateSettings saved = saved_settings(bytes);
-    const raya_mapping& m = settings.mapping;
-    const std::size_t pixels = std::size_t{m.width} * m.height,
-                      in_window = m.pes * std::stoul(checkpoint_header(bytes).at("of").at("a device window of").text());
-    const bool supersamples = settings.antialias.method == AntialiasMethod::kSupersample;
-    RingState sizes;
-    sizes.image.resize(3 * pixels);
-    sizes.pixels.resize(3 * in_window);
-    if (supersamples) sizes.marks.resize(in_window);
-    sizes.passes.resize(supersamples ? 2 : 1);
-    for (RingState::Pass& pass : sizes.passes) {
-        pass.cycles.resize(in_window);
-        pass.events.resize(RAYA_EVENTS * m.pes);
-        pass.costs.resize(pixels);
-    }
-    if (supersamples) sizes.all_costs.resize(pixels);
-    return {read_state(bytes, saved, sizes), saved};
 }
 
 TEST_CASE("a render that is stopped at any band and resumed gives the same image and counts", "[ring][checkpoint]") {
@@ -143,24 +121,29 @@ TEST_CASE("a checkpoint with a valid hash is refused if its vector sizes are not
         RingRenderer renderer(session, scene, settings);
         TestCheckpointing first(1);
         CHECK_THROWS_AS(renderer.render({}, first.checkpointing()), Stopped);
-        const auto [saved, state_settings] = parsed(first.saved(), settings);
-        const std::pair<const char*, std::function<void(RingState&)>> damages[] = {
-            {"no pass", [](RingState& s) { s.passes.clear(); }},
-            {"a pass too many", [](RingState& s) { s.passes.emplace_back(); }},
-            {"no image", [](RingState& s) { s.image.clear(); }},
-            {"a longer image", [](RingState& s) { s.image.resize(s.image.size() + 1); }},
-            {"fewer pixels", [](RingState& s) { s.pixels.resize(1); }},
-            {"more pixels", [](RingState& s) { s.pixels.resize(2 * s.pixels.size()); }},
-            {"more marks", [](RingState& s) { s.marks.resize(s.marks.size() + 1); }},
-            {"no cycles", [](RingState& s) { s.passes[0].cycles.clear(); }},
-            {"more events", [](RingState& s) { s.passes[0].events.resize(2 * s.passes[0].events.size()); }},
-            {"no costs", [](RingState& s) { s.passes[0].costs.clear(); }},
-            {"more costs in all_costs", [](RingState& s) { s.all_costs.resize(s.all_costs.size() + 1); }}};
-        for (const auto& [name, damage] : damages) {
-            CAPTURE(name);
-            RingState damaged = saved;
-            damage(damaged);
-            TestCheckpointing last(1 << 30, state_bytes(damaged, state_settings));
+        const CheckpointBody saved(first.saved());
+        CHECK(saved.bytes() == first.saved());
+        // Sizes of elements: pass, window, next, communication, image, pixels, then marks if supersampled.
+        std::vector<std::size_t> vectors = {4, 4, 4, sizeof(Communication), 4, 4};
+        if (method == AntialiasMethod::kSupersample) vectors.push_back(1);
+        for (const std::size_t element_bytes : {8, 8, 8}) vectors.push_back(element_bytes);  // cycles, events, costs
+        std::vector<std::function<void(CheckpointBody&)>> damages = {
+            [](CheckpointBody& s) { s.set(8, 2u); },  // pass
+            [](CheckpointBody& s) { s.body.resize(s.body.size() - 8); },
+            [](CheckpointBody& s) { s.body += "moremore"; }};
+        for (std::size_t k = 0; k < vectors.size(); ++k)
+            for (const int change : {-1, 1}) {
+                const std::size_t at =
+                    saved.vector_at({vectors.begin(), vectors.begin() + static_cast<std::ptrdiff_t>(k)});
+                damages.emplace_back([=](CheckpointBody& s) {
+                    s.set(at, s.number<std::uint64_t>(at) + static_cast<std::uint64_t>(change));
+                });
+            }
+        for (std::size_t i = 0; i < damages.size(); ++i) {
+            CAPTURE(i);
+            CheckpointBody damaged = saved;
+            damages[i](damaged);
+            TestCheckpointing last(1 << 30, damaged.bytes());
             CHECK_THROWS_WITH(renderer.render({}, last.checkpointing()), "damaged");
         }
     }
@@ -170,21 +153,23 @@ TEST_CASE("a checkpoint with a changed byte or a missing end is refused", "[ring
     const std::uint32_t seed = 21;
     CAPTURE(seed);
     std::mt19937 random(seed);
-    RingState state;
-    state.window = 5;
-    state.next = 7;
-    state.part.fraction = 0.25;
-    state.image = {1, 2, 3};
-    state.pixels = {4};
-    state.passes.resize(1);
-    state.passes[0].events = {1, 2};
     const StateSettings settings = {{"name", "value \"x\""}};
-    const std::string bytes = state_bytes(state, settings);
-    const RingState read = read_state(bytes, settings, state);
-    CHECK(read.next == 7);
-    CHECK((read.image == state.image));
-    CHECK((read.passes[0].events == state.passes[0].events));
-    CHECK(state_bytes(read, settings) == bytes);
+    const std::vector<float> image = {1, 2, 3};
+    const std::vector<std::uint64_t> events = {1, 2};
+    CheckpointWriter writer(settings, {.fraction = 0.25});
+    writer.put(image);
+    writer.put(events);
+    const std::string bytes = writer.finish();
+    const auto read = [&](const std::string& file, const StateSettings& of) {
+        CheckpointReader reader(file, of);
+        std::vector<std::uint64_t> read_events(2);
+        CHECK(reader.part().fraction == 0.25);
+        CHECK((reader.take_any<float>() == image));
+        reader.take(read_events);
+        CHECK(read_events == events);
+        reader.check_end();
+    };
+    read(bytes, settings);
     for (int i = 0; i < 500; ++i) {
         std::string damaged = bytes;
         if (random() % 4 == 0)
@@ -192,10 +177,10 @@ TEST_CASE("a checkpoint with a changed byte or a missing end is refused", "[ring
         else
             damaged[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
         CAPTURE(i);
-        CHECK_THROWS_AS(read_state(damaged, settings, state), UserError);
+        CHECK_THROWS_AS(read(damaged, settings), UserError);
     }
-    CHECK_THROWS_WITH(read_state(bytes, {{"name", "other"}}, state), "was rendered with name value \"x\", not other");
-    CHECK_THROWS_WITH(read_state(bytes, {{"new", "one"}}, state), "'new' is missing");
+    CHECK_THROWS_WITH(read(bytes, {{"name", "other"}}), "was rendered with name value \"x\", not other");
+    CHECK_THROWS_WITH(read(bytes, {{"new", "one"}}), "damaged header: 'new' is missing");
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ TEST_CASE("the work of the ring's kernels agrees with the counts", "[ring]") {
     REQUIRE(works.size() == 3);
     CHECK(works[0].label == "trace");
     CHECK(works[1].label == "supersample");
-    const Operations all_operations = operations_of(supersampled.result.all.events);
+    const Operations all_operations = operations_of(supersampled.result.events);
     CHECK(works[0].operations + works[1].operations == all_operations.multiply_accumulates);
     CHECK(works[0].divisions + works[1].divisions == all_operations.divisions);
     CHECK(works[0].roots + works[1].roots == all_operations.roots);

@@ -12,7 +12,6 @@
 
 #include "host/ring/mapping.hpp"
 #include "host/ring/neighbour_exchange.hpp"
-#include "host/ring/route.hpp"
 #include "kernels/shared/share_pixels.h"
 #include "tests/ring/small_mapping.hpp"
 

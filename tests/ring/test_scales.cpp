@@ -46,12 +46,12 @@ TEST_CASE("a scene scaled by a power of two gives the same bits and counts", "[r
         for (const char* name : quick(2, {"mirrors", "cones", "polygons", "centre", "glass", "spheres"})) {
             const Scene scene = without_planes(name);
             const RingResult unscaled = render_scene(scene, in_format(format));
-            CHECK(unscaled.all.events[RAYA_PRIMARY_HITS] > 100);
+            CHECK(unscaled.events[RAYA_PRIMARY_HITS] > 100);
             for (const int k : {14, -17, 40, -40, 80, -80}) {
                 CAPTURE(format, name, k);
                 const RingResult scaled = render_scene(scaled_scene(scene, std::ldexp(1, k)), in_format(format));
                 CHECK(pixel_hash(scaled.image) == pixel_hash(unscaled.image));
-                CHECK(scaled.all.events == unscaled.all.events);
+                CHECK(scaled.events == unscaled.events);
             }
         }
 }
@@ -81,7 +81,7 @@ TEST_CASE("scaling a scene into the format moves only the horizon of its planes"
     const double difference = mean_difference(unscaled.image, scaled.image);
     INFO(difference);
     CHECK(difference < 0.01);
-    CHECK(scaled.all.events[RAYA_PRIMARY_HITS] > unscaled.all.events[RAYA_PRIMARY_HITS] * 95 / 100);
+    CHECK(scaled.events[RAYA_PRIMARY_HITS] > unscaled.events[RAYA_PRIMARY_HITS] * 95 / 100);
 }
 
 TEST_CASE("a scene scaled by a power of ten gives the same image except for rounding", "[ring][scales]") {

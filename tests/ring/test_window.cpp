@@ -20,8 +20,8 @@ TEST_CASE("the number of pixels on the device changes no image, count, load or c
             settings.device_pixels = pixels;
             const RingResult windowed = RingRenderer(session, scene, settings).render();
             CHECK(pixel_hash(windowed.image) == pixel_hash(whole.image));
-            CHECK(windowed.all.events == whole.all.events);
-            CHECK(windowed.all.load.per_pe == whole.all.load.per_pe);
+            CHECK(windowed.events == whole.events);
+            CHECK(windowed.load.per_pe == whole.load.per_pe);
             CHECK(windowed.cost().cycles == whole.cost().cycles);
             CHECK(windowed.communication.gathers == whole.communication.gathers);
             CHECK(windowed.communication.gather_words == whole.communication.gather_words);
@@ -39,7 +39,7 @@ TEST_CASE("costs are recorded only on request, which changes no other result", "
     CHECK(with_costs.cost().cycles.size() == 320);
     CHECK_THROWS_AS(without_costs.cost(), std::logic_error);
     CHECK_THROWS_AS(without_costs.phases.front().cost(), std::logic_error);
-    CHECK(without_costs.all.load.per_pe == with_costs.all.load.per_pe);
+    CHECK(without_costs.load.per_pe == with_costs.load.per_pe);
     CHECK(pixel_hash(without_costs.image) == pixel_hash(with_costs.image));
     settings.record_costs = false;
     settings.dynamic = DynamicPlan{.chunk = 4};

@@ -24,8 +24,8 @@ RingResult render_on_spa(Session& session, const Scene& scene, std::uint32_t p) 
 TEST_CASE("the centre scene has the imbalance of the paper's scene, 1.58 +- 0.03", "[calibration]") {
     Session session(choose_device(""));
     const Scene scene = parse_nff(file_contents(RAYA_SOURCE_DIR "/scenes/centre.nff"), "centre");
-    const Load column_load = render_on_spa(session, scene, 0).all.load,
-               cyclic_load = render_on_spa(session, scene, 16).all.load;
+    const Load column_load = render_on_spa(session, scene, 0).load,
+               cyclic_load = render_on_spa(session, scene, 16).load;
     CHECK(column_load.per_pe.size() == 256);
     CHECK(column_load.mean == cyclic_load.mean);
     CHECK(column_load.imbalance >= 1.55);

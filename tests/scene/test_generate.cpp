@@ -14,7 +14,6 @@
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
 #include "host/scene/nff.hpp"
-#include "host/scene/outline.hpp"
 #include "host/scene/polygon.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/paths.h"

@@ -5,8 +5,8 @@
 
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
-#include "host/scene/length_scale.hpp"
 #include "host/scene/nff.hpp"
+#include "host/scene/scene.hpp"
 #include "tests/paths.h"
 #include "tests/scene/scaled_scene.hpp"
 

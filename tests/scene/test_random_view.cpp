@@ -5,8 +5,8 @@
 #include <set>
 
 #include "host/scene/generate.hpp"
+#include "host/scene/scene.hpp"
 #include "host/scene/split_mix.hpp"
-#include "host/scene/view.hpp"
 
 namespace raya {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/scene/scene.hpp"
 #include "host/scene/split_mix.hpp"
-#include "host/scene/view.hpp"
 
 namespace raya {
 namespace {

@@ -12,7 +12,7 @@ number() { awk -v line="$1" 'index($0, "  " line " ") == 1 { print $NF }' <<<"$o
 histogram trace "$root/scenes/centre.nff"
 [[ $(number "rays primary") == 64 ]] || fail "8 x 8 pixels have 64 primary rays"
 # One lane, one sphere at a time, so that each test is one call.
-[[ $(number "call test_sphere()") == "$(number "tests sphere")" ]] || fail "calls of test_sphere() are not the tests that raya counted"
+[[ $(number "call closest_approach()") == "$(number "tests sphere")" ]] || fail "calls of closest_approach() are not the tests that raya counted"
 histogram add_neighbours "$root/scenes/planes.nff"
 [[ $out == *"kernel add_neighbours, "*"fadd"* ]] || fail "no additions in add_neighbours"
 histogram trace_voxel "$root/scenes/planes.nff"

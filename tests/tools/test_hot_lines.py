@@ -53,8 +53,8 @@ hot_lines(*at_build, SCRATCH / "none.nff", code=2, texts=["none.nff: cannot read
 
 # A line that is made slow is the hottest, with its function and text. The line is after an include that the preprocessor skips.
 kernels, page = SCRATCH / "kernels", SCRATCH / "page.html"
-line_text = "p->direction = r->direction; for (volatile int turn = 0; turn < 5000; ++turn) {}"
-subprocess.run([BUILD / "tests" / "patch_kernels", kernels, "shading/search.clh", "p->direction = r->direction;", line_text], check=True)
+line_text = "count_all_tests(scene, t, m); for (volatile int turn = 0; turn < 5000; ++turn) {}"
+subprocess.run([BUILD / "tests" / "patch_kernels", kernels, "shading/search.clh", "count_all_tests(scene, t, m);", line_text], check=True)
 lines = (kernels / "shading" / "search.clh").read_text().splitlines()
 place = f"shading/search.clh:{next(number for number, line in enumerate(lines, 1) if line_text in line)}"
 
@@ -67,12 +67,12 @@ def share_of(output, ending):
 
 slow = hot_lines(*at_build, *SCENE, "--kernel-dir", kernels, "--page", page, texts=["kernel trace: "])
 hottest = slow.split("text\n")[1].splitlines()[0].split(maxsplit=4)
-expect(float(hottest[0]) > 80 and hottest[2:] == [place, "put_rays", line_text], hottest, slow)
-expect(share_of(slow, "put_rays") > 80, slow)  # the function
+expect(float(hottest[0]) > 80 and hottest[2:] == [place, "cast_rays", line_text], hottest, slow)
+expect(share_of(slow, "cast_rays") > 80, slow)  # the function
 if platform.machine() == "x86_64":
     expect(float(re.search(r"^vector scalar ([\d.]+) %", slow, re.M)[1]) > 80, slow)  # the loop's instructions
 fast = hot_lines(*at_build, *SCENE)
-expect(share_of(fast, "p->direction = r->direction;") < 20, fast)
+expect(share_of(fast, "count_all_tests(scene, t, m);") < 20, fast)
 
 # Shares of kernels and host code. perf appends :u where an ordinary user may not sample the Linux kernel.
 shares = re.match(r"(\d+) samples of cpu-clock(?::u)?: ([\d.]+) % in kernels, ([\d.]+) % in host code", slow)
@@ -83,7 +83,7 @@ expect(abs(samples / int(shares[1]) - float(shares[2]) / 100) < 0.01, slow)
 # The page is complete in one file and has the line with its heat; source text is escaped.
 text = page.read_text()
 expect(re.search(rf'<tr><td class="n" style="background: rgb\(214 85 20 / 0.75\)">{hottest[0]}</td><td class="n">[\d.]+</td>'
-                 rf'<td class="n">{place.split(":")[1]}</td><td><code> +p-&gt;direction = r-&gt;direction; for', text), "no hottest line in", page)
+                 rf'<td class="n">{place.split(":")[1]}</td><td><code> +count_all_tests\(scene, t, m\); for', text), "no hottest line in", page)
 expect(not re.search(r"https?://|<script|<link|src=", text), page)
 
 # A render on PoCL's basic device, and one without samples in kernels.

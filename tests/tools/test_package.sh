@@ -38,7 +38,7 @@ field() { dpkg-deb -f "$deb" "$1"; }
 
 dpkg-deb -x "$deb" "$scratch/whole"
 for file in bin/raya lib/raya/raya_pictures.so lib/raya/raya_import share/man/man1/raya.1.gz share/man/man1/raya-render.1.gz share/raya/scenes/centre.nff \
-    share/bash-completion/completions/raya share/zsh/vendor-completions/_raya share/fish/vendor_completions.d/raya.fish share/doc/raya/copyright \
+    share/bash-completion/completions/raya share/doc/raya/copyright \
     share/doc/raya/changelog.gz share/doc/raya/licences/libcli11-dev include/raya/number/number.clh share/pkgconfig/raya-number.pc; do
     [[ -s $scratch/whole/usr/$file ]] || fail "no /usr/$file"
 done

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Compiles every kernel to SPIR-V as raya does with --il (host/cl/spirv.cpp), validates it with spirv-val for OpenCL 1.2, and looks for uses of
+# Compiles every kernel to SPIR-V as raya does with --il (host/cl/kernel_source.cpp), validates it with spirv-val for OpenCL 1.2, and looks for uses of
 # what clspv does not support (tools/gpu/spirv.py).
 #   tests/tools/test_spirv.sh       exit code 77: clang, llvm-spirv or spirv-val is missing (tools/setup --gpu)
 set -euo pipefail

@@ -32,7 +32,6 @@ struct TorusCase {
     std::uint32_t bounces = 4;
     std::string format = "fp32";
     PixelSubset pixels{};
-    LinkMove link_move = LinkMove::kAutomatic;
     KernelSources sources{};
 };
 
@@ -57,7 +56,6 @@ inline TorusSettings settings_of(const TorusCase& c) {
     s.kernels.lanes = c.lanes;
     s.kernels.group_size = c.group;
     s.kernels.sources = c.sources;
-    s.kernels.link_move = c.link_move;
     return s;
 }
 
@@ -104,7 +102,7 @@ inline std::string ring_image_and_counts(const Scene& scene, const TorusCase& c)
                         .bounces = c.bounces,
                         .format = c.format};
     const RingResult r = render_scene(scene, ring);
-    return image_and_counts(r.image, r.all.events);
+    return image_and_counts(r.image, r.events);
 }
 
 /// Adds the packet's number of words to words[node][link] for each link of the packet's route. The routing rules define

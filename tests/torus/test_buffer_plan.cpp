@@ -50,16 +50,6 @@ std::uint64_t packet_bytes(std::uint64_t queue, std::uint64_t links) {
     return 64 * (queue + 2 * links * box) + 32 * (links > 0 ? links + 1 : 0) * box;
 }
 
-// A NodeTrial that divides `words` words evenly among the nodes of every machine. It counts its calls.
-struct EvenTrial {
-    std::uint64_t words = 0;
-    int calls = 0;
-    std::optional<NodeTrialResult> operator()(const std::array<std::uint32_t, 3>& nodes) {
-        ++calls;
-        return NodeTrialResult{words / (nodes[0] * nodes[1] * nodes[2]), nodes};
-    }
-};
-
 }  // namespace
 
 TEST_CASE("a node's bytes are its words, its queue and its mailboxes", "[torus]") {
@@ -166,10 +156,10 @@ TEST_CASE("a scene that does not fit is refused with figures, the fullest node a
         std::ceil(node_words_bytes(300) / 102.4) / 10, std::floor(double(limit) / 102.4) / 10);
     REQUIRE(packet_bytes(9, 4) == 1920);  // 1.875 KB
     const std::uint64_t sufficient_bytes = (node_words_bytes(300) + 1920 + 1023) / 1024 * 1024;
-    const auto refusal = [&](std::uint32_t queue, const NodeTrial& trial = {}) {
-        return user_error_message([&] { plan_buffers("s.nff", sizes, torus, limit, queue, 9, trial); });
+    const auto refusal = [&](std::uint32_t queue) {
+        return user_error_message([&] { plan_buffers("s.nff", sizes, torus, limit, queue, 9); });
     };
-    CHECK(refusal(0) == figures + fmt::format("use --pe-memory {}", sufficient_bytes));
+    CHECK(refusal(0) == figures + fmt::format("use more --nodes or --pe-memory {}", sufficient_bytes));
     CHECK(plan_buffers("s.nff", sizes, torus, sufficient_bytes, 0, 9).queue >= 9);
 
     try {
@@ -182,53 +172,16 @@ TEST_CASE("a scene that does not fit is refused with figures, the fullest node a
         CHECK(error.needed_bytes == node_words_bytes(300) + packet_bytes(9, 4));
         CHECK(error.memory_bytes == limit);
     }
-
-    // With six links instead of four, a node has four more mailboxes of two rays and two more mailboxes of two returns.
-    // These mailboxes leave 640 bytes less for the words.
-    EvenTrial trial{8 * (node_words_bytes(200) - 640) / 4, 0};
-    const auto remedy = [&](const char* nodes) {
-        return figures + fmt::format("use --nodes {} or --pe-memory {}", nodes, sufficient_bytes);
-    };
-    CHECK(refusal(0, std::ref(trial)) == remedy("2x2x2"));
-    CHECK(trial.calls == 1);
-    trial = {8 * (node_words_bytes(200) - 640) / 4 + 8, 0};
-    CHECK(refusal(0, std::ref(trial)) == remedy("4x2x2"));
-    CHECK(trial.calls == 2);
-    trial = {~0ull, 0};
-    CHECK_THAT(
-        refusal(0, std::ref(trial)),
-        Contains(fmt::format("no machine of up to 65536 nodes is large enough; use --pe-memory {}", sufficient_bytes)));
-    CHECK(trial.calls == 14);  // 2^3 to 2^16 nodes
-    const NodeTrial failing_trial = [](const auto&) { return std::nullopt; };
-    CHECK(refusal(0, failing_trial) ==
-          figures +
-              fmt::format("no machine of up to 65536 nodes is large enough; use --pe-memory {}", sufficient_bytes));
-    const NodeTrial trial_with_voxels = [](const auto&) { return NodeTrialResult{1, {8, 8, 8}}; };
-    CHECK(refusal(0, trial_with_voxels) == remedy("2x2x2 --voxels 8x8x8"));
-}
-
-TEST_CASE("machines that are too small even for evenly divided words are not tried", "[torus]") {
-    const raya_torus torus = make_torus({2, 2, 2}, Links::kTorus3d);
-    const NodeSizes sizes = nodes_with_spheres(std::vector<std::uint32_t>(8, 1000), torus);
-    EvenTrial trial{std::accumulate(sizes.words.begin(), sizes.words.end(), std::uint64_t{0}), 0};
-    const std::uint64_t limit =
-        node_words_bytes(1000) / 32 + packet_bytes(1, 6);  // enough for words divided evenly among 2^8 nodes
-    CHECK_THAT(user_error_message([&] { plan_buffers("s", sizes, torus, limit, 0, 1, std::ref(trial)); }),
-               Contains("use --nodes 8x8x4 or"));
-    CHECK(trial.calls == 1);
 }
 
 TEST_CASE("if a shorter queue fits, the refusal names it", "[torus]") {
     const raya_torus torus = make_torus({2, 1, 2}, Links::kTorus3d);
     const NodeSizes sizes = nodes_with_spheres({100, 300, 20, 200}, torus);
     const std::uint64_t limit = node_words_bytes(300) + packet_bytes(100, 4);
-    EvenTrial trial;
-    const std::string message =
-        user_error_message([&] { plan_buffers("s", sizes, torus, limit, 1000, 9, std::ref(trial)); });
+    const std::string message = user_error_message([&] { plan_buffers("s", sizes, torus, limit, 1000, 9); });
     const std::uint64_t sufficient_bytes = (node_words_bytes(300) + packet_bytes(1000, 4) + 1023) / 1024 * 1024;
     CHECK_THAT(message, Contains("0 of 4 nodes can hold") && Contains("and 226.6 KB for buffers") &&
                             Contains(fmt::format("; use --queue 100 or --pe-memory {}", sufficient_bytes)));
-    CHECK(trial.calls == 0);
     CHECK(plan_buffers("s", sizes, torus, limit, 100, 9).queue == 100);
     CHECK(plan_buffers("s", sizes, torus, sufficient_bytes, 1000, 9).queue == 1000);
 }
@@ -256,35 +209,17 @@ TEST_CASE("a refusal gives the fullest node's number of voxels, or the position 
     CHECK_THAT(refusal({1, 1, 1}), Contains("0 of 1 nodes") && Contains("node 0 (24 voxels with 10 objects)"));
 }
 
-TEST_CASE("each larger machine that is tried doubles the shortest side, up to 65,536 nodes", "[torus]") {
-    for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-        SplitMix random(seed);
-        const raya_torus torus = random_torus(random, 8);
-        std::vector<std::uint32_t> counts(raya_nodes(torus), 0);
-        counts[0] = 2000;
-        const NodeSizes sizes = nodes_with_spheres(counts, torus);
-        std::vector<std::array<std::uint32_t, 3>> tried = {{torus.nodes[0], torus.nodes[1], torus.nodes[2]}};
-        const NodeTrial trial = [&](const std::array<std::uint32_t, 3>& nodes) {
-            tried.push_back(nodes);
-            return NodeTrialResult{~0ull / 8, nodes};
-        };
-        CAPTURE(seed, torus_text(torus));
-        // The limit is one byte too small for the fullest node, but large enough for words divided evenly among more
-        // nodes.
-        const std::uint64_t limit = node_words_bytes(2000) + packet_bytes(1, links_of_node(torus)) - 1;
-        CHECK_THROWS_AS(plan_buffers("s", sizes, torus, limit, 0, 1, trial), UserError);
-        for (std::size_t i = 1; i < tried.size(); ++i) {
-            const auto &before = tried[i - 1], &after = tried[i];
-            std::size_t doubled = 0;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                if (after[axis] == before[axis]) continue;
-                ++doubled;
-                CHECK(after[axis] == 2 * before[axis]);
-                CHECK(before[axis] == *std::min_element(before.begin(), before.end()));
-            }
-            CHECK(doubled == 1);
+TEST_CASE("bisection finds the last number that satisfies the predicate, in at most 32 calls", "[torus]") {
+    for (const std::uint64_t above : {6ull, 7ull, 1000ull, 1ull << 32})
+        for (const std::uint64_t last : {5ull, 6ull, 999ull, (1ull << 32) - 1}) {
+            if (last >= above) continue;
+            int calls = 0;
+            const auto holds = [&](std::uint32_t number) {
+                ++calls;
+                return number <= last;
+            };
+            CAPTURE(above, last);
+            CHECK(largest_where(5, above, holds) == last);
+            CHECK(calls <= 32);
         }
-        const std::uint32_t last_nodes = raya_nodes(make_torus(tried.back(), Links::kTorus3d));
-        CHECK((last_nodes <= kMaxNodes && 2 * last_nodes > kMaxNodes));
-    }
 }

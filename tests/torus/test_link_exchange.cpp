@@ -18,25 +18,21 @@ constexpr std::uint32_t kUnsent = 0xdead0000;  // value of the words in outboxes
 // Fills and empties the mailboxes of all nodes, as the nodes' kernels would between two exchanges.
 class Mailboxes {
   public:
-    Mailboxes(Session& session, const raya_torus& torus, std::uint32_t capacity, std::uint32_t words)
-        : session_(session),
+    Mailboxes(Kernels& kernels, const raya_torus& torus, std::uint32_t capacity, std::uint32_t words)
+        : session_(kernels.session()),
           torus_(torus),
           nodes_(raya_nodes(torus)),
           capacity_(capacity),
           words_(words),
           distribution_(torus),
-          links_(session, distribution_, capacity, {"test", words, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX}),
           status_(nodes_),
-          device_status_(session.buffer<std::uint32_t>("status", status_.words.size())),
+          device_status_(session_.buffer<std::uint32_t>("status", status_.words.size())),
+          links_(session_, distribution_, capacity, {"test", words, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX},
+                 kernels.get<ExchangeKernel>(), kernels.options().group_size, device_status_),
           out_(links_.outboxes().size(), kUnsent),
           in_(out_.size()) {
         links_.clear();
         for (std::uint32_t box = 0; box < RAYA_LINKS * nodes_; ++box) out_[at(box)] = 0;
-    }
-
-    /// Makes further exchanges use the exchange kernel instead of copy commands.
-    void use_kernel(Kernels& kernels) {
-        links_.use_kernel(kernels.get<ExchangeKernel>(), kernels.options().group_size, device_status_);
     }
 
     /// For each outbox, with probability 1 / `rareness`: adds a random number of packets, at most `max_packets` and at
@@ -64,9 +60,7 @@ class Mailboxes {
         const std::vector<std::uint32_t> inboxes_before = in_;
         std::vector<std::uint64_t> words(std::size_t{nodes_} * RAYA_LINKS, 5), expected = words;
         session_.write("test", device_status_, status_.words);
-        session_.clear_profile();
         links_.exchange(status_, words);
-        count_copies();
         session_.read("test", links_.inboxes(), in_);
         std::vector<std::uint32_t> sent(links_.sent_flags().size());
         session_.read("test", links_.sent_flags(), sent);
@@ -120,8 +114,6 @@ class Mailboxes {
 
     /// Returns the number of packets that have arrived.
     std::uint64_t arrived_packets() const { return arrivals_.size(); }
-    /// Number of commands that copied several mailboxes; number of commands that copied a single mailbox.
-    static inline std::uint64_t multi_box_copies = 0, single_box_copies = 0;
 
   private:
     std::uint32_t& outbox(std::uint32_t link, std::uint32_t node) {
@@ -152,19 +144,13 @@ class Mailboxes {
         std::fill_n(&out_[box] + words_, capacity_ * words_, kUnsent);
     }
 
-    void count_copies() {
-        const std::uint64_t box = (1 + capacity_) * words_ * sizeof(std::uint32_t);
-        for (const CommandRecord& c : session_.profile().commands())
-            if (c.kind == "copy") (c.bytes > box ? multi_box_copies : single_box_copies) += 1;
-    }
-
     Session& session_;
     raya_torus torus_;
     std::uint32_t nodes_, capacity_, words_;
     NodeDistribution distribution_;
-    LinkExchange links_;
     NodeStatus status_;
     Buffer<std::uint32_t> device_status_;
+    LinkExchange links_;
     std::vector<std::uint32_t> out_, in_;
     std::vector<std::uint32_t> sources_;              // by packet number: its source node
     std::map<std::uint32_t, int> arrivals_, visits_;  // by packet number: number of arrivals, of visits
@@ -183,8 +169,8 @@ TEST_CASE("random toruses: links carry every packet to the neighbour once", "[to
         const std::uint32_t capacity = 1 + random_below(random, 12);
         const bool record = i % 2;
         CAPTURE(seed, i, torus_text(torus), capacity, record);
-        Mailboxes boxes(session, torus, capacity, i % 3 ? RAYA_PACKET_WORDS : RAYA_RETURN_WORDS);
-        if (i % 4 >= 2) boxes.use_kernel(i % 4 == 2 ? one_item_kernels : group_kernels);
+        Mailboxes boxes(i % 4 >= 2 ? one_item_kernels : group_kernels, torus, capacity,
+                        i % 3 ? RAYA_PACKET_WORDS : RAYA_RETURN_WORDS);
         const std::uint32_t rareness = i % 5 == 0 ? 20 : 1 + random_below(random, 3);
         for (int round = 0; round < 6; ++round) {
             CAPTURE(round);
@@ -196,48 +182,19 @@ TEST_CASE("random toruses: links carry every packet to the neighbour once", "[to
         arrived_packets += boxes.arrived_packets();
     }
     CHECK(arrived_packets > 10'000);
-    CHECK(Mailboxes::multi_box_copies > 100);
-    CHECK(Mailboxes::single_box_copies > 100);
-}
-
-TEST_CASE("a long mailbox is copied separately from short ones if that moves fewer bytes", "[torus]") {
-    Session session(choose_device(""));
-    constexpr std::uint32_t kCapacity = 4096, kWords = RAYA_PACKET_WORDS, kBox = (1 + kCapacity) * kWords;
-    const raya_torus torus = make_torus({4, 1, 1}, Links::kTorus3d);
-    const NodeDistribution distribution(torus);
-    LinkExchange links(session, distribution, kCapacity, {"test", kWords, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX});
-    links.clear();
-    NodeStatus status(4);
-    std::vector<std::uint32_t> out(links.outboxes().size()), in(out.size());
-    const std::array<std::uint32_t, 4> packets = {2, 4000, 1, 1};
-    for (std::uint32_t node = 0; node < 4; ++node) {
-        status.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX] = packets[node];
-        out[std::size_t{node} * kBox] = packets[node];
-        for (std::uint32_t w = 0; w < packets[node] * kWords; ++w) out[node * kBox + kWords + w] = node << 24 | w;
-    }
-    session.write("test", links.outboxes(), out);
-    session.clear_profile();
-    std::vector<std::uint64_t> words(std::size_t{4} * RAYA_LINKS);
-    links.exchange(status, words);
-    std::vector<std::uint64_t> copied;
-    for (const CommandRecord& c : session.profile().commands())
-        if (c.kind == "copy") copied.push_back(c.bytes / (4 * kWords));
-    CHECK(copied == std::vector<std::uint64_t>{3, 4001, 2 * 2});
-    session.read("test", links.inboxes(), in);
-    for (std::uint32_t node = 0; node < 4; ++node) {
-        const auto at = in.begin() + node * kBox, end = at + (1 + packets[node]) * kWords;
-        CAPTURE(node);
-        CHECK(std::equal(at, end, out.begin() + node * kBox));
-    }
 }
 
 TEST_CASE("the words of a link include only the returns that the model charges as messages", "[torus]") {
     Session session(choose_device(""));
     const raya_torus torus = make_torus({2, 1, 1}, Links::kTorus3d);
     const NodeDistribution distribution(torus);
-    LinkExchange links(session, distribution, 8,
-                       {"test", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX, 6,
-                        RAYA_STATUS_RETURN_CHARGED});
+    Kernels kernels(session, {});
+    auto device_status = session.buffer<std::uint32_t>("status", std::size_t{2} * RAYA_STATUS_WORDS);
+    session.fill("test", device_status, 0);
+    LinkExchange links(
+        session, distribution, 8,
+        {"test", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX, 6, RAYA_STATUS_RETURN_CHARGED},
+        kernels.get<ExchangeKernel>(), 1, device_status);
     links.clear();
     NodeStatus status(2);
     status.words[RAYA_STATUS_WORDS + RAYA_STATUS_RETURN_OUTBOX + 1] = 5;

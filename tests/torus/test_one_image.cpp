@@ -42,15 +42,14 @@ TorusCase random_machine(SplitMix& random, const Scene& scene, TorusCase c) {
     return c;
 }
 
-// Renders the scene. If the machine deadlocks, searches for a queue that is long enough and renders with that queue.
+// Renders the scene; after a deadlock, with queues of twice the length.
 TorusResult render_without_deadlock(Session& session, const Scene& scene, const TorusCase& c) {
     TorusRenderer renderer(session, scene, settings_of(c));
-    try {
-        return renderer.render();
-    } catch (const TorusDeadlock& deadlock) {
-        if (!find_longer_queue(deadlock.figures.queue, renderer.queue_trial()).completes) throw;
-        return renderer.render();
-    }
+    for (;;) try {
+            return renderer.render();
+        } catch (const TorusDeadlock& deadlock) {
+            renderer.set_queue(2 * deadlock.figures.queue);
+        }
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "host/torus/torus_state.hpp"
+#include "host/torus/torus_result.hpp"
 #include "tests/base/test_checkpointing.hpp"
 #include "tests/torus/render_torus.hpp"
 
@@ -71,37 +71,43 @@ TEST_CASE("torus: a checkpoint with a valid hash is refused if its counts do not
     const Scene scene = project_scene("planes");
     const TorusSettings settings = small_torus();
     const std::string state = stopped_render(session, scene, settings);
-    const StateSettings of = saved_settings(state);
-    const TorusState saved = read_state(state, of, 8, buffers_for(settings.queue));
-    CHECK(state_bytes(saved.run, saved.nodes, saved.part, of) == state);
-    CHECK(saved.run.superstep == 3);
-    const auto set_status = [](std::uint32_t word, std::uint32_t value) {
-        return [=](TorusState& s) { s.nodes.status[RAYA_STATUS_WORDS + word] = value; };
+    // Sizes of elements: superstep, stalled, reserve, max_live; supersteps, link_words, returns; then status.
+    const std::vector<std::size_t> vectors = {4, 4, 4, 8, sizeof(Superstep), 8, sizeof(raya_head)};
+    const CheckpointBody saved(state);
+    CHECK(saved.bytes() == state);
+    CHECK(saved.number<std::uint32_t>(8) == 3);
+    const std::size_t link_words_at = saved.vector_at({4, 4, 4, 8, sizeof(Superstep)}),
+                      status_at = saved.vector_at(vectors);
+    CHECK(saved.number<std::uint64_t>(status_at) == 8 * RAYA_STATUS_WORDS);
+    const auto set_status = [&](std::uint32_t word, std::uint32_t value) {
+        return [=](CheckpointBody& s) { s.set(status_at + 8 + 4 * (RAYA_STATUS_WORDS + word), value); };
     };
     const std::uint32_t box = buffers_for(settings.queue).box;
-    const std::pair<const char*, std::function<void(TorusState&)>> damages[] = {
-        {"a superstep more", [](TorusState& s) { ++s.run.superstep; }},
-        {"fewer links", [](TorusState& s) { s.run.link_words.pop_back(); }},
-        {"no status", [](TorusState& s) { s.nodes.status.clear(); }},
-        {"more events", [](TorusState& s) { s.nodes.events.push_back(0); }},
-        {"fewer counts of packets made", [](TorusState& s) { s.nodes.made.pop_back(); }},
-        {"fewer counts of packets ended", [](TorusState& s) { s.nodes.ended.pop_back(); }},
-        {"fewer counts of messages", [](TorusState& s) { s.nodes.returns.messages.pop_back(); }},
-        {"more counts of rays", [](TorusState& s) { s.nodes.rays.packets.push_back(0); }},
+    const std::pair<const char*, std::function<void(CheckpointBody&)>> damages[] = {
+        {"a superstep more", [](CheckpointBody& s) { s.set(8, 4u); }},
+        {"too many stalled supersteps", [](CheckpointBody& s) { s.set(8 + 4 + 8, 3u); }},
+        {"an unknown reserve", [](CheckpointBody& s) { s.set(2 * (8 + 4) + 8, 2u); }},
+        {"fewer links", [=](CheckpointBody& s) { s.set(link_words_at, s.number<std::uint64_t>(link_words_at) - 1); }},
+        {"more status words", [=](CheckpointBody& s) { s.set(status_at, s.number<std::uint64_t>(status_at) + 1); }},
         {"a queue that is too full", set_status(RAYA_STATUS_QUEUE, settings.queue + 1)},
         {"too many returns in the root", set_status(RAYA_STATUS_HOST, settings.queue + 1)},
         {"an outbox that is too full", set_status(RAYA_STATUS_OUTBOX + 5, box + 1)},
         {"an inbox that is too full", set_status(RAYA_STATUS_INBOX, box + 1)},
         {"too many returns in an outbox", set_status(RAYA_STATUS_RETURN_OUTBOX + 1, box + 1)},
         {"too many returns in an inbox", set_status(RAYA_STATUS_RETURN_INBOX + 2, UINT32_MAX)},
-        {"fewer words of packets", [](TorusState& s) { s.nodes.packets.pop_back(); }},
-        {"more words of packets", [](TorusState& s) { s.nodes.packets.push_back(0); }}};
+        {"one packet more in the queue",
+         [=](CheckpointBody& s) {
+             const std::size_t at = status_at + 8 + 4 * RAYA_STATUS_QUEUE;
+             s.set(at, s.number<std::uint32_t>(at) + 1);
+         }},
+        {"fewer bytes", [](CheckpointBody& s) { s.body.resize(s.body.size() - 4); }},
+        {"more bytes", [](CheckpointBody& s) { s.body += "more"; }}};
     TorusRenderer renderer(session, scene, settings);
     for (const auto& [name, damage] : damages) {
         CAPTURE(name);
-        TorusState damaged = saved;
+        CheckpointBody damaged = saved;
         damage(damaged);
-        TestCheckpointing resumed(1 << 30, state_bytes(damaged.run, damaged.nodes, damaged.part, of));
+        TestCheckpointing resumed(1 << 30, damaged.bytes());
         CHECK_THROWS_WITH(renderer.render({}, {}, resumed.checkpointing()), "damaged");
     }
     TestCheckpointing resumed(1 << 30, state);

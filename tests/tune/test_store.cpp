@@ -24,11 +24,11 @@ DeviceInfo gpu_device() {
 
 const TunedFile kTunedFile{.date = "2026-11-22",
                            .entries = {{.key = {.torus = false, .accel = RAYA_ACCEL_GRID, .fp32 = true},
-                                        .values = {4, 16, 0, 8, 2, 1, 96},
+                                        .values = {4, 16, 0, 8},
                                         .speedup = 1.25,
                                         .scene = "own"},
                                        {.key = {.torus = true, .accel = RAYA_ACCEL_NONE, .fp32 = false},
-                                        .values = {1, 64, 1, 0, 0, 0, 0, 2},
+                                        .values = {1, 64, 1, 0},
                                         .speedup = 1,
                                         .scene = "x.nff"}}};
 
@@ -77,8 +77,8 @@ TEST_CASE("read_tuned: refuses damaged files and files for other devices, with t
         return changed_text.replace(changed_text.find(old_part), old_part.size(), new_part);
     };
     for (const auto& [damaged_text, reason] :
-         {std::pair<std::string, std::string>{text.substr(0, text.size() / 2), "not valid JSON"},
-          {"", "t.json:1: not valid JSON (byte 1)"},
+         {std::pair<std::string, std::string>{text.substr(0, text.size() / 2), "parse error at line"},
+          {"", "t.json: not valid JSON: parse error at line 1"},
           {"{}", "t.json: not a file of raya tune"},
           {text_with("\"version\": 2", "\"version\": 1"), "another version of the file format: 1, not 2"},
           {text_with("\"raya\": \"", "\"raya\": \"9."), "another version of raya: 9."},
@@ -86,11 +86,10 @@ TEST_CASE("read_tuned: refuses damaged files and files for other devices, with t
           {text_with("GeForce", "Radeon"), "another device's name"},
           {text_with("\"lanes\": 4", "\"lanes\": 5"), "lanes 5"},
           {text_with("\"group\": 16", "\"group\": 100000"), "group 100000"},
-          {text_with("\"batch\": 8", "\"batch\": 33"), "batch 33"},
-          {text_with("\"link_exchange\": 2", "\"link_exchange\": 3"), "link exchange 3"},
-          {text_with("\"trees\": 2", "\"trees\": -2"), "tuned[0].values.trees: -2 is negative"},
+          {text_with("\"batch\": 8", "\"batch\": 33"), "sphere batch 33"},
+          {text_with("\"batch\": 8", "\"batch\": -2"), "(/tuned/0/values/batch) -2 is negative"},
           {text_with("\"accel\": \"grid\"", "\"accel\": \"octree\""), "octree"},
-          {text_with("\"beams\"", "\"beam\""), "tuned[0].values: 'beams' is missing"}}) {
+          {text_with("\"batch\"", "\"bat\""), "(/tuned/0/values) key 'batch' not found"}}) {
         CAPTURE(reason);
         CHECK_THROWS_WITH(read_tuned(damaged_text, "t.json", device), Catch::Contains(reason));
         CHECK_THROWS_AS(read_tuned(damaged_text, "t.json", device), UserError);
@@ -178,29 +177,20 @@ TEST_CASE("chosen: uses stored values unless lanes or group are given", "[tune]"
     CHECK(chosen_kernels({}, device, workload).origin == "defaults");
     const ScopedTunedSource source([](const DeviceInfo&, const TuningKey& key) -> std::optional<TunedChoice> {
         if (key.torus) return {};
-        return TunedChoice{{4, 2, 0, 8, 2, 1, 96, 2}, "FILE, DATE"};
+        return TunedChoice{{4, 2, 0, 8}, "FILE, DATE"};
     });
     const KernelChoice tuned = chosen_kernels({}, device, workload);
     CHECK(tuned.origin == "FILE, DATE");
     CHECK((tuned.lanes == 4 && tuned.group_size == 2 && !tuned.local_words));
-    CHECK(tuned.tuning == KernelTuning{8, 2, 1, 96});
-    CHECK(tuned.link_move == LinkMove::kKernel);
-    CHECK(tuned.link_origin == "FILE, DATE");
+    CHECK(tuned.sphere_batch == 8);
     const KernelChoice unknown = chosen_kernels({}, device, {.torus = true});
     CHECK(unknown.origin == "defaults");
-    CHECK((unknown.link_move == LinkMove::kAutomatic && unknown.link_origin.empty()));
-    KernelChoice by_copies;
-    by_copies.link_move = LinkMove::kCopies;
-    CHECK(chosen_kernels(by_copies, device, workload).link_move == LinkMove::kCopies);
-    CHECK(chosen_kernels(by_copies, device, workload).link_origin == "options");
-    CHECK(chosen_kernels(by_copies, device, workload).lanes == 4);
     KernelChoice with_group;
     with_group.group_size = 3;
     const KernelChoice options = chosen_kernels(with_group, device, workload);
     CHECK(options.origin == "options");
     CHECK((options.lanes == 16 && options.group_size == 3 && options.local_words));
-    CHECK(options.tuning == KernelTuning{});
-    CHECK((options.link_move == LinkMove::kAutomatic && options.link_origin.empty()));
+    CHECK(options.sphere_batch == 0);
 }
 
 }  // namespace

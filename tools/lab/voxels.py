@@ -90,17 +90,9 @@ def run_cases(cases, run, columns):
 
 
 def run_on_torus(lab, scene, size, nodes, voxels, queue=None, **options):
-    """Renders on the torus without a memory limit; returns a Run. If the render deadlocks because queues are too short, repeats it with queues of
-    twice the length, up to the default of 8192 packets. Raises raya.Deadlock if the render deadlocks with that length, or with queue=None."""
-    while True:
-        try:
-            result = lab.render(scene, machine="torus", size=size, nodes=sides_text(nodes), voxels=sides_text(voxels),
-                                queue=queue, pe_memory=UNLIMITED_MEMORY, **options)
-            return Run(scene, result, voxels)
-        except raya.Deadlock:
-            if queue is None or queue >= 8192:
-                raise
-            queue *= 2
+    """Renders on the torus without a memory limit; returns a Run. raya repeats a render that deadlocks with longer queues."""
+    return Run(scene, lab.render(scene, machine="torus", size=size, nodes=sides_text(nodes), voxels=sides_text(voxels), queue=queue,
+                                 pe_memory=UNLIMITED_MEMORY, **options), voxels)
 
 
 def run_in_one_pe(lab, scene, size, voxels, bounces=0, sampling="centres", runs=1):

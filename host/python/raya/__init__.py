@@ -19,7 +19,6 @@ from raya import _engine
 from raya._engine import (
     PACKET_KINDS,
     STATUS_WORDS,
-    Deadlock,
     DeviceError,
     DoesNotFit,
     InputError,

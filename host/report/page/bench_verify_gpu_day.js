@@ -132,10 +132,6 @@ function failure(check) {
     .filter(Boolean);
 }
 
-// Returns the device's name; with several MPI ranks, after the rank and its host.
-const deviceTitle = (device) =>
-  (has(device, "rank") ? `rank ${num(device, "rank")} on ${str(device, "host")}: ` : "") + str(device, "name");
-
 function deviceChecks(device) {
   const checks = list(device, "checks", "object"), failed = checks.find((check) => str(check, "status") === "FAIL");
   const rows = checks.map(
@@ -155,7 +151,7 @@ function deviceChecks(device) {
     part(
       "All checks",
       ...rows.length ?
-        table(`All checks on ${deviceTitle(device)}`, ["status", "layer", "check", "seconds", "result"], rows) :
+        table(`All checks on ${str(device, "name")}`, ["status", "layer", "check", "seconds", "result"], rows) :
         [paragraph("No check ran.")])
   ];
 }
@@ -166,11 +162,11 @@ function showVerify(r) {
     num(device, "passed") === 0                               ? verdict("open", "was not checked") :
                                                                 verdict("yes", "passed every check that ran");
   head(
-    "raya verify", devices.length === 1 ? deviceTitle(devices[0]) : `${devices.length} devices`,
-    devices.map((device) => paragraph(`${deviceTitle(device)} `, deviceVerdict(device), ".")),
+    "raya verify", devices.length === 1 ? str(devices[0], "name") : `${devices.length} devices`,
+    devices.map((device) => paragraph(`${str(device, "name")} `, deviceVerdict(device), ".")),
     note(`Depth: ${
       str(r, "depth")}. Each layer relies on the layers before it, so the first failure is nearest to the cause.`));
-  devices.forEach((device, i) => section(`device-${i + 1}`, deviceTitle(device), () => deviceChecks(device)));
+  devices.forEach((device, i) => section(`device-${i + 1}`, str(device, "name"), () => deviceChecks(device)));
 }
 
 // --- tools/gpu_day

@@ -24,8 +24,8 @@ std::string fill_template(const std::string& text, const Json& report) {
     for (std::size_t at = text.find("{{"); at != std::string::npos; at = text.find("{{", text_begin)) {
         const std::size_t end = text.find("}}", at);
         const std::string name = text.substr(at + 2, end - at - 2);
-        page +=
-            text.substr(text_begin, at - text_begin) + (name == "report" ? escape_tags(report.dump(2)) : asset(name));
+        page += text.substr(text_begin, at - text_begin) +
+                (name == "report" ? escape_tags(json_dump(report, 2)) : asset(name));
         text_begin = end + 2;
     }
     return page + text.substr(text_begin);

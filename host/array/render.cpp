@@ -1,0 +1,62 @@
+#include "host/array/render.hpp"
+
+#include <fmt/core.h>
+
+#include "host/error.hpp"
+
+namespace raya {
+
+std::uint64_t RenderResult::launches(const std::string& label) const {
+    std::uint64_t launches = 0;
+    for (const LabelSummary& c : commands)
+        if (c.label == label && c.kind == "kernel") launches += c.launches;
+    return launches;
+}
+
+KernelOptions kernel_options(const RenderSettings& s, const PackedJob& job, bool has_local_words) {
+    return {.lanes = s.kernels.lanes,
+            .group_size = s.kernels.group_size,
+            .bounces = s.bounces,
+            .format = s.format,
+            .exact_divide = s.kernels.exact_arithmetic,
+            .exact_fma = s.kernels.exact_arithmetic,
+            .words_local = s.kernels.local_words && has_local_words,
+            .filter = s.kernels.filter && (job.header().objects.spheres > 0 || job.has_polygons()) &&
+                      filters_are_valid(s.format, job.header().extent),
+            .polygons = job.has_polygons(),
+            .patches = job.has_patches(),
+            .cones = job.has_cones(),
+            .sphere_batch = s.kernels.sphere_batch};
+}
+
+std::vector<std::uint32_t> ranks_of_pes(std::uint32_t pes, std::uint32_t ranks) {
+    if (pes < ranks)
+        throw UserError(fmt::format(
+            "{} ranks for {} PEs: a rank needs at least one PE; start {} ranks or fewer, or use more PEs (--pes)",
+            ranks, pes, pes));
+    std::vector<std::uint32_t> rank_of;
+    for (std::uint64_t pe = 0; pe < pes; ++pe)
+        rank_of.push_back(static_cast<std::uint32_t>(((pe + 1) * ranks - 1) / pes));
+    return rank_of;
+}
+
+Distribution::Distribution(std::vector<std::uint32_t> rank_of, Ranks& ranks)
+    : ranks_(ranks), rank_of_(std::move(rank_of)), slot_of_(rank_of_.size()) {
+    std::vector<std::vector<std::uint32_t>> pes_of_ranks(ranks.count());
+    for (std::uint32_t pe = 0; pe < all(); ++pe) pes_of_ranks[rank_of_[pe]].push_back(pe);
+    set_slots(std::move(pes_of_ranks));
+}
+
+std::uint32_t Distribution::max_count() const {
+    std::size_t max = 0;
+    for (const std::vector<std::uint32_t>& pes : pes_of_) max = std::max(max, pes.size());
+    return static_cast<std::uint32_t>(max);
+}
+
+void Distribution::set_slots(std::vector<std::vector<std::uint32_t>> pes_of_ranks) {
+    pes_of_ = std::move(pes_of_ranks);
+    for (const std::vector<std::uint32_t>& pes : pes_of_)
+        for (std::uint32_t slot = 0; slot < pes.size(); ++slot) slot_of_[pes[slot]] = slot;
+}
+
+}  // namespace raya
