@@ -22,8 +22,6 @@ constexpr std::array<Kind, RAYA_KINDS - 1> kKinds = {{{RAYA_KIND_PRIMARY, "prima
                                                       {RAYA_KIND_SHADOW, "shadow"},
                                                       {RAYA_KIND_RETURN, "return"}}};
 
-std::string dimensions_text(const std::array<std::uint32_t, 3>& s) { return fmt::format("{}x{}x{}", s[0], s[1], s[2]); }
-
 const char* returns_name(const PacketCharge& packets) { return packets.one_return_per_ray ? "rays" : "terms"; }
 
 struct LinkBytes {
