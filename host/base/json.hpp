@@ -23,7 +23,8 @@ struct nlohmann::adl_serializer<std::optional<T>> {
 namespace raya {
 
 /// A JSON value. Members keep the order in which they were added. Its exceptions contain the path of the value, because
-/// JSON_DIAGNOSTICS is defined.
+/// JSON_DIAGNOSTICS is defined. `json[key] = ...` on a null value crashes if memory is short: start with
+/// Json::object().
 using Json = nlohmann::ordered_json;
 
 /// Returns the member `key`; a null pointer if the member is missing or `json` is not an object.

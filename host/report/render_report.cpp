@@ -77,7 +77,7 @@ std::uint64_t test_count(const EventCounts& e) {
 }
 
 Json to_json(const RenderReport& r) {
-    Json json;
+    Json json = Json::object();
     json["kind"] = kRenderReportKind;
     json["raya"] = r.raya;
     json["scene"] = r.scene;
@@ -94,7 +94,7 @@ Json to_json(const RenderReport& r) {
         const std::string member = kEvents[event].member;
         const std::size_t dot = member.find('.');
         if (dot != std::string::npos)
-            json[member.substr(0, dot)][member.substr(dot + 1)] = r.events[event];
+            (*json.emplace(member.substr(0, dot), Json::object()).first)[member.substr(dot + 1)] = r.events[event];
         else if (!member.empty())
             json[member] = r.events[event];
     }

@@ -33,7 +33,7 @@ Json objects_json(const Scene& s) {
 }
 
 Json extent_json(const SceneReport& r) {
-    Json box;
+    Json box = Json::object();
     if (!r.box.isEmpty()) box = {{"min", vector_json(r.box.min)}, {"max", vector_json(r.box.max)}};
     return {{"box", box}, {"cube_half_side", scene_extent(r.scene)}};
 }
@@ -164,7 +164,7 @@ std::string refusals_text(const std::vector<MachineNeeds>& machines) {
 
 Json to_json(const SceneReport& r) {
     const Scene& s = r.scene;
-    Json json;
+    Json json = Json::object();
     json["kind"] = "raya info";
     json["raya"] = r.raya;
     json["scene"] = r.file;

@@ -44,7 +44,7 @@ struct LinkBytes {
 };
 
 Json torus_json(const TorusSettings& settings, const TorusResult& result, const LinkBytes& bytes) {
-    Json packets;
+    Json packets = Json::object();
     for (const Kind& kind : kKinds)
         packets[kind.name] = {{"made", result.made[kind.number]}, {"ended", result.ended[kind.number]}};
     std::uint64_t live_max = 0;
