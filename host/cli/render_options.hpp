@@ -30,9 +30,9 @@ struct RenderOptions {
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
 };
 
-// Notes of options that only one kind of machine has: the reason why another machine has no such option, which
-// completes an error message (torus_options.hpp).
-inline constexpr const char *kRingOnlyNote = "ring only", *kTorusOnlyNote = "torus only";
+// The note of an option that only ring machines have: the reason why the torus has no such option, which completes an
+// error message.
+inline constexpr const char* kRingOnlyNote = "ring only";
 inline constexpr const char* kNoNeighbours =
     "its nodes hold no pixels to compare with their neighbours; leave it out, or choose a ring: --machine grande";
 

@@ -99,11 +99,6 @@ void add_view_options(CLI::App& command, ViewOptions& v) {
         ->type_name("X,Y,Z[,R,G,B]");
 }
 
-const std::vector<std::string>& view_option_names() {
-    static const std::vector<std::string> names = {"from", "at", "up", "angle", "background", "light"};
-    return names;
-}
-
 void change_viewpoint(const ViewOptions& v, View& view) {
     if (!v.from.empty()) view.from = vector_of("--from", v.from, kPoint);
     if (!v.at.empty()) view.at = vector_of("--at", v.at, kPoint);

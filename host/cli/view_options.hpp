@@ -28,9 +28,6 @@ struct ViewOptions {
 /// Adds --from, --at, --up, --angle, --background and --light.
 void add_view_options(CLI::App& command, ViewOptions& options);
 
-/// Returns the names of the options that add_view_options() adds, without dashes.
-const std::vector<std::string>& view_option_names();
-
 /// Applies the camera options to `view`. Throws UserError with the options' names for an invalid camera.
 void change_viewpoint(const ViewOptions& options, View& view);
 

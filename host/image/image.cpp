@@ -68,7 +68,11 @@ double linear_from_srgb(double encoded) {
 }  // namespace
 
 const CodeBorders& srgb_borders() {
-    static const CodeBorders borders = code_borders(linear_from_srgb);
+    static const CodeBorders borders = [] {
+        CodeBorders all;
+        for (std::size_t k = 0; k < all.size(); ++k) all[k] = linear_from_srgb((static_cast<double>(k) + 0.5) / 255);
+        return all;
+    }();
     return borders;
 }
 

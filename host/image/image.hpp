@@ -37,15 +37,7 @@ std::string pixel_hash(const Image& image);
 /// (k + 1/2) / 255.
 using CodeBorders = std::array<double, 255>;
 
-/// Returns the borders of a transfer curve. `linear_from`: the inverse of the curve, from encoded values 0..1 to linear
-/// light.
-template <class Curve>
-CodeBorders code_borders(Curve&& linear_from) {
-    CodeBorders borders;
-    for (std::size_t k = 0; k < borders.size(); ++k) borders[k] = linear_from((static_cast<double>(k) + 0.5) / 255);
-    return borders;
-}
-
+/// Returns the borders of the sRGB curve.
 const CodeBorders& srgb_borders();
 
 /// Returns the code 0..255 that is nearest to 255 curve(linear), for the curve of `borders`; 0 for negative values and

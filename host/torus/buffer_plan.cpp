@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <ranges>
 
 #include "host/error.hpp"
 #include "host/model/number_format.hpp"
@@ -21,8 +22,8 @@ constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t)
 // `memory` bytes. The queue `min_queue` must fit.
 std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t min_queue,
                             std::uint32_t max_queue) {
-    return largest_where(min_queue, std::uint64_t{max_queue} + 1,
-                         [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; });
+    const auto fits = [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; };
+    return *std::ranges::partition_point(std::views::iota(min_queue + 1, max_queue + 1), fits) - 1;
 }
 
 // Memory that the nodes need for a scene and their buffers, and memory that a node has.

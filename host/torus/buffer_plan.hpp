@@ -23,17 +23,6 @@ std::uint64_t node_bytes(std::uint64_t words, const NodeBuffers& buffers, std::u
 /// mailboxes together take less than 6 GB.
 std::uint32_t default_queue(std::uint32_t nodes);
 
-/// Returns the largest number in [first, end) for which `holds` is true, by binary search. `holds` must be true for
-/// `first` and for all numbers up to the result, and false for all others.
-template <class Holds>
-std::uint32_t largest_where(std::uint64_t first, std::uint64_t end, const Holds& holds) {
-    while (end - first > 1) {
-        const std::uint64_t middle = first + (end - first) / 2;
-        (holds(static_cast<std::uint32_t>(middle)) ? first : end) = middle;
-    }
-    return static_cast<std::uint32_t>(first);
-}
-
 /// Thrown if the scene or the buffers do not fit the nodes. `needed`: bytes that the fullest node needs; `memory`:
 /// bytes that a node has.
 struct NodesDoNotFit : DoesNotFit {

@@ -16,52 +16,38 @@
 #include "host/error.hpp"
 
 namespace raya {
-Json settings_json(const VerifySettings& s, const std::string& selector, std::size_t index) {
-    return {{"device", selector},
-            {"index", index},
-            {"depth", depth_name(s.depth)},
-            {"kernel_dir", s.sources.folder.string()},
-            {"only", s.only},
-            {"is_whole_name", s.is_whole_name ? 1 : 0},
-            {"skip", s.skip},
-            {"shard", s.shard},
-            {"shards", s.shards},
-            {"repeat", s.repeat},
-            {"soak_s", s.soak_s},
-            {"seed", s.seed},
-            {"lanes", s.lanes},
-            {"group_size", s.group_size},
-            {"as", s.as},
-            {"done", s.done}};
+namespace {
+
+// Calls visit(name, member) for the members that the process of the checks needs.
+template <class Settings, class Visit>
+void for_each_setting(Settings& s, const Visit& visit) {
+    visit("depth", s.depth);
+    visit("kernel_dir", s.sources.folder);
+    visit("only", s.only);
+    visit("is_whole_name", s.is_whole_name);
+    visit("skip", s.skip);
+    visit("shard", s.shard);
+    visit("shards", s.shards);
+    visit("repeat", s.repeat);
+    visit("soak_s", s.soak_s);
+    visit("seed", s.seed);
+    visit("lanes", s.lanes);
+    visit("group_size", s.group_size);
+    visit("as", s.as);
+    visit("done", s.done);
+}
+
+}  // namespace
+
+Json settings_json(const VerifySettings& settings, const std::string& selector, std::size_t index) {
+    Json json = {{"device", selector}, {"index", index}};
+    for_each_setting(settings, [&](const char* name, const auto& value) { json[name] = value; });
+    return json;
 }
 
 namespace {
 
 // --- Functions of the child process
-
-VerifySettings settings_of(const Json& json) {
-    const std::string& depth = json_text(json.at("depth"));
-    const auto number = [&](const char* key) {
-        return static_cast<std::uint32_t>(json_integer(json.at(key), UINT32_MAX));
-    };
-    const auto has_depth = [&](Depth named) { return depth == depth_name(named); };
-    return {.depth = has_depth(Depth::kFull)    ? Depth::kFull
-                     : has_depth(Depth::kBrief) ? Depth::kBrief
-                                                : Depth::kQuick,
-            .sources = {.folder = json_text(json.at("kernel_dir"))},
-            .only = json_text(json.at("only")),
-            .skip = json_text(json.at("skip")),
-            .shard = number("shard"),
-            .shards = number("shards"),
-            .repeat = number("repeat"),
-            .soak_s = json_number(json.at("soak_s")),
-            .seed = json_integer(json.at("seed")),
-            .is_whole_name = json_integer(json.at("is_whole_name")) != 0,
-            .lanes = number("lanes"),
-            .group_size = number("group_size"),
-            .as = json_text(json.at("as")),
-            .done = static_cast<std::size_t>(json_integer(json.at("done"), SIZE_MAX))};
-}
 
 struct SelectedDevices {
     std::vector<cl::Device> devices;
@@ -257,7 +243,8 @@ DeviceChecks supervise(const std::string& selector, std::size_t index, const Ver
 }
 
 void run_checks(int pipe, const Json& request, const std::function<RenderCase(const std::string&)>& render_case) {
-    VerifySettings settings = settings_of(request);
+    VerifySettings settings;
+    for_each_setting(settings, [&](const char* name, auto& value) { request.at(name).get_to(value); });
     if (!settings.as.empty()) settings.render = std::make_shared<RenderCase>(render_case(settings.as));
     const std::string& selector = json_text(request.at("device"));
     const std::size_t index = json_integer(request.at("index"));

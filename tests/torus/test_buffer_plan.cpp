@@ -208,18 +208,3 @@ TEST_CASE("a refusal gives the fullest node's number of voxels, or the position 
     CHECK_THAT(refusal({2, 3, 2}), Contains("0 of 12 nodes") && Contains("node 1 (2 voxels with 7 objects)"));
     CHECK_THAT(refusal({1, 1, 1}), Contains("0 of 1 nodes") && Contains("node 0 (24 voxels with 10 objects)"));
 }
-
-TEST_CASE("bisection finds the last number that satisfies the predicate, in at most 32 calls", "[torus]") {
-    for (const std::uint64_t above : {6ull, 7ull, 1000ull, 1ull << 32})
-        for (const std::uint64_t last : {5ull, 6ull, 999ull, (1ull << 32) - 1}) {
-            if (last >= above) continue;
-            int calls = 0;
-            const auto holds = [&](std::uint32_t number) {
-                ++calls;
-                return number <= last;
-            };
-            CAPTURE(above, last);
-            CHECK(largest_where(5, above, holds) == last);
-            CHECK(calls <= 32);
-        }
-}
