@@ -1,7 +1,6 @@
 // Voxel partition: divides a scene's bounding box into voxels. Each voxel has a list of the objects of which a kernel
 // can compute a hit in the voxel.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <vector>
 

@@ -8,7 +8,7 @@
 
 #include "host/array/render.hpp"
 #include "host/base/checkpoint.hpp"
-#include "host/base/clock.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/commands.hpp"
 #include "host/error.hpp"
 

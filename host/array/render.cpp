@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include "host/error.hpp"
-
 namespace raya {
 
 std::uint64_t RenderResult::launches(const std::string& label) const {

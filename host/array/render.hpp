@@ -7,16 +7,15 @@
 #include <span>
 #include <string>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "host/base/clock.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/commands.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/cl/profile.hpp"
 #include "host/error.hpp"
-#include "host/image/image.hpp"
+#include "host/image/image_io.hpp"
 #include "host/model/machine.hpp"
 #include "host/model/number_format.hpp"
 #include "host/model/t805.hpp"

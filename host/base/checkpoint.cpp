@@ -6,6 +6,7 @@
 #include <map>
 
 #include "host/base/encoding.hpp"
+#include "host/base/json.hpp"
 #include "host/error.hpp"
 
 namespace raya {

@@ -14,11 +14,8 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
-
-#include "host/base/json.hpp"
 
 namespace raya {
 

@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <new>
 #include <stdexcept>
-#include <vector>
 
 namespace raya {
 namespace {
@@ -26,6 +25,18 @@ std::string replaced(std::string text, const std::string& old_part, const std::s
     for (std::size_t at = text.find(old_part); at != std::string::npos; at = text.find(old_part, at + new_part.size()))
         text.replace(at, old_part.size(), new_part);
     return text;
+}
+
+std::string environment_value(const char* name) {
+    const char* const value = std::getenv(name);
+    return value != nullptr ? value : "";
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+    std::vector<std::string> parts;
+    for (std::size_t at = 0; at <= text.size(); at += parts.back().size() + 1)
+        parts.emplace_back(text.substr(at, text.find(separator, at) - at));
+    return parts;
 }
 
 std::string base64(std::string_view bytes) {

@@ -1,16 +1,35 @@
-// Encodings of text and bytes: replacement, base64, hexadecimal, XXH3, gzip.
+// Environment variables; encodings of text and bytes: replacement, parts, numbers, base64, hexadecimal, XXH3, gzip.
 #pragma once
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace raya {
 
 /// Returns `text` with every occurrence of `old_part` replaced by `new_part`.
 std::string replaced(std::string text, const std::string& old_part, const std::string& new_part);
+
+/// Returns the value of an environment variable; empty if it is not set.
+std::string environment_value(const char* name);
+
+/// Returns the parts of `text` between the separators; one part if there is no separator.
+std::vector<std::string> split(std::string_view text, char separator);
+
+/// Returns the number in `text`, independently of the locale; empty unless the whole text is a number that fits the
+/// type.
+template <class Number>
+std::optional<Number> parsed_number(std::string_view text) {
+    Number number{};
+    const char* const end = text.data() + text.size();
+    const auto [read_to, error] = std::from_chars(text.data(), end, number);
+    return error == std::errc() && read_to == end ? std::optional(number) : std::nullopt;
+}
 
 /// Returns the base64 encoding (RFC 4648) of `bytes`, with padding.
 std::string base64(std::string_view bytes);

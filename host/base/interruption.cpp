@@ -8,7 +8,6 @@
 #include <atomic>
 #include <climits>
 #include <csignal>
-#include <cstddef>
 #include <cstring>
 
 namespace raya {

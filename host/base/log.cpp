@@ -7,11 +7,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <mutex>
-#include <string>
-
-#include "host/base/clock.hpp"
 
 namespace raya {
 namespace {

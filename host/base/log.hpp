@@ -1,17 +1,34 @@
 // Log messages and the status line on stderr, and the verbosity, which is global.
 #pragma once
+#include <chrono>
 #include <condition_variable>
+#include <ctime>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
-#include <vector>
-
-#include "host/base/clock.hpp"
 
 namespace raya {
+
+// Elapsed time, and the current date and time as text.
+
+using Clock = std::chrono::steady_clock;
+
+/// Returns the time from `start` to now, in seconds.
+inline double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Returns the current time in UTC, formatted by std::strftime(`format`); empty if the text would have more than 63
+/// characters.
+inline std::string utc_text(const char* format) {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    char text[64];
+    return {text, std::strftime(text, sizeof text, format, gmtime_r(&now, &parts))};
+}
 
 /// Returns `text` with each control character except \n and \t escaped ("\x1b"), so that the name of a file cannot send
 /// commands to the terminal. Call it for output to stdout; print_log() and show_status() call it themselves.

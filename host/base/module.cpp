@@ -91,6 +91,14 @@ std::string loader_error() {
     throw MissingLibrary(reason);
 }
 
+/// Returns the folder of the modules and of the other files installed with the program: ../lib/raya if the program's
+/// folder is named `bin`, else the program's folder. Throws ModuleError if the program's path cannot be read.
+fs::path module_folder() {
+    const fs::path program = program_file().folder;
+    std::error_code failure;
+    return fs::weakly_canonical(program.filename() == "bin" ? program.parent_path() / "lib/raya" : program, failure);
+}
+
 }  // namespace
 
 std::string memory_limit() {
@@ -100,12 +108,6 @@ std::string memory_limit() {
 }
 
 void set_program_file(const fs::path& file) { substitute_file = file; }
-
-fs::path module_folder() {
-    const fs::path program = program_file().folder;
-    std::error_code failure;
-    return fs::weakly_canonical(program.filename() == "bin" ? program.parent_path() / "lib/raya" : program, failure);
-}
 
 fs::path module_file(const std::string& name) {
     const fs::path file = module_folder() / name;

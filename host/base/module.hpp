@@ -34,10 +34,6 @@ void* module_function(const std::string& name, const char* symbol);
 /// file or its folder.
 std::filesystem::path module_file(const std::string& name);
 
-/// Returns the folder of the modules and of the other files installed with the program: ../lib/raya if the program's
-/// folder is named `bin`, else the program's folder. Throws ModuleError if the program's path cannot be read.
-std::filesystem::path module_folder();
-
 /// Makes module_folder() use the path of `file` instead of the program's. For the Python module and tests.
 void set_program_file(const std::filesystem::path& file);
 

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <cctype>
-#include <utility>
 
 #include "host/base/encoding.hpp"
 #include "host/base/whole_file.hpp"

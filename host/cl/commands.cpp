@@ -1,17 +1,14 @@
 #include "host/cl/commands.hpp"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <cstdlib>
 #include <exception>
-#include <map>
 #include <mutex>
 #include <stdexcept>
-#include <utility>
 
 #include "host/base/log.hpp"
-#include "host/cl/error_names.hpp"
 
 namespace raya {
 namespace {
@@ -40,25 +37,6 @@ SharedContext& shared_context(const cl::Device& device) {
     return shared->second;
 }
 
-// Adds the counts of the host's events during each launch to its record.
-class LaunchCounter final : public SessionObserver {
-  public:
-    explicit LaunchCounter(const HostCounters& counters) : counters_(counters) {}
-
-    void launch_begins(const cl::CommandQueue& queue, const cl::Kernel&, const CommandRecord&) override {
-        queue.finish();
-        before_ = counters_.read();
-    }
-    void launch_ended(const cl::CommandQueue& queue, const cl::Kernel&, CommandRecord& launch) override {
-        queue.finish();
-        launch.host_counts = counters_.read() - before_;
-    }
-
-  private:
-    const HostCounters& counters_;
-    HostCounts before_;
-};
-
 }  // namespace
 
 Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
@@ -72,8 +50,8 @@ Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
                                              pinned_ ? kPinnedHalfBytes : kPlainHalfBytes);
     });
     if (const char* log = std::getenv("RAYA_KERNEL_LOG")) {
-        own_observers_.push_back(std::make_unique<KernelBuilds>(log));
-        observe(*own_observers_.back());
+        build_log_ = std::make_unique<KernelBuilds>(log);
+        observe(*build_log_);
     }
 }
 
@@ -195,11 +173,6 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
         for_each_observer(
             [&](SessionObserver& observer) { observer.launch_ended(*queue_, kernel, pending_.back().record); });
     });
-}
-
-void Session::count_host_events(const HostCounters& counters) {
-    own_observers_.push_back(std::make_unique<LaunchCounter>(counters));
-    observe(*own_observers_.back());
 }
 
 CommandRecord Session::finished_record(const PendingCommand& pending) const {

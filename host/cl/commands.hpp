@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <set>
 #include <span>
 #include <string>
 #include <thread>
@@ -183,10 +182,6 @@ class Session {
     void observe(SessionObserver& observer) { observers_.push_back(&observer); }
     void ignore(const SessionObserver& observer) { std::erase(observers_, &observer); }
 
-    /// From now on, the session waits for the device before and after each kernel launch, and the launch's record has
-    /// the counts of `counters`, which must outlive the session.
-    void count_host_events(const HostCounters& counters);
-
     /// Enables the messages of compile_notice().
     void announce_compiling() { announces_compiling_ = true; }
 
@@ -273,7 +268,7 @@ class Session {
     Profile profile_;
     std::map<std::string, std::uint32_t> launch_limits_;
     std::vector<SessionObserver*> observers_;
-    std::vector<std::unique_ptr<SessionObserver>> own_observers_;
+    std::unique_ptr<SessionObserver> build_log_;  // with RAYA_KERNEL_LOG
     bool announces_compiling_ = false;
     SpanLog* spans_ = nullptr;
     std::size_t recorded_launches_ = 0;  // number of further launches whose arguments are recorded

@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <optional>
 
+#include "host/base/encoding.hpp"
 #include "host/base/log.hpp"
 #include "host/base/module.hpp"
-#include "host/cl/bad_drivers.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cl/error_names.hpp"
 #include "host/cl/kernel_source.hpp"
@@ -49,14 +49,6 @@ std::string device_list(const std::vector<DeviceInfo>& devices) {
     return list;
 }
 
-/// Returns the value of the decimal number `text`; empty if `text` is not a decimal number.
-std::optional<std::size_t> parsed_number(const std::string& text) {
-    std::size_t value = 0;
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
-}
-
 /// Returns the indices, ascending, of the usable devices of a type.
 std::vector<std::size_t> usable_devices(const std::string& type, const std::vector<DeviceInfo>& devices) {
     std::vector<std::size_t> found;
@@ -77,17 +69,15 @@ std::size_t default_index(const std::vector<DeviceInfo>& devices, std::size_t or
 
 /// Returns the entry of a comma-separated list whose index is `ordinal` modulo the number of entries.
 std::string list_entry(const std::string& list, std::size_t ordinal) {
-    const auto entry_count = static_cast<std::size_t>(1 + std::count(list.begin(), list.end(), ','));
-    std::size_t begin = 0;
-    for (std::size_t i = ordinal % entry_count; i > 0; --i) begin = list.find(',', begin) + 1;
-    return list.substr(begin, list.find(',', begin) - begin);
+    const std::vector<std::string> entries = split(list, ',');
+    return entries[ordinal % entries.size()];
 }
 
 /// Interprets `wanted` as a device number, else as a type, else as part of a platform, name, version or driver. Returns
 /// the index of the first device that matches (for a type: of the first usable device), or devices.size() if no device
 /// matches.
 std::size_t named_index(const std::string& wanted, const std::vector<DeviceInfo>& devices) {
-    const std::optional<std::size_t> number = parsed_number(wanted);
+    const auto number = parsed_number<std::size_t>(wanted);
     if (number && *number < devices.size()) return *number;
     const std::string part = lower_case(wanted);
     const std::vector<std::size_t> usable = usable_devices(part, devices);
@@ -220,8 +210,7 @@ cl::Device choose_device(const std::string& wanted, std::size_t ordinal) {
         if (const std::string problem = driver_cache_problem(); !problem.empty()) throw DeviceError(problem);
     std::vector<DeviceInfo> infos;
     for (const cl::Device& device : devices) infos.push_back(device_info(device));
-    const char* fallback = std::getenv("RAYA_DEVICE");
-    const std::string selector = wanted.empty() && fallback != nullptr ? fallback : wanted;
+    const std::string selector = wanted.empty() ? environment_value("RAYA_DEVICE") : wanted;
     const std::size_t index = device_index(selector, infos, ordinal);
     log_message(kVerbose, fmt::format("device {}: {} ({}, {}, driver {})", index, infos[index].name,
                                       infos[index].platform, infos[index].version, infos[index].driver));

@@ -17,9 +17,9 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
-#include <vector>
 
 #include "host/base/child_process.hpp"
+#include "host/base/encoding.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/program.hpp"
 #include "host/embedded.hpp"
@@ -30,8 +30,7 @@ namespace raya {
 namespace {
 
 std::string read_kernel_file(const std::string& file, std::filesystem::path folder) {
-    if (const char* const variable = std::getenv("RAYA_KERNEL_DIR"); folder.empty() && variable != nullptr)
-        folder = variable;
+    if (folder.empty()) folder = environment_value("RAYA_KERNEL_DIR");
     if (folder.empty()) {
         const auto found = embedded_files().find("kernels/" + file);
         if (found == embedded_files().end())
@@ -77,8 +76,8 @@ void append_expanded(std::string& source, const std::string& text, const std::st
     }
 }
 
-}  // namespace
-
+/// Applies the patches for `file` to its `text`, in order. Throws std::logic_error, with file and text, unless the text
+/// to replace occurs exactly once, because a fault that was not injected must not count as undetected.
 std::string patched_text(std::string text, const std::string& file, const std::vector<SourcePatch>& patches) {
     for (const SourcePatch& patch : patches) {
         if (patch.file != file) continue;
@@ -91,6 +90,8 @@ std::string patched_text(std::string text, const std::string& file, const std::v
     }
     return text;
 }
+
+}  // namespace
 
 std::string kernel_file(const std::string& file, const KernelSources& sources) {
     return patched_text(read_kernel_file(file, sources.folder), file, sources.patches);

@@ -14,10 +14,6 @@ struct SourcePatch {
     std::string file, find, replace;
 };
 
-/// Applies the patches for `file` to its `text`, in order. Throws std::logic_error, with file and text, unless the text
-/// to replace occurs exactly once, because a fault that was not injected must not count as undetected.
-std::string patched_text(std::string text, const std::string& file, const std::vector<SourcePatch>& patches);
-
 /// The origin of the kernels' source, patches to it, and additional build options.
 struct KernelSources {
     std::filesystem::path folder{};      // argument of --kernel-dir, a folder like kernels/; empty: the embedded files

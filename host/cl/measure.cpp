@@ -5,8 +5,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "host/cl/commands.hpp"
-#include "host/cl/kernel_options.hpp"
 #include "kernels/shared/chains.h"
 
 namespace raya {

@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "host/cl/commands.hpp"
-#include "host/cl/device.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/cl/profile.hpp"
 #include "host/model/number_format.hpp"

@@ -5,7 +5,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "host/cl/opencl.hpp"

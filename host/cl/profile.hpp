@@ -10,39 +10,6 @@
 
 namespace raya {
 
-// Counts events of the host's processor and of Linux while kernels run on the host (perf_event_open(2)).
-
-/// The events, in user code. kCpuNs: processor time in nanoseconds. kPageFaults: page faults.
-enum HostEvent { kCycles, kInstructions, kCacheMisses, kBranchMisses, kCpuNs, kPageFaults, kHostEvents };
-
-/// A count for each HostEvent; NaN if this host does not count the event.
-struct HostCounts {
-    std::array<double, kHostEvents> of{};
-};
-HostCounts operator+(HostCounts a, const HostCounts& b);
-HostCounts operator-(HostCounts a, const HostCounts& b);
-
-class HostCounters {
-  public:
-    /// Starts to count events of this thread and of all threads that it starts from now on. So construct the counters
-    /// before the first call of an OpenCL driver, whose threads run the kernels.
-    HostCounters();
-    ~HostCounters();
-    HostCounters(const HostCounters&) = delete;
-    HostCounters& operator=(const HostCounters&) = delete;
-
-    /// Returns the counts since the construction. If the processor has fewer counters than events, it counts each event
-    /// during a part of the time, and the counts are extrapolated.
-    HostCounts read() const;
-
-    /// Returns which events are not counted, and the reason; empty if all are counted.
-    const std::string& unavailable() const { return unavailable_; }
-
-  private:
-    std::array<int, kHostEvents> files_{};  // descriptors; -1: the event is not counted
-    std::string unavailable_;
-};
-
 /// An argument of a kernel, as text.
 struct ArgumentText {
     std::string name, value;
@@ -57,7 +24,6 @@ struct CommandRecord {
     std::string target_name{};                 // name of the kernel, of the buffer, or of both buffers of a copy
     std::uint64_t groups = 0, group_size = 0;  // of a kernel launch; group_size in work-items
     std::vector<ArgumentText> arguments{};     // of a kernel launch; only if Session::observe() requested them
-    std::optional<HostCounts> host_counts{};   // of a kernel launch, after Session::count_host_events()
 };
 
 /// Summary of all commands of one label and kind. total_ns, min_ns, mean_ns and max_ns are nanoseconds from start to
@@ -70,7 +36,6 @@ struct LabelSummary {
     std::uint64_t max_ns = 0;
     std::uint64_t submit_ns = 0, start_ns = 0;  // total delays from queued to submitted, and from submitted to started
     std::uint64_t bytes = 0;                    // total; as CommandRecord::bytes
-    std::optional<HostCounts> host_counts{};    // total; as CommandRecord::host_counts
 };
 
 /// The commands of a session in the order in which they were enqueued.

@@ -1,14 +1,13 @@
 #include "host/cl/program.hpp"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <cstdlib>
 #include <fstream>
-#include <utility>
 
+#include "host/base/encoding.hpp"
 #include "host/cl/driver.hpp"
-#include "host/cl/error_names.hpp"
 #include "host/cl/kernel_source.hpp"
 
 namespace raya {
@@ -48,10 +47,7 @@ std::string argument_name(const cl::Kernel& kernel, cl_uint index) {
     return std::to_string(index);
 }
 
-std::string user_build_options() {
-    const char* const options = std::getenv("RAYA_BUILD_OPTIONS");
-    return options != nullptr ? options : "";
-}
+std::string user_build_options() { return environment_value("RAYA_BUILD_OPTIONS"); }
 
 void KernelBuilds::write_log(double seconds, const char* step, const std::string& name,
                              const std::string& options) const {

@@ -3,7 +3,6 @@
 #pragma once
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <set>
@@ -12,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/base/clock.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/capture.hpp"
 #include "host/cl/error_names.hpp"
 #include "host/cl/memory.hpp"

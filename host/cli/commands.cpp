@@ -6,14 +6,10 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <exception>
-#include <memory>
 #include <new>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <typeinfo>
@@ -21,17 +17,16 @@
 
 #include "host/base/child_process.hpp"
 #include "host/base/interruption.hpp"
-#include "host/base/log.hpp"
-#include "host/base/standard_streams.hpp"
-#include "host/cl/bad_drivers.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
 #include "host/cl/driver.hpp"
-#include "host/cli/command_tree.hpp"
+#include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
-#include "host/cli/parse_failure.hpp"
-#include "host/cli/verify_output.hpp"
+#include "host/cli/parse.hpp"
+#include "host/cli/verify.hpp"
 #include "host/error.hpp"
 #include "host/ranks/launch.hpp"
+#include "host/ranks/ranks.hpp"
 #include "host/tune/tune.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/version.hpp"
@@ -69,7 +64,10 @@ void add_help_command(CLI::App& program) {
     const auto names = std::make_shared<std::vector<std::string>>();
     add_value(*command, "COMMAND", *names, "The command, such as generate balls; default: raya itself")
         ->type_name("COMMAND");
-    command->callback([names, &program] { print_help(program, *names); });
+    command->callback([names, &program] {
+        if (*names == std::vector<std::string>{"study"}) start_study({"--help"});
+        print_help(program, *names);
+    });
 }
 
 namespace {
@@ -271,6 +269,27 @@ int run_program(int argc, char** argv, const std::string& build) {
     } catch (const RankFailure& failure) {
         return fail_at_start(failure.what(), failure.code);
     }
+}
+
+namespace {
+
+void run_ping(Ranks& ranks) {
+    if (!ranks.has_several())
+        throw UserError("ping needs two ranks or more and there is one; start it as mpirun -n 2 raya ping");
+    const PingReport report = ping(ranks);
+    if (ranks.is_first()) fmt::print("{}\n", report.json().dump(2));
+}
+
+}  // namespace
+
+void add_ping_command(CLI::App& program, Ranks& ranks) {
+    CLI::App* command = program.add_subcommand("ping",
+                                               "Under mpirun: measure messages of 1 B to 4 MB between ranks and print "
+                                               "their times, latency alpha and time per byte beta as JSON");
+    add_examples(*command, {{"mpirun -n 2 raya ping", "Measure between two ranks of this machine"},
+                            {"mpirun -n 2 --host one,other raya ping >network.json",
+                             "Measure between two machines; raya study ranks --network takes alpha and beta"}});
+    command->callback([&ranks] { run_ping(ranks); });
 }
 
 }  // namespace raya

@@ -1,8 +1,8 @@
 // The commands of raya. Each add_*_command() adds a command to the parser, with a callback that runs the command.
 #pragma once
-#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -32,9 +32,9 @@ void add_generate_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
 void add_tune_command(CLI::App& program);
-/// The command calls `run` with its settings as JSON. Without `run`, the command replaces the process with Python,
-/// which runs the module raya.lab.
-void add_study_command(CLI::App& program, const std::function<void(const std::string&)>& run = {});
+void add_study_command(CLI::App& program);
+/// Replaces the process with Python, which runs the module raya.lab with these arguments. Throws UserError on failure.
+[[noreturn]] void start_study(std::vector<std::string> arguments);
 void add_page_command(CLI::App& program);
 void add_verify_command(CLI::App& program);
 void add_ping_command(CLI::App& program, Ranks& ranks);

@@ -7,8 +7,8 @@
 
 #include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
-#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/scene/nff.hpp"
@@ -50,18 +50,19 @@ CLI::App* add_generator(CLI::App& command, GenerateOptions& options, const std::
     return generator;
 }
 
+template <class Value>
+void add_number(CLI::App& generator, const std::string& name, Value& value, const std::string& help) {
+    add_value(generator, name, value, help)->type_name("N")->capture_default_str();
+}
+
 void add_terrain(CLI::App& command, const std::shared_ptr<GenerateOptions>& options) {
     CLI::App* terrain = add_generator(
         command, *options, "terrain", "A height field of N triangles, for large scenes",
         {{"raya generate terrain -o terrain.nff", "100,000 triangles"},
          {"raya generate terrain --triangles 10000000 -o terrain.ply", "Ten million triangles, as binary PLY"}},
         "File to write, binary PLY if its name ends in .ply, else NFF; -: stdout, as NFF");
-    add_value(*terrain, "--triangles", options->triangles, "Number N of triangles, 1..20000000")
-        ->type_name("N")
-        ->capture_default_str();
-    add_value(*terrain, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
-        ->type_name("N")
-        ->capture_default_str();
+    add_number(*terrain, "--triangles", options->triangles, "Number N of triangles, 1..20000000");
+    add_number(*terrain, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1");
     terrain->callback([options] { write_terrain(*options); });
 }
 
@@ -79,19 +80,16 @@ void add_generate_command(CLI::App& program) {
         add_generator(*command, *options, "balls", "SPD's sphereflake: 1 + 9 + ... + 9^L spheres above a square",
                       {{"raya generate balls -o balls.nff", "SPD's default size: 7,381 spheres"},
                        {"raya generate balls --level 1 -o ten.nff", "A sphere surrounded by nine"}});
-    add_value(*balls, "--level", options->level, "Number L of levels below the largest sphere, 0..6 (4: 7,381 spheres)")
-        ->type_name("LEVEL")
-        ->capture_default_str();
+    add_number(*balls, "--level", options->level,
+               "Number L of levels below the largest sphere, 0..6 (4: 7,381 spheres)");
     balls->callback([options] { write_scene(*options, [&] { return generate_balls(options->level); }); });
 
     CLI::App* lattice =
         add_generator(*command, *options, "lattice", "SPD's lattice: (N + 1)^3 spheres joined by cylinders, in a cube",
                       {{"raya generate lattice -o lattice.nff", "SPD's default size: 2,197 spheres, 6,084 cylinders"},
                        {"raya generate lattice --size 2 -o small.nff", "27 spheres, 54 cylinders"}});
-    add_value(*lattice, "--size", options->cylinders,
-              "Number N of cylinders along an edge, 1..64 (SPD's default 12: 2,197 spheres, 6,084 cylinders)")
-        ->type_name("N")
-        ->capture_default_str();
+    add_number(*lattice, "--size", options->cylinders,
+               "Number N of cylinders along an edge, 1..64 (SPD's default 12: 2,197 spheres, 6,084 cylinders)");
     lattice->callback(
         [options] { write_scene(*options, [&] { return generate_lattice(static_cast<int>(options->cylinders)); }); });
 
@@ -99,10 +97,9 @@ void add_generate_command(CLI::App& program) {
         add_generator(*command, *options, "gears", "N^3 meshing gear wheels with outlines of 144 vertices, in a cube",
                       {{"raya generate gears -o gears.nff", "As many triangles as SPD's gears: 36,610"},
                        {"raya generate gears --size 1 -o wheel.nff", "One wheel"}});
-    add_value(*gears, "--size", options->wheels,
-              "Number N of wheels along an edge, 1..16 (4: 9,345 polygons = 36,610 triangles, as many as SPD's gears)")
-        ->type_name("N")
-        ->capture_default_str();
+    add_number(
+        *gears, "--size", options->wheels,
+        "Number N of wheels along an edge, 1..16 (4: 9,345 polygons = 36,610 triangles, as many as SPD's gears)");
     gears->callback(
         [options] { write_scene(*options, [&] { return generate_gears(static_cast<int>(options->wheels)); }); });
 
@@ -127,9 +124,7 @@ void add_generate_command(CLI::App& program) {
                                      {{"raya generate random 500 -o random.nff", "500 spheres"},
                                       {"raya generate random 500 --seed 2 -o other.nff", "500 other spheres"}});
     add_value(*random, "N", options->sphere_count, "Number of spheres, 1..20000000")->type_name("COUNT")->required();
-    add_value(*random, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
-        ->type_name("N")
-        ->capture_default_str();
+    add_number(*random, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1");
     random->callback(
         [options] { write_scene(*options, [&] { return generate_random(options->sphere_count, options->seed); }); });
 
@@ -140,9 +135,7 @@ void add_generate_command(CLI::App& program) {
                       "Seven spheres above a floor, as in Kohata & Ito's scene of high and uneven cost",
                       {{"raya generate cluster -o cluster.nff", "The scene of raya study cluster"},
                        {"raya generate cluster --seed 2 -o other.nff", "Another scene of the same kind"}});
-    add_value(*cluster, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1")
-        ->type_name("N")
-        ->capture_default_str();
+    add_number(*cluster, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1");
     cluster->callback([options] { write_scene(*options, [&] { return generate_cluster(options->seed); }); });
 
     CLI::App* centre = add_generator(

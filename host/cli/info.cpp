@@ -3,24 +3,184 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <memory>
+#include <optional>
 
 #include "host/base/log.hpp"
-#include "host/base/standard_streams.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
 #include "host/cl/kernel_options.hpp"
-#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
-#include "host/cli/scene_input.hpp"
+#include "host/cli/render_options.hpp"
 #include "host/error.hpp"
 #include "host/model/machine.hpp"
+#include "host/report/scene_report.hpp"
 #include "host/report/table.hpp"
+#include "host/ring/ring_plan.hpp"
 #include "host/scene/scene.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "host/version.hpp"
 
 namespace raya {
 namespace {
+
+// Computes the memory that machines need for a scene, with those steps of a render that need no device.
+
+/// Packs a scene for several machines. Machines with the same format and accelerator share one packed scene.
+class SceneNeeds {
+  public:
+    /// All arguments must outlive this object.
+    SceneNeeds(const RenderOptions& render, const TorusOptions& torus, const Scene& scene);
+
+    /// Returns the machine's memory needs with the accelerator of --accel or, without --accel, with each of none, bvh
+    /// and grid. Throws UserError if the machine does not support the options' values. A scene that does not fit is not
+    /// an error; the result contains the missing bytes.
+    MachineNeeds needs_of(const std::string& machine);
+
+    /// Returns how the scene fits the number formats of the machines for which needs_of() was called.
+    std::vector<FormatFit> formats() const { return formats_; }
+
+  private:
+    /// Size of the packed scene with an accelerator.
+    struct PackedSize {
+        std::uint64_t words = 0;  // number of 32-bit words
+        AccelSummary accel;
+        std::string refusal;  // why the scene cannot be packed; empty if it can
+    };
+
+    const FormatFit& fit_of(const NumberFormat& format);
+    const PackedSize& size_of(const RingSettings& settings, const LengthScale& scale);
+    AccelNeed need_of(const RingSettings& settings, const FormatFit& fit);
+    MachineNeeds ring_needs(const RenderOptions& options);
+    MachineNeeds torus_needs(const RenderOptions& options);
+
+    const RenderOptions& render_;
+    const TorusOptions& torus_;
+    const Scene& scene_;
+    std::vector<FormatFit> formats_;
+    std::map<std::string, PackedSize> sizes_;                       // key: format and accelerator
+    std::optional<std::pair<std::string, PackedJob>> last_packed_;  // [format, scene without accelerator]
+};
+
+constexpr std::array<AccelKind, 3> kAccelKinds = {AccelKind::kNone, AccelKind::kBvh, AccelKind::kGrid};
+
+void set_missing(AccelNeed& need, const DoesNotFit& refusal) {
+    need.pe_bytes = refusal.needed_bytes;
+    need.missing_bytes = refusal.needed_bytes - refusal.memory_bytes;
+    need.refusal = refusal.what();
+}
+
+SceneNeeds::SceneNeeds(const RenderOptions& render, const TorusOptions& torus, const Scene& scene)
+    : render_(render), torus_(torus), scene_(scene) {}
+
+const FormatFit& SceneNeeds::fit_of(const NumberFormat& format) {
+    const std::string name = format_name(format);
+    const auto known = std::ranges::find(formats_, name, &FormatFit::format);
+    if (known != formats_.end()) return *known;
+    FormatFit fit{name, {}, {}};
+    try {
+        fit.scale = length_scale(scene_, format);
+    } catch (const UserError& error) {
+        fit.refusal = error.what();
+    }
+    return formats_.emplace_back(std::move(fit));
+}
+
+const SceneNeeds::PackedSize& SceneNeeds::size_of(const RingSettings& settings, const LengthScale& scale) {
+    const std::string format = format_name(settings.format);
+    const auto [entry, added] = sizes_.try_emplace(format + ' ' + accel_text(settings.accel));
+    PackedSize& size = entry->second;
+    if (!added) return size;
+    try {
+        if (!last_packed_ || last_packed_->first != format)
+            last_packed_.emplace(format, pack_for_ring(scene_, settings, scale));
+        size.words = last_packed_->second.words().size();
+        if (settings.accel.kind == AccelKind::kNone) return size;
+        PackedJob job = last_packed_->second;
+        size.accel = append_accel(job, settings);
+        size.words = job.words().size();
+    } catch (const UserError& error) {  // the scene has more words than 32-bit addresses can reach
+        size.refusal = error.what();
+    }
+    return size;
+}
+
+AccelNeed SceneNeeds::need_of(const RingSettings& settings, const FormatFit& fit) {
+    AccelNeed need;
+    need.accel = accel_text(settings.accel);
+    need.refusal = fit.refusal;
+    if (!need.refusal.empty()) return need;
+    const PackedSize& size = size_of(settings, fit.scale);
+    need.words = size.words;
+    need.summary = size.accel;
+    need.refusal = size.refusal;
+    if (!need.refusal.empty()) return need;
+    try {
+        need.pe_bytes = plan_pe_memory(settings.machine, pe_demand(settings, scene_.name, size.words)).bytes();
+    } catch (const DoesNotFit& refusal) {
+        set_missing(need, refusal);
+    }
+    return need;
+}
+
+MachineNeeds SceneNeeds::ring_needs(const RenderOptions& options) {
+    RingSettings settings = ring_settings(options, scene_);
+    check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
+    MachineNeeds machine{.machine = options.machine,
+                         .format = format_name(settings.format),
+                         .pes = settings.mapping.pes,
+                         .memory_bytes = settings.machine.pe_memory_bytes,
+                         .needs = {},
+                         .refusal = {}};
+    const FormatFit fit = fit_of(settings.format);
+    const std::string default_accel = accel_text(settings.accel);
+    std::vector<Accel> accels;
+    for (const AccelKind kind : kAccelKinds)
+        if (options.accel.empty()) accels.push_back({kind, {}});
+    if (accels.empty()) accels.push_back(settings.accel);
+    for (const Accel& accel : accels) {
+        settings.accel = accel;
+        machine.needs.push_back(need_of(settings, fit));
+        machine.needs.back().is_default = options.accel.empty() && machine.needs.back().accel == default_accel;
+    }
+    return machine;
+}
+
+MachineNeeds SceneNeeds::torus_needs(const RenderOptions& options) {
+    const TorusSettings settings = torus_settings(options, torus_, scene_);
+    MachineNeeds machine{.machine = options.machine,
+                         .format = format_name(settings.format),
+                         .pes = raya_nodes(settings.torus),
+                         .memory_bytes = settings.memory_bytes,
+                         .needs = {},
+                         .refusal = {}};
+    AccelNeed need;
+    need.accel = "voxels";
+    need.is_default = true;
+    need.refusal = fit_of(settings.format).refusal;
+    try {
+        if (need.refusal.empty()) {
+            const NodeNeeds needs = node_needs(scene_, settings);
+            need.words = needs.words;
+            need.pe_bytes = needs.bytes;
+        }
+    } catch (const DoesNotFit& refusal) {
+        set_missing(need, refusal);
+    } catch (const UserError& error) {
+        need.refusal = error.what();
+    }
+    machine.needs.push_back(need);
+    return machine;
+}
+
+MachineNeeds SceneNeeds::needs_of(const std::string& machine) {
+    RenderOptions options = render_;
+    options.machine = machine;
+    return machine_named(machine).kind == MachineKind::kTorus ? torus_needs(options) : ring_needs(options);
+}
 
 struct InfoCommand {
     RenderOptions render;
@@ -29,9 +189,9 @@ struct InfoCommand {
 };
 
 // Options of raya render that raya info does not have, because they do not affect the memory needs of a PE.
-constexpr std::array<const char*, 16> kExecutionOptions = {
-    "--device", "--lanes",   "--group",     "--no-tuned",     "--kernel-dir", "--exchange", "--sampling", "--points",
-    "--inject", "--returns", "--threshold", "--packet-words", "--packets",    "--replay",   "--async",    "--il"};
+constexpr std::array kExecutionOptions = {"--device",    "--lanes",        "--group",   "--no-tuned", "--kernel-dir",
+                                          "--exchange",  "--sampling",     "--points",  "--inject",   "--returns",
+                                          "--threshold", "--packet-words", "--packets", "--async",    "--il"};
 
 void add_options(CLI::App& command, InfoCommand& options) {
     add_file(command, FileUse::kRead, "SCENE", options.render.scene, "SCENE", kSceneHelp)->required();

@@ -4,13 +4,18 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <sstream>
 
 #include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/kernel_source.hpp"
+#include "host/cl/program.hpp"
+#include "host/cli/help.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 #include "host/mesh/mesh_file.hpp"
@@ -19,9 +24,84 @@
 
 namespace raya {
 
+void Warnings::add(const std::string& text) {
+    warn("warning: " + text);
+    texts_.push_back(text);
+}
+
+void add_strict_option(CLI::App& command, bool& strict) {
+    const OptionGroup group(command, kFiles);
+    command.add_flag(
+        "--strict", strict,
+        "Refuse a scene with facets that are degenerate or not planar, or with entities that NFF does not define or "
+        "that raya does not use in meshes; without --strict, raya omits or triangulates such facets and skips such "
+        "entities, with a warning");
+}
+
+SceneInput read_scene(const std::string& file, bool strict) {
+    SceneInput input;
+    const auto warn_of_remarks = [&] {
+        for (const SceneRemark& remark : input.remarks) input.warnings.add(remark_text(input_name(file), remark));
+    };
+    try {
+        input.scene = read_scene_file(file, strict ? nullptr : &input.remarks);
+    } catch (const UserError&) {
+        warn_of_remarks();  // the remarks may explain the error
+        throw;
+    }
+    warn_of_remarks();
+    log_message(
+        kVerbose,
+        fmt::format("{}: {}, {}, {} x {} pixels", input_name(file), counted(input.scene.object_count(), "object"),
+                    counted(input.scene.lights.size(), "light"), input.scene.view.width, input.scene.view.height));
+    return input;
+}
+
+void warn_of_build_options(Warnings& warnings) {
+    static const std::set<std::string> harmless_options = {"--il",
+                                                           "-cl-opt-disable",
+                                                           "-cl-fp32-correctly-rounded-divide-sqrt",
+                                                           "-cl-kernel-arg-info",
+                                                           "-cl-uniform-work-group-size",
+                                                           "-cl-nv-verbose",
+                                                           "-g",
+                                                           "-w",
+                                                           "-Werror"};
+    std::istringstream options(user_build_options());
+    for (std::string option; options >> option;)
+        if (!harmless_options.contains(option))
+            warnings.add(fmt::format("RAYA_BUILD_OPTIONS: {} may change pixels and counts", option));
+}
+
+void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warnings) {
+    constexpr std::size_t kManyObjects = 100'000;
+    if (accelerated || scene.object_count() < kManyObjects) return;
+    warnings.add(fmt::format("{}: every ray is tested against {} objects; --accel bvh finds the same hits faster",
+                             scene.name, scene.object_count()));
+}
+
+void warn_of_lost_objects(const Scene& scene, const LengthScale& scale, const NumberFormat& format,
+                          Warnings& warnings) {
+    if (scale.vanishing_count == 0) return;
+    warnings.add(
+        fmt::format("{}: {} spheres, cones or checkers are invisible: they are smaller than {:.3g}, the minimum of {} "
+                    "in a scene with lengths up to {:.3g}; remedy: --format fp32",
+                    scene.name, scale.vanishing_count, scale.min_visible, format_name(format), scale.largest_length));
+}
+
 void refuse_value(const std::string& option, const std::string& value, const char* reason, const std::string& help) {
     throw UserError(value.empty() ? fmt::format("{} {}; {}: {}", option, reason, option, help)
                                   : fmt::format("{} {}: {}; {}: {}", option, value, reason, option, help));
+}
+
+CLI::Option* in_range(CLI::Option* option, double min, double max, const char* unit) {
+    return option->check([=](const std::string& text) {
+        double number = 0;
+        std::from_chars(text.data(), text.data() + text.size(), number);
+        if (number >= min && number <= max) return std::string();
+        const std::string range = std::isinf(max) ? fmt::format("{} or more", min) : fmt::format("{}..{}", min, max);
+        throw UserError(fmt::format("{} {}: must be {}{}{}", option->get_name(), text, range, *unit ? " " : "", unit));
+    });
 }
 
 // CLI11 options have no notes, so that the text is stored as the description of an inactive validator.
@@ -110,7 +190,7 @@ void add_to(CLI::App& command, const std::shared_ptr<VerbosityFlags>& flags) {
             flags->apply();
         },
         "Log the host's steps on stderr; twice: also kernels' builds, and the device's times by label");
-    for (CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
+    for (CLI::App* subcommand : command.get_subcommands([](const CLI::App* c) { return !c->get_prefix_command(); }))
         add_to(*subcommand, flags);
 }
 

@@ -3,20 +3,57 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "host/cl/kernel_options.hpp"
-#include "host/cli/command_text.hpp"
-#include "host/cli/scene_input.hpp"
-
-namespace CLI {
-class App;
-}
+#include "host/model/number_format.hpp"
+#include "host/scene/nff.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
+
+// Reading of the scene that the command line names, and warnings.
+
+/// Prints each new warning on stderr and stores it for the report. Ignores repeated warnings.
+class Warnings {
+  public:
+    void add(const std::string& text);
+    const std::vector<std::string>& texts() const { return texts_; }
+
+  private:
+    std::vector<std::string> texts_;
+};
+
+/// Adds --strict, with which raya refuses contents that are not NFF or cannot be traced, instead of skipping or
+/// changing these contents.
+void add_strict_option(CLI::App& command, bool& strict);
+
+/// Help of the argument SCENE.
+inline constexpr const char* kSceneHelp =
+    "Scene in NFF, the format of the SPD programs, or a mesh: .obj, .ply, .gltf, .glb, .stl; -: NFF from stdin";
+
+struct SceneInput {
+    Scene scene;
+    std::vector<SceneRemark> remarks;  // contents of the file that were skipped or changed
+    Warnings warnings;
+};
+
+/// Reads a scene from a file or stdin ("-"). Warns of skipped and changed contents. Throws UserError as
+/// read_scene_file() does.
+SceneInput read_scene(const std::string& file, bool strict);
+
+/// Warns of options in the environment variable RAYA_BUILD_OPTIONS that may change pixels and counts.
+void warn_of_build_options(Warnings& warnings);
+
+/// Warns if every ray is tested against 100,000 objects or more, because no accelerator is used.
+void warn_of_slow_search(const Scene& scene, bool accelerated, Warnings& warnings);
+
+/// Warns if objects are too small to be visible in this format. The limit depends on the scene's largest length.
+void warn_of_lost_objects(const Scene& scene, const LengthScale& scale, const NumberFormat& format, Warnings& warnings);
 
 /// The type of one value of an option: `Value` without std::optional or std::vector around it.
 template <class Value>
@@ -96,6 +133,10 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value,
     });
     return brief.empty() ? option : attach_note(option, kBriefNote, brief);
 }
+
+/// Refuses numbers outside min..max: "--samples 0: must be 1..1000". `unit`: of the number, for the message.
+CLI::Option* in_range(CLI::Option* option, double min, double max = std::numeric_limits<double>::infinity(),
+                      const char* unit = "");
 
 /// The values of an option with their names.
 template <class Value>

@@ -3,20 +3,29 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
+#include "host/base/encoding.hpp"
 #include "host/base/log.hpp"
-#include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
-#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
+#include "host/cli/render_options.hpp"
 #include "host/error.hpp"
+#include "host/image/image_io.hpp"
+#include "host/model/number_format.hpp"
 #include "host/report/bench_report.hpp"
 #include "host/report/page/page.hpp"
 #include "host/report/render_report.hpp"
+#include "host/ring/mapping.hpp"
+#include "host/ring/ring_renderer.hpp"
 #include "host/verify/verify.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -107,6 +116,177 @@ void add_page_command(CLI::App& program) {
              "HTML page to write: one file that needs no network")
         ->required();
     command->callback([options] { make_page(*options); });
+}
+
+namespace {
+
+/// Returns the argument in single quotes, or unchanged if no shell interprets any of its characters.
+std::string quoted(const std::string& argument) {
+    const bool plain = !argument.empty() && std::ranges::all_of(argument, [](unsigned char c) {
+        return std::isalnum(c) || std::string_view("_-./:=+,%@").find(char(c)) != std::string_view::npos;
+    });
+    return plain ? argument : '\'' + replaced(argument, "'", "'\\''") + '\'';
+}
+
+struct ExploreCommand {
+    RenderOptions render;
+    std::string page;
+};
+
+RingSettings settings_of(const ExploreCommand& command, const Scene& scene) {
+    RingSettings settings = ring_settings(command.render, scene);
+    if (settings.dynamic)
+        throw UserError(
+            fmt::format("{}: the mapping is dynamic, but the explorer shows static mappings only; choose cyclic, "
+                        "column, rows, blocks, grid, tiles or random{}",
+                        command.render.mapping.empty() ? "--machine " + command.render.machine
+                                                       : "--mapping " + command.render.mapping,
+                        command.render.mapping.empty() ? " with --mapping" : ""));
+    settings.record_costs = true;
+    return settings;
+}
+
+// Returns the scene's file name without its folder. The folder is private, and users send pages to others.
+std::string scene_name(const ExploreCommand& command) {
+    return std::filesystem::path(input_name(command.render.scene)).filename().string();
+}
+
+// Returns the raya command that renders the same image. The page appends --mapping and --pes.
+std::string command_of(const ExploreCommand& command, const RingSettings& settings) {
+    const RenderOptions& o = command.render;
+    std::string text = "raya render " + quoted(scene_name(command)) + " -o image.png";
+    const auto add = [&](const char* option, const std::string& value) {
+        if (!value.empty()) text += fmt::format(" {} {}", option, quoted(value));
+    };
+    add("--machine", o.machine == "spa" ? "" : o.machine);
+    add("--size", o.size);
+    add("--format", o.format);
+    add("--bounces", o.bounces ? fmt::format("{}", settings.bounces) : "");
+    add("--sampling", o.sampling == Sampling::kCorners ? "corners" : "");
+    add("--accel", o.accel);
+    add("--pe-memory", o.pe_memory ? fmt::format("{}", *o.pe_memory) : "");
+    for (const auto& [option, value] : o.view.given_options()) add(option.c_str(), value);
+    return text;
+}
+
+// Returns the rates from which the page computes modelled times.
+Json rates_of(const MachineClock& clock) {
+    return {{"cycle_ns", clock.cycle_ns},
+            {"cycle_factor", clock.cycle_factor},
+            {"setup_ms", clock.setup_ms},
+            {"link_words_per_s", clock.link_words_per_s},
+            {"rotation_sync_ms", clock.rotation_sync_ms}};
+}
+
+Json machine_json(const RingSettings& settings) {
+    const raya_mapping& m = settings.mapping;
+    const bool has_slots = raya_has_slots(m);
+    return {{"name", settings.machine.name},
+            {"pes", m.pes},
+            {"mapping", has_slots ? "cyclic" : mapping_text(m)},
+            {"offset", has_slots ? Json(m.parameter) : Json()},
+            {"fold", has_slots ? Json(m.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic") : Json()},
+            {"format", format_name(settings.format)},
+            {"bounces", settings.bounces},
+            {"accel", accel_text(settings.accel)},
+            {"rates", rates_of(settings.machine.clock)}};
+}
+
+// Returns the page's data. The data contain no measured times, so that two runs with equal settings write equal pages.
+Json exploration(const ExploreCommand& command, const RingSettings& settings, const DeviceInfo& device,
+                 const RingResult& result) {
+    return {
+        {"kind", "raya explore"},
+        {"raya", raya_version()},
+        {"scene", scene_name(command)},
+        {"command", command_of(command, settings)},
+        {"machine", machine_json(settings)},
+        {"device", {{"name", device.name}, {"platform", device.platform}, {"driver", device.driver}}},
+        {"image",
+         {{"width", result.image.width}, {"height", result.image.height}, {"png", base64(plain_png(result.image))}}},
+        {"cost", cost_json(result.cost().cycles)}};
+}
+
+// Refuses an image that is too large for a page. Called before the render.
+void check_pixels(const ImageSize& size) {
+    constexpr std::uint64_t kMaxPixels = 2'000'000;  // their page has about 2 MB, twice the maximum in check_bytes()
+    if (std::uint64_t{size.width} * size.height <= kMaxPixels) return;
+    throw UserError(fmt::format("--size {}x{}: too many pixels for a page, maximum {}; remedy: a smaller --size",
+                                size.width, size.height, kMaxPixels));
+}
+
+void check_cycles(const std::string& scene, const CostImage& cost) {
+    if (total_cycles(cost) < kExactCycles) return;
+    throw UserError(
+        fmt::format("{}: the pixels take {} cycles in total, more than the page's script can add exactly; remedy: a "
+                    "smaller --size, fewer --bounces, or --accel bvh",
+                    scene, total_cycles(cost)));
+}
+
+void check_bytes(const std::string& scene, const CostImage& cost, std::size_t bytes) {
+    constexpr std::size_t kMaxBytes = 1'000'000;  // maximum size of a page, small enough for e-mail
+    if (bytes <= kMaxBytes) return;
+    const double scale = 0.9 * std::sqrt(static_cast<double>(kMaxBytes) / static_cast<double>(bytes));
+    const auto smaller_side = [scale](std::uint32_t pixels) { return std::max(1, static_cast<int>(scale * pixels)); };
+    throw UserError(fmt::format("{}: a page of {} x {} pixels would have {} bytes, maximum {}; remedy: --size {}x{}",
+                                scene, cost.width, cost.height, bytes, kMaxBytes, smaller_side(cost.width),
+                                smaller_side(cost.height)));
+}
+
+void explore(const ExploreCommand& command) {
+    check_page_name("-o", command.page);
+    std::optional<ProgressBar> bar(std::in_place, true, "reading the scene");
+    SceneInput input = read_scene(command.render.scene, command.render.strict);
+    change_view(command.render.view, input.scene);
+    check_pixels(image_size(command.render, input.scene));
+    const RingSettings settings = settings_of(command, input.scene);
+    warn_of_slow_search(input.scene, settings.accel.kind != AccelKind::kNone, input.warnings);
+    bar->stage("preparing");
+    const ScopedTunedSource tuned = use_tuned(command.render.no_tuned, &input.warnings);
+    warn_of_build_options(input.warnings);
+    Session session(choose_device(command.render.device), Timing::kOff);
+    RingRenderer renderer(session, input.scene, settings);
+    warn_of_lost_objects(input.scene, renderer.scale(), settings.format, input.warnings);
+    bar->stage("rendering");
+    const RingResult result =
+        renderer.render(bar->active() ? [&](double fraction) { bar->update(fraction); } : ProgressCallback{});
+    bar->stage("writing");
+    check_cycles(scene_name(command), result.cost());
+    const std::string page = report_page(exploration(command, settings, session.device(), result));
+    check_bytes(scene_name(command), result.cost(), page.size());
+    write_whole_file(command.page, page);
+    bar.reset();
+    if (is_quiet()) return;
+    const Load load = static_load(result.cost(), settings.mapping);
+    fmt::print("{}: {} x {} pixels; the page opens with {} on {}: u = {:.3f}, speed-up {:.1f}\n",
+               printable(input_name(command.render.scene)), settings.mapping.width, settings.mapping.height,
+               mapping_text(settings.mapping), counted(settings.mapping.pes, "PE"), load.imbalance, load.speedup);
+    fmt::print("page    {} ({:.0f} KB); open it in a browser; it needs no network\n",
+               printable(output_name(command.page)), static_cast<double>(page.size()) / 1e3);
+}
+
+}  // namespace
+
+void add_explore_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand(
+        "explore", "Render once and write an interactive page of loads by mapping, offset and number of PEs");
+    add_examples(*command, {{"raya explore scenes/centre.nff -o centre.html",
+                             "Write a page that opens with 256 PEs, cyclic mapping, offset 16"},
+                            {"raya explore scenes/mirrors.nff --size 128 --pes 64 --mapping blocks -o mirrors.html",
+                             "Write a page that opens with 64 PEs and blocks of scan lines"}});
+    const auto options = std::make_shared<ExploreCommand>();
+    const OptionGroup group(*command, kFiles);
+    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE", kSceneHelp)->required();
+    add_file(*command, FileUse::kWritten, "-o,--output", options->page, "FILE.html",
+             "HTML page to write: one file below 1 MB that needs no network; -: stdout",
+             "HTML page to write; -: stdout")
+        ->required();
+    add_render_options(*command, options->render, false);
+    command->get_option("--mapping")
+        ->description(
+            "Mapping that the page shows first: cyclic, cyclic:p, column, rows, blocks, grid:AxB, tiles:WxH, "
+            "random:seed; default: the machine's, cyclic on spa");
+    command->callback([options] { explore(*options); });
 }
 
 }  // namespace raya

@@ -6,29 +6,28 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <string_view>
 
-#include "host/cli/options.hpp"
+#include "host/base/encoding.hpp"
+#include "host/cli/help.hpp"
 #include "host/error.hpp"
+#include "host/scene/nff_tokens.hpp"
+#include "host/scene/polygon.hpp"
 
 namespace raya {
 
 std::vector<std::uint32_t> parse_sizes(const std::string& text) {
     constexpr std::uint32_t kMaxSize = 1'000'000;  // so that the product of three sizes fits in 64 bits
     std::vector<std::uint32_t> sizes;
-    const char* position = text.data();
-    const char* const end = position + text.size();
-    for (;;) {
-        std::uint32_t size = 0;
-        const auto [next, error] = std::from_chars(position, end, size);
-        if (error != std::errc{} || size < 1 || size > kMaxSize) return {};
-        sizes.push_back(size);
-        if (next == end) return sizes;
-        if (*next != 'x') return {};
-        position = next + 1;
+    for (const std::string& part : split(text, 'x')) {
+        const auto size = parsed_number<std::uint32_t>(part);
+        if (!size || *size < 1 || *size > kMaxSize) return {};
+        sizes.push_back(*size);
     }
+    return sizes;
 }
 
 ImageSize parse_image_size(const std::string& text) {
@@ -46,15 +45,10 @@ std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const 
 }
 
 Shard parse_shard(const std::string& text) {
-    const char *const end = text.data() + text.size(), *at = text.data();
-    const auto reads = [&](std::uint32_t& number) {
-        const auto [stop, error] = std::from_chars(at, end, number);
-        at = stop;
-        return error == std::errc{};
-    };
-    Shard shard;
-    const bool is_valid = reads(shard.number) && at != end && *at++ == '/' && reads(shard.count) && at == end;
-    if (!is_valid || shard.number < 1 || shard.number > shard.count)
+    const std::vector<std::string> parts = split(text, '/');
+    const auto part = [&](std::size_t i) { return parsed_number<std::uint32_t>(parts.at(i)).value_or(0); };
+    const Shard shard = parts.size() == 2 ? Shard{part(0), part(1)} : Shard{0, 0};
+    if (shard.number < 1 || shard.number > shard.count)
         throw UserError(fmt::format("--shard {}: must be I/N with I 1..N, such as 2/4", text));
     return shard;
 }
@@ -73,8 +67,7 @@ Accel parse_accel(const std::string& text) {
 
 std::vector<NumberFormat> parse_formats(const std::string& list) {
     std::vector<NumberFormat> formats;
-    std::istringstream names(list);
-    for (std::string name; std::getline(names, name, ',');) formats.push_back(parse_format(name));
+    for (const std::string& name : split(list, ',')) formats.push_back(parse_format(name));
     return formats;
 }
 
@@ -91,28 +84,17 @@ void add_device_option(CLI::App& command, std::string& device) {
 
 namespace {
 
-/// Parses a number, independently of the locale. Returns false unless the number is the whole field.
-template <typename Number>
-bool read_number(std::string_view field, Number& number) {
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
-    return error == std::errc{} && end == field.data() + field.size();
-}
-
 // Returns the integer in `text`; empty if `text` is not an integer in min..max.
 std::optional<std::uint32_t> parse_number(std::string_view text, std::uint32_t min, std::uint32_t max) {
-    std::uint32_t number = 0;
-    if (!read_number(text, number) || number < min || number > max) return {};
-    return number;
+    const auto number = parsed_number<std::uint32_t>(text);
+    return number >= min && number <= max ? number : std::nullopt;
 }
 
 // Returns raya_pair(4, 8) for "4x8"; empty if `text` is not two numbers in 1..kMaxSide.
 std::optional<std::uint32_t> parse_pair(std::string_view text) {
-    const std::size_t cross = text.find('x');
-    if (cross == std::string_view::npos) return {};
-    const auto first = parse_number(text.substr(0, cross), 1, kMaxSide);
-    const auto second = parse_number(text.substr(cross + 1), 1, kMaxSide);
-    if (!first || !second) return {};
-    return raya_pair(*first, *second);
+    const std::vector<std::string> sides = split(text, 'x');
+    const auto side = [&](std::size_t i) { return parse_number(sides[i], 1, kMaxSide); };
+    return sides.size() == 2 && side(0) && side(1) ? std::optional(raya_pair(*side(0), *side(1))) : std::nullopt;
 }
 
 constexpr std::uint32_t kDefaultSeed = 1;
@@ -146,16 +128,6 @@ std::uint32_t parse_parameter(const MappingText& mapping, std::string_view text)
                     "with CHUNK 1..{} pixels per request, OVERHEAD 0..{} cycles of the PE per request, ROOT 0..{} "
                     "cycles of the root per request, SHARE 0..1 of the pixels assigned statically",
                     text, kMaxChunk, kMaxOverhead, kMaxOverhead));
-}
-
-std::vector<std::string_view> split_at_commas(std::string_view text) {
-    std::vector<std::string_view> fields;
-    for (std::size_t at = 0; at != std::string_view::npos;) {
-        const std::size_t comma = text.find(',', at);
-        fields.push_back(text.substr(at, comma - at));
-        at = comma == std::string_view::npos ? comma : comma + 1;
-    }
-    return fields;
 }
 
 }  // namespace
@@ -198,16 +170,286 @@ DynamicPlan parse_dynamic(const std::string& text, const DynamicPlan& defaults) 
     const std::string_view view = text;
     const bool hybrid = view.starts_with("hybrid:");
     if (!hybrid && !view.starts_with("dynamic:")) refuse_dynamic_mapping(text);
-    const auto fields = split_at_commas(view.substr(view.find(':') + 1));
+    const std::vector<std::string> fields = split(view.substr(view.find(':') + 1), ',');
+    const auto reads = [&](std::size_t field, auto& value) {
+        const auto number = parsed_number<std::remove_reference_t<decltype(value)>>(fields[field]);
+        value = number.value_or(value);
+        return number.has_value();
+    };
     DynamicPlan plan = defaults;
     if (hybrid) plan.static_fraction = 0.5;
     const std::size_t root_index = hybrid ? 3 : 2;  // index of the field ROOT
-    const bool is_valid = fields.size() <= root_index + 1 && read_number(fields[0], plan.chunk) &&
-                          (fields.size() < 2 || read_number(fields[1], plan.overhead)) &&
-                          (fields.size() < 3 || !hybrid || read_number(fields[2], plan.static_fraction)) &&
-                          (fields.size() <= root_index || read_number(fields[root_index], plan.root_cycles));
+    const bool is_valid = fields.size() <= root_index + 1 && reads(0, plan.chunk) &&
+                          (fields.size() < 2 || reads(1, plan.overhead)) &&
+                          (fields.size() < 3 || !hybrid || reads(2, plan.static_fraction)) &&
+                          (fields.size() <= root_index || reads(root_index, plan.root_cycles));
     if (!is_valid || !is_valid_plan(plan)) refuse_dynamic_mapping(text);
     return plan;
+}
+
+namespace {
+
+constexpr const char* kPoint = "must be three numbers X,Y,Z, each at most 1e30 in magnitude";
+constexpr const char* kColour = "must be three numbers R,G,B from 0 to 1e9; 1 is full intensity";
+constexpr const char* kLight = "must be a position X,Y,Z, or position and colour X,Y,Z,R,G,B, colours from 0 to 1e9";
+
+constexpr std::size_t kMaxShownBytes = 60;  // maximum bytes of a value in messages
+
+/// Parses comma-separated numbers. Returns an empty vector if a number is malformed or its magnitude exceeds
+/// kMaxSceneLength.
+std::vector<double> numbers_of(std::string_view text) {
+    std::vector<double> numbers;
+    for (const std::string& field : split(text, ',')) {
+        const auto number = parsed_number<double>(field);
+        if (!number || !(std::abs(*number) <= kMaxSceneLength)) return {};
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+[[noreturn]] void refuse(const std::string& option, const std::string& text, const char* legal_values) {
+    throw UserError(fmt::format("{} {}: {}", option, text.substr(0, kMaxShownBytes), legal_values));
+}
+
+Vec3 vector_of(const std::string& option, const std::string& text, const char* legal_values) {
+    const std::vector<double> numbers = numbers_of(text);
+    if (numbers.size() != 3) refuse(option, text, legal_values);
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+Light light_of(const std::string& text) {
+    const std::vector<double> n = numbers_of(text);
+    if (n.size() != 3 && n.size() != 6) refuse("--light", text, kLight);
+    Light light{{n[0], n[1], n[2]}, {}};
+    if (n.size() == 6) light.colour = Colour(n[3], n[4], n[5]);
+    if (light.colour && !is_colour(*light.colour)) refuse("--light", text, kLight);
+    return light;
+}
+
+/// Returns the camera options that were given: "--from 0,0,0 --angle 10".
+std::string viewpoint_text(const ViewOptions& v) {
+    std::string text;
+    for (const auto& [option, value] : v.given_options())
+        if (option != "--background" && option != "--light")
+            text += fmt::format("{}{} {}", text.empty() ? "" : " ", option, value.substr(0, kMaxShownBytes));
+    return text;
+}
+
+/// Applies the camera options to `view`. Throws UserError with the options' names for an invalid camera.
+void change_viewpoint(const ViewOptions& v, View& view) {
+    if (!v.from.empty()) view.from = vector_of("--from", v.from, kPoint);
+    if (!v.at.empty()) view.at = vector_of("--at", v.at, kPoint);
+    if (!v.up.empty()) view.up = vector_of("--up", v.up, kPoint);
+    if (v.angle) view.angle_degrees = *v.angle;
+    const std::string given_text = viewpoint_text(v);
+    if (given_text.empty()) return;
+    const std::string error = view_error(view);
+    if (!error.empty()) throw UserError(fmt::format("{}: {}", given_text, error));
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> ViewOptions::given_options() const {
+    std::vector<std::pair<std::string, std::string>> options;
+    const auto add = [&](const char* option, const std::string& value) {
+        if (!value.empty()) options.emplace_back(option, value);
+    };
+    add("--from", from);
+    add("--at", at);
+    add("--up", up);
+    add("--angle", angle ? fmt::format("{}", *angle) : "");
+    add("--background", background);
+    for (const std::string& light : lights) add("--light", light);
+    return options;
+}
+
+void add_view_options(CLI::App& command, ViewOptions& v) {
+    const OptionGroup group(command, kCamera);
+    add_value(command, "--from", v.from,
+              "Position of the eye in scene units; default of all six camera and light options: the scene's, "
+              "or a view of the whole mesh")
+        ->type_name("X,Y,Z");
+    add_value(command, "--at", v.at, "Point at the centre of the image")->type_name("X,Y,Z");
+    add_value(command, "--up", v.up, "Up direction of the image, of any length")->type_name("X,Y,Z");
+    add_value(command, "--angle", v.angle, "Vertical field of view, between 0 and 180 degrees")->type_name("DEGREES");
+    add_value(command, "--background", v.background, "Colour of rays that hit nothing; linear, 1 is full intensity")
+        ->type_name("R,G,B");
+    add_value(
+        command, "--light", v.lights,
+        "A light at X,Y,Z of colour R,G,B; default colour: white, with the total intensity sqrt(n)/2 for n lights; "
+        "repeat the option for several lights; they replace all lights of the scene")
+        ->allow_extra_args(false)  // so that the scene may follow
+        ->type_name("X,Y,Z[,R,G,B]");
+}
+
+void change_view(const ViewOptions& v, Scene& scene) {
+    change_viewpoint(v, scene.view);
+    if (!v.background.empty()) {
+        scene.background = vector_of("--background", v.background, kColour);
+        if (!is_colour(scene.background)) refuse("--background", v.background, kColour);
+    }
+    if (v.lights.empty()) return;
+    scene.lights.clear();
+    for (const std::string& text : v.lights) scene.lights.push_back(light_of(text));
+}
+
+namespace {
+
+/// Returns Damerau's edit distance from `a` to `b` without repeated edits of a character (optimal string alignment).
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+    std::vector<std::vector<std::size_t>> distance(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) {
+        for (std::size_t j = 0; j <= b.size(); ++j) {
+            if (i == 0 || j == 0) {
+                distance[i][j] = i + j;
+                continue;
+            }
+            const std::size_t substitution = a[i - 1] == b[j - 1] ? 0 : 1;
+            distance[i][j] =
+                std::min({distance[i - 1][j] + 1, distance[i][j - 1] + 1, distance[i - 1][j - 1] + substitution});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                distance[i][j] = std::min(distance[i][j], distance[i - 2][j - 2] + 1);
+        }
+    }
+    return distance[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string nearest_name(const std::string& misspelling, const std::vector<std::string>& names) {
+    constexpr std::size_t kMinPrefixSize = 3;
+    std::string nearest;
+    std::size_t min_distance = misspelling.size() / 3 + 1;
+    for (const std::string& name : names) {
+        const bool has_prefix = misspelling.size() >= kMinPrefixSize && name.starts_with(misspelling);
+        const std::size_t distance = has_prefix ? 0 : edit_distance(misspelling, name);
+        if (distance >= min_distance) continue;
+        min_distance = distance;
+        nearest = name;
+    }
+    return nearest;
+}
+
+std::string did_you_mean(const std::string& misspelling, const std::vector<std::string>& names) {
+    const std::string nearest = nearest_name(misspelling, names);
+    return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
+}
+
+namespace {
+
+/// Returns the innermost selected command. Appends its path without the program's name, " generate balls", to `path`.
+const CLI::App& selected_command(const CLI::App& program, std::string& path) {
+    const CLI::App* command = &program;
+    while (!command->get_subcommands().empty()) {
+        command = command->get_subcommands().front();
+        path += ' ' + command->get_name();
+    }
+    return *command;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+std::string failure_reason(const CLI::App& program, const CLI::App& command, const CLI::ParseError& error,
+                           const std::vector<std::string>& arguments) {
+    const bool is_required = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    const std::vector<std::string> commands = command_names(command);
+    std::vector<std::string> unparsed;
+    if (is_required || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) unparsed = program.remaining(true);
+    const auto first = std::ranges::find_if(arguments, [&](const std::string& argument) {
+        return argument != "--" && std::ranges::find(unparsed, argument) != unparsed.end();
+    });
+    if (first != arguments.end() && first->starts_with("-") && first->size() > 1) {
+        const std::string name = first->substr(0, first->find('='));
+        return fmt::format("no option {}{}", name, did_you_mean(name, option_names(command)));
+    }
+    if (first != arguments.end() && commands.empty()) return fmt::format("unexpected argument '{}'", *first);
+    if (first != arguments.end() && command.get_option_no_throw("--" + *first) != nullptr)
+        return fmt::format("no command {} (did you mean --{}?)", *first, *first);
+    if (first != arguments.end())
+        return fmt::format("no command {}{}; commands: {}", *first, did_you_mean(*first, commands),
+                           fmt::join(commands, ", "));
+    if (is_required && !commands.empty())
+        return fmt::format("command missing; commands: {}", fmt::join(commands, ", "));
+    std::string text = error.what();
+    for (const auto& [old_text, new_text] :
+         {std::pair{"At Most 1 required but received", "takes one value, not"},  // CLI11 2.2
+          {"At most 1 required but received", "takes one value, not"},           // CLI11 2.6
+          {"1 required ", "value "}})
+        text = replaced(text, old_text, new_text);
+    return text;
+}
+
+/// Throws UserError for arguments that CLI11 would read in an unexpected way: it takes the value of "--quiet=x" as a
+/// count, the next argument as the value of "--size=", and "-q=x" as -q and "-=x".
+void check_arguments(const CLI::App& program, const std::vector<std::string>& arguments) {
+    constexpr std::size_t kMaxBytes = 4096;  // maximum size of an argument: Linux's PATH_MAX
+    const CLI::App* command = &program;
+    std::string option;  // of the current argument, or before it
+    for (const std::string& argument : arguments) {
+        const std::size_t equals = argument.find('=');
+        if (argument.starts_with("-")) option = argument.substr(0, std::min<std::size_t>(equals, 40));
+        if (argument.size() > kMaxBytes)
+            throw UserError(fmt::format("{}: the value has {} bytes, maximum {}", option, argument.size(), kMaxBytes));
+        for (const CLI::App* subcommand : command->get_subcommands([](const CLI::App*) { return true; }))
+            if (subcommand->get_name() == argument) command = subcommand;
+        if (!argument.starts_with("-") || equals == std::string::npos) continue;
+        const CLI::Option* const named = command->get_option_no_throw(option);
+        if (named != nullptr && named->get_items_expected_max() == 0)
+            throw UserError(option + ": the option takes no value");
+        if (named != nullptr && !option.starts_with("--"))
+            throw UserError(option + ": write a blank before the value, not =");
+        if (named != nullptr && equals + 1 == argument.size()) throw UserError(option + " must not be empty");
+    }
+}
+
+/// Adds to a message such as "--fold blok: ..." the option's choice that is most similar to the value.
+std::string with_suggestion(const CLI::App& program, std::string text) {
+    std::string path;
+    for (const CLI::Option* option : selected_command(program, path).get_options()) {
+        const std::string start = option->get_name() + ' ';
+        const std::size_t end = text.find(": ");
+        if (!text.starts_with(start) || end == std::string::npos || end < start.size()) continue;
+        const std::string value = text.substr(start.size(), end - start.size());
+        // const_cast: CLI11 returns validators, which store the choices, only for a non-const option.
+        const std::vector<std::string> choices = choices_of(option_text(*const_cast<CLI::Option*>(option)));
+        if (!value.starts_with(
+                nearest_name(value, choices)))  // "grid:4" starts with the choice grid, which is not misspelt
+            text.insert(end, did_you_mean(value, choices));
+        break;
+    }
+    return text;
+}
+
+}  // namespace
+
+std::vector<std::string> command_names(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(subcommand->get_name());
+    return names;
+}
+
+void parse_arguments(CLI::App& program, const std::vector<std::string>& arguments) {
+    try {
+        check_arguments(program, arguments);
+        program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) throw;  // --help or --version, not an error
+        std::string path;
+        const CLI::App& command = selected_command(program, path);
+        throw UserError(fmt::format("{}{}{}; see raya{} --help", path.empty() ? "" : path.substr(1),
+                                    path.empty() ? "" : ": ", failure_reason(program, command, error, arguments),
+                                    path));
+    } catch (const UserError& error) {
+        const std::string text = with_suggestion(program, error.what());
+        if (text == error.what()) throw;
+        throw UserError(text);
+    }
 }
 
 }  // namespace raya

@@ -1,22 +1,17 @@
-// Parsers of structured option values.
+// Parsers of the command line, with error messages of one line, and of structured option values.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "host/accel/partition.hpp"
 #include "host/cli/options.hpp"
 #include "host/model/mapping_rule.hpp"
 #include "host/model/number_format.hpp"
-#include "host/ring/neighbour_exchange.hpp"
-#include "host/scene/packer.hpp"
-#include "host/torus/topology.hpp"
-
-namespace CLI {
-class App;
-}
+#include "host/ring/bus_and_ring.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 
@@ -89,5 +84,42 @@ bool is_dynamic(const std::string& text);
 /// that is assigned statically, default 0.5 for hybrid. `defaults` supplies the other missing numbers. Throws UserError
 /// with the option and its legal forms.
 DynamicPlan parse_dynamic(const std::string& text, const DynamicPlan& defaults = {});
+
+// Options that replace the scene's camera, background and lights.
+
+/// The options as given on the command line. An empty value means the scene's value.
+struct ViewOptions {
+    std::string from{}, at{}, up{}, background{};
+    std::optional<double> angle{};  // degrees
+    std::vector<std::string> lights{};
+
+    bool given() const { return !given_options().empty(); }
+
+    /// Returns the options that were given, with their values: {"--from", "1,2,3"}.
+    std::vector<std::pair<std::string, std::string>> given_options() const;
+};
+
+/// Adds --from, --at, --up, --angle, --background and --light.
+void add_view_options(CLI::App& command, ViewOptions& options);
+
+/// Applies all options to the scene, with the range checks of the NFF reader. Throws UserError with the option's name.
+void change_view(const ViewOptions& options, Scene& scene);
+
+// Suggestions for misspelt names.
+
+/// Returns the name in `names` that begins with `misspelling`, if `misspelling` has 3 or more characters. Otherwise
+/// returns the name with the smallest edit distance (insertions, deletions, substitutions, transpositions of
+/// neighbours; F. J. Damerau 1964), or "" if this distance exceeds a third of the length of `misspelling`.
+std::string nearest_name(const std::string& misspelling, const std::vector<std::string>& names);
+
+/// Returns " (did you mean NAME?)" with the name that nearest_name() returns; "" if no name is similar.
+std::string did_you_mean(const std::string& misspelling, const std::vector<std::string>& names);
+
+/// Parses the arguments (without the program's name) and runs the command. Throws UserError with a message of one line
+/// for a bad argument. Throws CLI::ParseError, with exit code 0, for --help and --version.
+void parse_arguments(CLI::App& program, const std::vector<std::string>& arguments);
+
+/// Returns the names of a command's subcommands.
+std::vector<std::string> command_names(const CLI::App& command);
 
 }  // namespace raya

@@ -2,16 +2,21 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 #include "host/base/json.hpp"
-#include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
+#include "host/cl/device.hpp"
 #include "host/cl/measure.hpp"
+#include "host/cli/commands.hpp"
+#include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
+#include "host/cli/parse.hpp"
 #include "host/error.hpp"
-#include "host/image/plain_png.hpp"
+#include "host/image/image_io.hpp"
 #include "host/ranks/launch.hpp"
 #include "host/report/scene_report.hpp"
 #include "host/report/table.hpp"
@@ -20,16 +25,320 @@
 namespace raya {
 namespace {
 
+namespace fs = std::filesystem;
+
+constexpr double kMaxSaveFraction = 0.05;          // maximum fraction of the run time that goes into saving
+constexpr double kMinBandS = 0.05, kMaxBandS = 2;  // bounds on a band's target duration, seconds
+
+bool is_checkpoint(const std::string& file) {
+    std::string first_bytes(kStateMagic.size(), '\0');
+    return fs::is_regular_file(file) && std::ifstream(file).read(first_bytes.data(), std::ssize(first_bytes)) &&
+           first_bytes == kStateMagic;
+}
+
+}  // namespace
+
+void add_checkpoint_options(CLI::App& command, CheckpointOptions& options) {
+    const OptionGroup group(command, kFiles);
+    CLI::Option* const file = add_file(
+        command, FileUse::kWritten, "--checkpoint", options.file, "FILE.rst",
+        "Save the progress of a long render to this file, for --resume; the file is removed when the render is "
+        "complete. The image and its hash do not change; the number of MPI ranks may",
+        "Save the progress of a long render, for --resume");
+    command
+        .add_flag("--resume", options.resume,
+                  "Continue the same render from the file of --checkpoint; start anew if this file does not exist")
+        ->needs(file);
+    in_range(add_value(command, "--checkpoint-every", options.every_s,
+                       "Minimum seconds between two checkpoints, 0..86400; raya waits longer if saving would take over "
+                       "5 % of the time; 0: a checkpoint after every band of pixels, or in every superstep"),
+             0, 86'400, "seconds")
+        ->type_name("SECONDS")
+        ->capture_default_str()
+        ->needs(file);
+}
+
+void check_checkpoint_options(const CheckpointOptions& options) {
+    if (options.file.empty()) return;
+    if (is_standard_stream(options.file))
+        throw UserError(
+            "--checkpoint -: raya rewrites the file repeatedly, which is not possible on stdout; name a file");
+    if (!fs::exists(options.file)) return;
+    if (!is_checkpoint(options.file))
+        throw UserError(
+            fmt::format("--checkpoint {}: the file exists and is not a checkpoint; name another file", options.file));
+    if (!options.resume)
+        throw UserError(
+            fmt::format("--checkpoint {}: the file exists and holds a checkpoint; add --resume to continue from it, or "
+                        "name another file",
+                        options.file));
+}
+
+CheckpointFile::CheckpointFile(const CheckpointOptions& options) : options_(options) {
+    callbacks_.band_s = std::clamp(options.every_s / 4, kMinBandS, kMaxBandS);
+    callbacks_.due = [this] { return due(); };
+    callbacks_.save = [this](const std::string& bytes) { save(bytes); };
+    if (options.resume) callbacks_.resume = [this](const auto& read) { load(read); };
+}
+
+bool CheckpointFile::due() {
+    const double elapsed_s = seconds_since(last_save_end_);
+    due_at_ = Clock::now();
+    return elapsed_s >=
+           std::max(options_.every_s, options_.every_s > 0 ? last_save_duration_s_ / kMaxSaveFraction : 0.0);
+}
+
+void CheckpointFile::save(const std::string& bytes) {
+    write_whole_file(options_.file, bytes);
+    last_save_end_ = Clock::now();
+    last_save_duration_s_ = std::chrono::duration<double>(last_save_end_ - due_at_).count();
+}
+
+void CheckpointFile::load(const std::function<RenderedPart(std::string_view bytes)>& read) const {
+    if (!fs::exists(options_.file)) return;
+    try {
+        const RenderedPart part = read(read_file(options_.file));
+        if (!is_quiet())
+            print_log(fmt::format("raya: {}: continuing at {:.1f} %; the runs so far took {:.1f} s\n", options_.file,
+                                  100 * part.fraction, part.seconds));
+    } catch (const UnreadableFile& why) {
+        throw UserError(fmt::format("--resume: {}: {}", options_.file, why.what()));
+    } catch (const UserError& why) {
+        throw UserError(fmt::format("--resume: {}: {}; remove the file to start anew", options_.file, why.what()));
+    }
+}
+
+void remove_checkpoint(const CheckpointOptions& options) {
+    std::error_code error;  // ignored, because the file may not exist
+    if (!options.file.empty()) fs::remove(options.file, error);
+}
+
+namespace {
+
+// Prefix of the names of the spans in which Session builds programs.
+constexpr std::string_view kBuildPrefix = "build ";
+
+}  // namespace
+
+void add_trace_options(CLI::App& command, TraceOptions& trace) {
+    const OptionGroup group(command, kDiagnostics);
+    CLI::Option* const file = add_file(
+        command, FileUse::kWritten, "--trace", trace.file, "FILE.json[.gz]",
+        "Write a trace for ui.perfetto.dev: the host's steps, the device's commands, and the modelled machine in "
+        "modelled time; -: stdout",
+        "Write a trace for ui.perfetto.dev");
+    in_range(
+        add_value(command, "--trace-events", trace.events,
+                  "Maximum number of events in the trace, 1 or more; a warning gives the number of omitted events"),
+        1)
+        ->type_name("N")
+        ->capture_default_str()
+        ->needs(file);
+    add_value(
+        command, "--trace-pes", trace.pes,
+        "Number N of PEs or nodes of the modelled machine that get a track: the N/4 busiest, the N/4 idlest, and N/2 "
+        "with numbers at even distances; 0 omits the modelled machine")
+        ->type_name("N")
+        ->capture_default_str()
+        ->needs(file);
+}
+
+void check_trace(const TraceOptions& trace) {
+    const bool has_json_name = trace.file.ends_with(".json") || trace.file.ends_with(".json.gz");
+    if (!trace.file.empty() && !has_json_name && !trace.file.starts_with("/dev/") && !is_standard_stream(trace.file))
+        throw UserError(
+            fmt::format("--trace {}: choose a name that ends in .json, or in .json.gz for compression", trace.file));
+}
+
+void RenderRecorder::observe(Session& session, Ranks& ranks) {
+    if (!traces() && !profile_) return;
+    session.observe(spans_, traces() ? trace_.events : 0);
+    if (traces() && session.profile().timed()) device_clock_offset_ = measure_clock_offset(session);
+    if (traces() && ranks.has_several()) align_clocks(ranks);
+}
+
+// Measures the offsets of the ranks' clocks. Sets the beginning of the trace to the earliest beginning on any rank.
+void RenderRecorder::align_clocks(Ranks& ranks) {
+    has_several_ranks_ = true;
+    rank_clock_ = rank_clock(ranks, host_clock_ns);
+    const auto offset =
+        static_cast<std::uint64_t>(rank_clock_.offset_ns);  // if negative, the sums below wrap modulo 2^64
+    const std::vector<std::uint64_t> begins = ranks.all_gather(begin_ns_ + offset);
+    begin_ns_ = *std::min_element(begins.begin(), begins.end()) - offset;
+    for (const RankClock& c : ranks.all_gather(rank_clock_))
+        all_rank_clocks_.push_back({{"offset_ns", c.offset_ns}, {"uncertainty_ns", c.uncertainty_ns}});
+}
+
+void RenderRecorder::gather(Session& session, Ranks& ranks) {
+    if (!traces() || !ranks.has_several()) return;
+    TraceFile this_rank(trace_.events / ranks.count());
+    if (!ranks.is_first()) add_measured_events(this_rank, session, ranks.rank());
+    const TraceFile::Part part = this_rank.part();
+    const std::vector<std::string> names = ranks.gather(part.names), event_texts = ranks.gather(part.text);
+    const std::vector<std::uint64_t> events = ranks.all_gather(part.events), left_out = ranks.all_gather(part.left_out);
+    for (std::size_t rank = 1; rank < event_texts.size(); ++rank)
+        parts_of_other_ranks_.push_back({names[rank], event_texts[rank], events[rank], left_out[rank]});
+}
+
+void RenderRecorder::add_measured_events(TraceFile& file, Session& session, std::uint32_t rank) {
+    add_host_spans(file, spans_.spans(), begin_ns_, {rank, has_several_ranks_});
+    add_device_commands(file, session.device().name, session.profile(), device_clock_offset_, begin_ns_,
+                        {rank, has_several_ranks_});
+}
+
+std::vector<ProgramBuild> RenderRecorder::builds() const {
+    std::vector<ProgramBuild> builds;
+    for (const HostSpan& s : spans_.spans())
+        if (s.name.starts_with(kBuildPrefix))
+            builds.push_back({s.name.substr(kBuildPrefix.size()), 1e-9 * static_cast<double>(s.ended - s.started)});
+    return builds;
+}
+
+void RenderRecorder::write(Session& session, const std::function<void(TraceFile&)>& add_machine) {
+    if (!traces()) return;
+    TraceFile file(trace_.events / (1 + parts_of_other_ranks_.size()));
+    file.metadata()["program"] = name_and_version();
+    if (has_several_ranks_) file.metadata()["rank_clocks"] = all_rank_clocks_;
+    add_measured_events(file, session, 0);
+    add_machine(file);
+    for (const TraceFile::Part& part : parts_of_other_ranks_) file.add(part);
+    write_whole_file(trace_.file, file.finish(trace_.file.ends_with(".gz")));
+    if (file.left_out() > 0)
+        warn(fmt::format("{}: {} of {} events omitted; remedy: --trace-events {}, or fewer --trace-pes", trace_.file,
+                         file.left_out(), file.events() + file.left_out(), file.events() + file.left_out()));
+}
+
+ProgressCallback RenderProgress::callback() {
+    if (!bar_ || !bar_->active()) return callback_;
+    return [this](double fraction) { bar_->update(fraction); };
+}
+
+RenderRun::RenderRun(const RenderCommand& command, Ranks& all_ranks)
+    : ranks(all_ranks),
+      recorder(command.trace, command.needs_roofline()),
+      progress(all_ranks.is_first(), "reading the scene"),
+      options(command.render),
+      input(read_scene_on_rank_0(recorder, options, all_ranks)),
+      timing_(command.timing()),
+      image_files_{command.image, command.cost, command.mask} {}
+
+RenderRun::RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session)
+    : ranks(Ranks::single()),
+      recorder(command.trace, command.needs_roofline()),
+      progress(command.progress),
+      options(command.render),
+      input(std::move(scene)),
+      timing_(command.timing()),
+      device_(device),
+      session_(&session) {
+    change_view(options.view, input.scene);
+    tuned_.reset(new ScopedTunedSource(use_tuned(options.no_tuned, &input.warnings)));
+    warn_of_build_options(input.warnings);
+    recorder.observe(session, ranks);
+}
+
+Session& RenderRun::session() {
+    if (session_ != nullptr) return *session_;
+    tuned_.reset(new ScopedTunedSource(use_tuned(options.no_tuned, &input.warnings)));
+    if (ranks.is_first()) warn_of_build_options(input.warnings);
+    progress.stage("preparing");
+    device_ =
+        recorder.spans().during("choose device", [&] { return choose_device(options.device, ranks.rank_on_host()); });
+    // OpenImageIO must be loaded after the OpenCL drivers: both use TBB, a process keeps the first TBB that it loads,
+    // and Intel's OpenCL runtime needs a newer TBB than OpenImageIO.
+    for (const std::string& file : image_files_)
+        if (ranks.is_first() && !file.empty()) load_encoder(file);
+    opened_session_.emplace(recorder.spans().during("open device", [&] { return Session(device_, timing_); }));
+    session_ = &*opened_session_;
+    if (ranks.is_first()) session_->announce_compiling();
+    recorder.observe(*session_, ranks);
+    return *session_;
+}
+
+namespace {
+
+void render(const CLI::App& parser, const RenderCommand& command, Ranks& ranks) {
+    refuse_options_of_other_machines(parser, machine_named(command.render.machine));
+    if (ranks.is_first()) check_render(command);  // only rank 0 writes files
+    RenderRun run(command, ranks);
+    render_image(command, run);
+}
+
+}  // namespace
+
+std::optional<Render> render_image(const RenderCommand& command, RenderRun& run) {
+    return is_torus(command) ? render_on_torus(command, run) : render_on_ring(command, run);
+}
+
+void add_render_command_options(CLI::App& command, RenderCommand& options) {
+    OptionGroup group(command, kFiles);
+    add_file(command, FileUse::kWritten, "-o,--output", options.image, "IMAGE",
+             "Image to write: .png, .tif, .ppm or .jpg (8-bit; JPEG with quality 95, lossy), .exr or .pfm (linear); -: "
+             "stdout, as PPM. If a file goes to stdout, the summary goes to stderr",
+             "Image to write: .png, .tif, .ppm, .jpg, .exr or .pfm");
+    add_render_options(command, options.render);
+    group.next(kImageGroup);
+    in_range(add_value(command, "--exposure", options.exposure,
+                       "8-bit images: multiply colours by 2^EV, -64..64 stops; the report's hash does not change"),
+             -64, 64, "stops")
+        ->type_name("EV")
+        ->default_str("0");
+    add_checkpoint_options(command, options.checkpoint);
+    add_torus_options(command, options.torus);
+    group.next(kDiagnostics);
+    attach_note(add_file(command, FileUse::kWritten, "--cost", options.cost, "FILE.exr",
+                         "Write the modelled cycles of each pixel as an image, .exr or .pfm; -: stdout, as PFM",
+                         "Write the modelled cycles of each pixel"),
+                kRingOnlyNote,
+                "several nodes work for a pixel, so that no node has its cost; leave it out, or choose a ring: "
+                "--machine grande");
+    attach_note(add_file(command, FileUse::kWritten, "--mask", options.mask, "IMAGE",
+                         "Write the mask of the supersampled pixels, white on black"),
+                kRingOnlyNote, kNoNeighbours);
+    add_file(command, FileUse::kWritten, "--report", options.report, "FILE.json",
+             "Write all counts and measurements as JSON; -: stdout", "Write all counts and measurements; -: stdout");
+    add_file(command, FileUse::kWritten, "--page", options.page, "FILE.html",
+             "Write an HTML page: image, owners of pixels, loads, times by label, roofline, modelled and measured "
+             "times, build options; raya page makes the same page from a report. Like --profile, measures the device's "
+             "peak",
+             "Write the report as an HTML page");
+    attach_note(command.add_flag("--profile", options.profile,
+                                 "Print the number of launches and the times of each labelled command, the build "
+                                 "times, and which fraction of the device's measured peak each kernel reaches (the "
+                                 "roofline)"),
+                kBriefNote, "Print times by kernel and the roofline");
+    add_trace_options(command, options.trace);
+}
+
+CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<RenderCommand>& options) {
+    CLI::App* command = program.add_subcommand(
+        "render", "Render a scene (NFF, OBJ, PLY, glTF or STL) on a ring machine or the torus machine");
+    add_examples(*command, {{"raya render scenes/centre.nff -o centre.png",
+                             "Render on a ring of 256 PEs, in the scene's resolution"},
+                            {"raya render scenes/glass.nff --machine torus --size 64 --report glass.json -o glass.png",
+                             "Render a small image on a torus of 64 nodes, with a report"}});
+    command->callback([options] {});  // keeps the options
+    const OptionGroup group(*command, kFiles);
+    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE", kSceneHelp)->required();
+    add_render_command_options(*command, *options);
+    command->get_option("--output")->required();
+    return command;
+}
+
+void add_render_command(CLI::App& program, Ranks& ranks) {
+    const auto options = std::make_shared<RenderCommand>();
+    CLI::App* const command = declare_render_command(program, options);
+    command->callback([command, options, &ranks] { render(*command, *options, ranks); });
+}
+
+namespace {
+
 void check_exposure(const RenderCommand& command) {
-    constexpr double kMaxStops = 64;  // factors of 2^-64 to 2^64
-    if (!command.exposure) return;
-    if (!stores_8bit_codes(command.image))
+    if (command.exposure && !stores_8bit_codes(command.image))
         throw UserError(
             fmt::format("--exposure applies to 8-bit images, and {} has linear colours; leave it out, or name a .png, "
                         ".ppm, .tif or .jpg file",
                         command.image));
-    if (!(std::abs(*command.exposure) <= kMaxStops))
-        throw UserError(fmt::format("--exposure {}: must be -64..64 stops", *command.exposure));
 }
 
 void check_packets_name(const std::string& file) {
@@ -38,31 +347,28 @@ void check_packets_name(const std::string& file) {
             fmt::format("--packets {}: raya compresses this file with gzip; choose a name that ends in .csv.gz", file));
 }
 
-void check_replay(const CLI::App& parser, const TorusOptions& t) {
-    if (t.replay != "simgrid") throw UserError(fmt::format("--replay {}: must be simgrid", t.replay));
-    if (!t.packets.ends_with(".csv.gz"))
-        throw UserError(
-            "--replay simgrid writes FILE.xml and FILE.replay next to the packets: add --packets FILE.csv.gz");
-    const ReplayFiles files(t.packets);
-    check_files(parser, {{"--replay", files.platform}, {"--replay", files.replay}});
-}
-
-}  // namespace
-
-void check_output_files(const CLI::App& parser, const RenderCommand& command) {
+// Throws UserError for an unsupported name of an output file, and for options that do not apply to the output files.
+void check_output_files(const RenderCommand& command) {
     const std::string& packets = command.torus.packets;
     if (!find_launch())  // under mpirun, stdout may be a pseudoterminal although the output goes to a file
         for (const std::string& file : {command.image, command.cost, command.mask, packets})
             refuse_bytes_on_terminal(file);
     check_exposure(command);
     if (!packets.empty()) check_packets_name(packets);
-    if (!command.torus.replay.empty()) check_replay(parser, command.torus);
     if (!command.page.empty()) check_page_name("--page", command.page);
     if (!command.image.empty()) check_image_name(command.image, kImageExtensions);
     if (!command.cost.empty()) check_image_name(command.cost, kGreyImageExtensions);
     if (!command.mask.empty()) check_image_name(command.mask, kImageExtensions);
     if (!command.mask.empty() && command.render.antialias != AntialiasMethod::kSupersample)
         throw UserError("--mask requires supersampling: add --antialias supersample");
+}
+
+}  // namespace
+
+void check_render(const RenderCommand& command) {
+    check_trace(command.trace);
+    check_checkpoint_options(command.checkpoint);
+    check_output_files(command);
 }
 
 SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks) {
@@ -145,8 +451,6 @@ Roofline measured_roofline(RenderRun& run, const NumberFormat& format, const Ren
                             "device; fractions of the peak are unreliable",
                             100 * peak.scatter));
         Roofline measured = roofline(peak, kernels, result.commands);
-        if (const HostCounters* counters = run.recorder.host_counters())
-            measured.host_counts_unavailable = counters->unavailable();
         return measured;
     } catch (const DeviceError& error) {  // not rethrown: the render's figures are valid without a roofline
         none.unavailable = error.what();

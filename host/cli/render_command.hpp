@@ -1,27 +1,175 @@
 // The options of `raya render`, and the steps of a render that are the same for all machines: checks, report, output.
 #pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/array/render.hpp"
+#include "host/base/checkpoint.hpp"
 #include "host/base/log.hpp"
-#include "host/base/standard_streams.hpp"
-#include "host/cli/checkpoint_options.hpp"
+#include "host/base/whole_file.hpp"
+#include "host/cl/commands.hpp"
+#include "host/cli/options.hpp"
 #include "host/cli/render_options.hpp"
-#include "host/cli/render_run.hpp"
-#include "host/cli/scene_input.hpp"
-#include "host/cli/torus_options.hpp"
-#include "host/cli/view_options.hpp"
 #include "host/image/image_io.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/report/render_report.hpp"
-#include "host/report/roofline.hpp"
+#include "host/report/trace_file.hpp"
 #include "host/ring/ring_result.hpp"
 #include "host/torus/history.hpp"
 #include "host/torus/torus_result.hpp"
 
 namespace raya {
+
+// State that all images of one command share: the scene, the device, the progress bar and the recorder.
+
+// Checkpoints of long renders: --checkpoint, --resume, --checkpoint-every.
+
+/// The options as given on the command line. An empty `file` means no checkpoints.
+struct CheckpointOptions {
+    std::string file;
+    bool resume = false;
+    double every_s = 10;  // minimum seconds between two checkpoints
+};
+
+void add_checkpoint_options(CLI::App& command, CheckpointOptions& options);
+
+/// Throws UserError for an existing file that is not a checkpoint. Without --resume, also throws UserError for an
+/// existing checkpoint, because the render would overwrite hours of work.
+void check_checkpoint_options(const CheckpointOptions& options);
+
+/// Removes the checkpoint, if there is one. Call it after all outputs of the render are written.
+void remove_checkpoint(const CheckpointOptions& options);
+
+/// Saves and loads the checkpoints of a render.
+class CheckpointFile {
+  public:
+    explicit CheckpointFile(const CheckpointOptions& options);
+
+    /// Returns the callbacks with which the renderer saves and loads checkpoints; null without --checkpoint.
+    const Checkpointing* checkpointing() const { return options_.file.empty() ? nullptr : &callbacks_; }
+
+  private:
+    bool due();  // returns true if the next checkpoint is due
+    void save(const std::string& bytes);
+    void load(const std::function<RenderedPart(std::string_view bytes)>& read) const;
+
+    const CheckpointOptions& options_;
+    Checkpointing callbacks_;
+    Clock::time_point last_save_end_ = Clock::now();  // before the first save: time of construction
+    Clock::time_point due_at_;                        // time of the last call of due(), which precedes a save
+    double last_save_duration_s_ = 0;                 // of collecting and writing the state, seconds
+};
+
+// Records the host's spans and clock offsets of a render for --profile and --trace, and writes the trace.
+
+/// The options as given on the command line. An empty `file` means no trace.
+struct TraceOptions {
+    std::string file;
+    std::size_t events = 1'000'000;  // maximum number of events
+    std::size_t pes = 16;            // number of PEs or nodes that get a track
+};
+
+/// Adds --trace, --trace-events and --trace-pes.
+void add_trace_options(CLI::App& command, TraceOptions& trace);
+
+/// Throws UserError if the file's name does not end in .json or .json.gz.
+void check_trace(const TraceOptions& trace);
+
+class RenderRecorder {
+  public:
+    /// `profile`: records the time of each build. Without trace and profile, the recorder has only the spans that its
+    /// owner adds to spans().
+    RenderRecorder(const TraceOptions& trace, bool profile) : trace_(trace), profile_(profile) {}
+
+    bool traces() const { return !trace_.file.empty(); }
+    SpanLog& spans() { return spans_; }
+
+    /// Records the session's spans from now on. For a trace, measures the offset of the
+    /// device's clock to the host's, and of this rank's clock to rank 0's.
+    void observe(Session& session, Ranks& ranks);
+
+    /// Sends the records of the other ranks to rank 0. Every rank must call gather().
+    void gather(Session& session, Ranks& ranks);
+
+    /// Returns the build time of each program, in order of the builds.
+    std::vector<ProgramBuild> builds() const;
+
+    /// With --trace: writes the host's spans, the commands in the session's profile, and the events that `add_machine`
+    /// adds. Warns if events beyond --trace-events are omitted.
+    void write(Session& session, const std::function<void(TraceFile&)>& add_machine);
+
+  private:
+    void align_clocks(Ranks& ranks);
+    void add_measured_events(TraceFile& file, Session& session, std::uint32_t rank);
+
+    const TraceOptions& trace_;
+    bool profile_;
+    std::uint64_t begin_ns_ = host_clock_ns();  // host's clock at time 0 of the trace
+    SpanLog spans_;
+    ClockOffset device_clock_offset_;  // offset of the device's clock to the host's
+    RankClock rank_clock_;             // offset of this rank's clock to rank 0's
+    bool has_several_ranks_ = false;
+    std::vector<TraceFile::Part> parts_of_other_ranks_;  // on rank 0: events of the other ranks
+    Json all_rank_clocks_ = Json::array();               // offset and uncertainty of each rank's clock
+};
+
+struct RenderCommand;
+
+/// The progress bar of a render, or the caller's callback instead of it.
+class RenderProgress {
+  public:
+    RenderProgress(bool shows_bar, const std::string& label) : bar_(std::in_place, shows_bar, label) {}
+    /// Calls `callback` with the progress instead of showing a bar.
+    explicit RenderProgress(ProgressCallback callback) : callback_(std::move(callback)) {}
+
+    /// Sets the bar's label.
+    void stage(const std::string& label) {
+        if (bar_) bar_->stage(label);
+    }
+
+    /// Returns the callback that shows the progress; empty if the progress is not shown.
+    ProgressCallback callback();
+
+    /// Erases the bar, so that the summary can be printed.
+    void end() { bar_.reset(); }
+
+  private:
+    std::optional<ProgressBar> bar_;
+    ProgressCallback callback_;
+};
+
+/// A command's scene, session and progress.
+class RenderRun {
+  public:
+    /// Reads the scene on rank 0. Throws UserError.
+    RenderRun(const RenderCommand& command, Ranks& ranks);
+
+    /// Uses an existing scene, device and session, on a single rank. Device and session must outlive this object.
+    RenderRun(const RenderCommand& command, SceneInput scene, const cl::Device& device, Session& session);
+
+    /// Returns the session on the device. The first call loads tuned values and image encoders, and opens the device.
+    Session& session();
+    const cl::Device& device() const { return device_; }  // valid after the first call of session()
+
+    Ranks& ranks;
+    RenderRecorder recorder;
+    RenderProgress progress;
+    RenderOptions options;  // `accel`: with several ranks, rank 0's choice for the scene
+    SceneInput input;       // input.scene.view: the view of the current image
+
+  private:
+    Timing timing_;
+    std::vector<std::string> image_files_;  // session() loads the encoders of these files
+    std::unique_ptr<ScopedTunedSource> tuned_;
+    cl::Device device_;
+    std::optional<Session> opened_session_;
+    Session* session_ = nullptr;
+};
 
 struct RenderCommand {
     RenderOptions render;
@@ -30,7 +178,7 @@ struct RenderCommand {
     std::optional<double> exposure;               // stops: colours are multiplied by 2^exposure
     CheckpointOptions checkpoint;
     TraceOptions trace;
-    bool profile = false, counters = false;
+    bool profile = false;
     bool prints = true;           // print the report's summary and the table of --profile
     ProgressCallback progress{};  // empty: progress bar on a terminal
     PixelSubset pixels{};         // torus: pixels for which primary rays are traced
@@ -66,7 +214,7 @@ struct Render {
     std::vector<PacketRecord> packets{};  // with keep_packets: every packet between nodes
     std::optional<TorusSettings> torus_settings{};
     std::uint32_t lights = 0;                 // number of the scene's lights
-    std::optional<History> history{};         // history of the torus's messages, with --async or --replay
+    std::optional<History> history{};         // history of the torus's messages, with --async
     std::vector<std::uint64_t> cycles{};      // with keep_packets: [superstep][node]: modelled cycles
     std::vector<std::uint64_t> link_words{};  // with keep_packets: [superstep][node][RAYA_LINKS]: number of words sent
 
@@ -96,14 +244,11 @@ void add_render_command_options(CLI::App& command, RenderCommand& options);
 CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<RenderCommand>& options);
 
 /// Throws UserError if options are incompatible or a file is not writable.
-void check_render(const CLI::App& parser, const RenderCommand& command);
+void check_render(const RenderCommand& command);
 
 /// Rank 0 reads the scene and applies the view options. Other ranks get the scene's name and resolution, without
 /// objects. With several ranks and a ring machine, sets `options.accel` on all ranks to rank 0's choice.
 SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks);
-
-/// Throws UserError for an unsupported name of an output file, and for options that do not apply to the output files.
-void check_output_files(const CLI::App& parser, const RenderCommand& command);
 
 /// Adds a small copy of `image` to the report, with the command's exposure.
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image);

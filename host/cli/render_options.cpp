@@ -4,8 +4,6 @@
 
 #include "host/accel/bvh.hpp"
 #include "host/cli/options.hpp"
-#include "host/cli/parse.hpp"
-#include "host/cli/scene_input.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
 
@@ -56,9 +54,10 @@ void add_antialias_options(CLI::App& command, RenderOptions& o) {
             "the same image; default: ring"),
         kRingOnlyNote, kNoNeighbours);
     attach_note(
-        add_value(command, "--threshold", o.threshold,
-                  "Supersample pixels whose colour, clamped to 0..1, differs from a neighbour's by T or more, 0..1; "
-                  "default: 0.125")
+        in_range(add_value(command, "--threshold", o.threshold,
+                           "Supersample pixels whose colour, clamped to 0..1, differs from a neighbour's by T or more, "
+                           "0..1; default: 0.125"),
+                 0, 1)
             ->type_name("T"),
         kRingOnlyNote, kNoNeighbours);
     attach_note(
@@ -136,9 +135,11 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
                           "Acceleration structure in each PE's memory")
                     ->type_name("none|bvh|grid[:AxBxC]"),
                 kRingOnlyNote, "its voxels are the grid; refine it with --voxels AxBxC");
-    add_value(command, "--pe-memory", o.pe_memory,
-              "Memory in bytes of a PE, or of a torus node with all its buffers; default: the machine's, 32768 on spa, "
-              "4194304 on torus, no limit on grande")
+    in_range(
+        add_value(command, "--pe-memory", o.pe_memory,
+                  "Memory in bytes of a PE, or of a torus node with all its buffers; default: the machine's, 32768 "
+                  "on spa, 4194304 on torus, no limit on grande"),
+        1)
         ->type_name("BYTES");
     group.next(kKernels);
     add_value(
@@ -148,13 +149,14 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
         "Number format: fp32, spa22 (e6m15) or eXmY[t]")
         ->type_name("NAME");
     add_device_option(command, o.device);
-    add_value(command, "--lanes", o.lanes,
-              "Number V of rays per work-item: 1, 4, 8 or 16; default: as raya tune stored it, else the width of "
-              "the device's float vectors")
+    add_choice(command, "--lanes", o.lanes, Choices<std::uint32_t>{{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}},
+               "Number V of rays per work-item: 1, 4, 8 or 16; default: as raya tune stored it, else the width of the "
+               "device's float vectors")
         ->type_name("V");
-    add_value(command, "--group", o.group,
-              "Number L of work-items in the work-group that simulates a PE, 1..1024; default: as raya tune stored it, "
-              "else 1 on a CPU, 128 elsewhere")
+    in_range(add_value(command, "--group", o.group,
+                       "Number L of work-items in the work-group that simulates a PE, 1..1024; default: as raya tune "
+                       "stored it, else 1 on a CPU, 128 elsewhere"),
+             1, 1024)
         ->type_name("L");
     add_tuned_option(command, o.no_tuned);
     add_kernel_source_options(command, o.kernel_dir);
@@ -173,8 +175,6 @@ Antialias antialias_settings(const RenderOptions& o) {
     if (antialias.method == AntialiasMethod::kNone && o.exchange)
         throw UserError("--exchange requires anti-aliasing: add --antialias filter or supersample");
     antialias.threshold = o.threshold.value_or(antialias.threshold) + 0.0;  // + 0.0 turns -0 into 0
-    if (!(antialias.threshold >= 0 && antialias.threshold <= 1))
-        throw UserError(fmt::format("--threshold {}: must be 0..1", antialias.threshold));
     return antialias;
 }
 
@@ -238,6 +238,25 @@ Accel accel_of(const RenderOptions& o, const RingSettings& settings, const Scene
     return use_default ? settings.machine.accel : Accel{};
 }
 
+/// Returns --format, by default the machine's format.
+NumberFormat format_of(const RenderOptions& o, const Machine& machine) {
+    return o.format.empty() ? machine.format : parse_format(o.format);
+}
+
+/// Returns --lanes and --group (0: not given) and --kernel-dir.
+KernelChoice kernel_choice(const RenderOptions& o) {
+    KernelChoice choice;
+    choice.lanes = o.lanes.value_or(0);
+    choice.group_size = o.group.value_or(0);
+    choice.sources.folder = o.kernel_dir;
+    return choice;
+}
+
+/// Returns --pe-memory, the memory of a PE in bytes, by default the machine's. Empty: no limit.
+std::optional<std::uint64_t> pe_memory_of(const RenderOptions& o, const Machine& machine) {
+    return o.pe_memory ? o.pe_memory : machine.pe_memory_bytes;
+}
+
 }  // namespace
 
 ImageSize image_size(const RenderOptions& o, const Scene& scene) {
@@ -247,24 +266,6 @@ ImageSize image_size(const RenderOptions& o, const Scene& scene) {
         throw UserError(
             fmt::format("--size {}x{}: both sides must be 1..{} pixels", size.width, size.height, kMaxSide));
     return size;
-}
-
-std::optional<std::uint64_t> pe_memory_of(const RenderOptions& o, const Machine& machine) {
-    if (o.pe_memory == 0u) throw UserError("--pe-memory 0: must be 1 byte or more");
-    return o.pe_memory ? o.pe_memory : machine.pe_memory_bytes;
-}
-
-NumberFormat format_of(const RenderOptions& o, const Machine& machine) {
-    return o.format.empty() ? machine.format : parse_format(o.format);
-}
-
-KernelChoice kernel_choice(const RenderOptions& o) {
-    if (o.lanes == 0u || o.group == 0u) throw UserError("--lanes and --group must be 1 or more");
-    KernelChoice choice;
-    choice.lanes = o.lanes.value_or(0);
-    choice.group_size = o.group.value_or(0);
-    choice.sources.folder = o.kernel_dir;
-    return choice;
 }
 
 RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
@@ -283,6 +284,117 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     settings.accel = accel_of(o, settings, scene);
     settings.machine.pe_memory_bytes = pe_memory_of(o, settings.machine);
     settings.kernels = kernel_choice(o);
+    return settings;
+}
+
+namespace {
+
+using Sides = std::array<std::uint32_t, 3>;
+
+constexpr const char* kNoNodes =
+    "that machine is a ring of PEs without voxels; leave it out, or choose --machine torus";
+
+}  // namespace
+
+void add_torus_options(CLI::App& command, TorusOptions& t) {
+    const OptionGroup group(command, kTorusMachine);
+    CLI::Option* machine = command.get_option("--machine");
+    machine->description(machine->get_description() +
+                         "; torus: nodes of 4 MB that hold voxels of the scene, see the options under Torus machine");
+    std::vector<std::string> machine_names;
+    for (const Machine& known : machines()) machine_names.push_back(known.name);
+    offer_choices(machine, machine_names);
+    const auto add = [&](const std::string& name, auto& value, const std::string& text, const std::string& type,
+                         const std::string& brief = "") {
+        return add_value(command, name, value, text, brief)->type_name(type);
+    };
+    add("--nodes", t.nodes, "Number of nodes along x, y and z of the scene, at most 65,536 in total", "IxJxK",
+        "Nodes of the torus along x, y and z")
+        ->default_str("4x4x4");
+    add("--voxels", t.voxels,
+        "Number of equal voxels along x, y and z that divide the scene's box, at most 1024 along an axis and 2^24 in "
+        "total; more voxels than nodes are assigned cyclically, fewer voxels leave nodes empty; default: one "
+        "for each node",
+        "AxBxC");
+    add_choice(
+        command, "--links", t.links, Choices<Links>{{"torus3d", Links::kTorus3d}, {"torus2d", Links::kTorus2d}},
+        "Links of a node: torus3d: six; torus2d: four, as on a T805, in a 2-D torus with the slabs of nodes side "
+        "by side");
+    add_choice(command, "--inject", t.inject, Choices<Injection>{{"root", Injection::kRoot}, {"all", Injection::kAll}},
+               "Source of the primary rays: root: the root creates all rays and sends each to the node where the ray "
+               "enters the scene's box; all: each node creates the rays that enter the box at its voxels");
+    add_choice(command, "--returns", t.one_return_per_ray, Choices<bool>{{"terms", false}, {"rays", true}},
+               "Modelled contents of a return packet: terms: one contribution of a ray (ambient term, light from one "
+               "light, or background); rays: all contributions of a ray, in 6 words sent after the ray's shadow rays, "
+               "as in Yoshitani & Yamazaki");
+    in_range(add("--packet-words", t.packet_words,
+                 "Modelled size of a ray packet in 32-bit words, 16..4096, for the time of its creation and transfers; "
+                 "the renderer itself transfers 16 words, Yoshitani & Yamazaki use 22 and more",
+                 "N"),
+             RAYA_PACKET_WORDS, 4096)
+        ->default_str("16");
+    in_range(
+        add("--queue", t.queue,
+            "Maximum number of packets queued in a node; if queues deadlock, the render is repeated with twice the "
+            "length, with a warning; default: as many as fit in memory, at most 8192",
+            "N"),
+        1);
+    add_file(command, FileUse::kWritten, "--packets", t.packets, "FILE.csv.gz",
+             "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), "
+             "compressed; -: "
+             "stdout; see docs/packets.md",
+             "Write every packet between nodes of the torus");
+    command.add_flag("--async", t.async,
+                     "Also simulate the machine without supersteps, whose nodes compute while links transfer: raya "
+                     "reports this modelled time, the lower bound and the time with supersteps");
+}
+
+void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine) {
+    for (CLI::Option* option : const_cast<CLI::App&>(command).get_options()) {
+        std::string reason = note_of(*option, kRingOnlyNote);
+        if (machine.kind == MachineKind::kRing) {
+            reason = option->get_group() == kTorusMachine ? kNoNodes : "";
+            if (option->get_name() == "--nodes") reason = "its PEs form a ring; set their number with --pes P";
+        }
+        if (!reason.empty() && !option->empty() && option->results().front() != "none")
+            throw UserError(fmt::format("{} {} with --machine {}: {}", option->get_name(), option->results().front(),
+                                        machine.name, reason));
+    }
+}
+
+namespace {
+
+Sides voxels_of(const TorusOptions& t, const Sides& nodes) {
+    if (t.voxels.empty()) return nodes;
+    const Sides voxels = parse_three_sides("--voxels", t.voxels, "at most 2^24 in total");
+    // Each side is at most 10^6, so the 64-bit product does not overflow.
+    if (std::uint64_t{voxels[0]} * voxels[1] * voxels[2] > kMaxPartitionVoxels)
+        throw UserError(fmt::format("--voxels {}: must be at most 2^24 in total", t.voxels));
+    return voxels;
+}
+
+}  // namespace
+
+TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, const Scene& scene) {
+    TorusSettings settings;
+    settings.machine = machine_named(o.machine);
+    const ImageSize size = image_size(o, scene);
+    settings.width = size.width;
+    settings.height = size.height;
+    const Sides nodes =
+        t.nodes.empty() ? kDefaultNodes : parse_three_sides("--nodes", t.nodes, "at most 65,536 in total");
+    settings.links = t.links;
+    settings.torus = make_torus(nodes, settings.links);
+    settings.voxels = voxels_of(t, nodes);
+    settings.inject = t.inject;
+    settings.packets = {t.packet_words.value_or(RAYA_PACKET_WORDS), t.one_return_per_ray};
+    settings.queue = t.queue.value_or(0);
+    settings.memory_bytes = pe_memory_of(o, settings.machine);
+    settings.bounces = o.bounces.value_or(settings.machine.bounces);
+    settings.format = format_of(o, settings.machine);
+    settings.sampling = o.sampling;
+    settings.kernels = kernel_choice(o);
+    settings.history = t.async;
     return settings;
 }
 

@@ -4,14 +4,11 @@
 #include <optional>
 #include <string>
 
-#include "host/cli/view_options.hpp"
+#include "host/cli/parse.hpp"
 #include "host/model/mapping_rule.hpp"
 #include "host/ring/ring_plan.hpp"
 #include "host/scene/scene.hpp"
-
-namespace CLI {
-class App;
-}
+#include "host/torus/topology.hpp"
 
 namespace raya {
 
@@ -44,15 +41,32 @@ void add_render_options(CLI::App& command, RenderOptions& options, bool antialia
 
 /// Returns --size, by default the scene's resolution. Width and height are 1..16384 pixels.
 ImageSize image_size(const RenderOptions& options, const Scene& scene);
-/// Returns --format, by default the machine's format.
-NumberFormat format_of(const RenderOptions& options, const Machine& machine);
-/// Returns --lanes and --group (0: not given) and --kernel-dir.
-KernelChoice kernel_choice(const RenderOptions& options);
-/// Returns --pe-memory, the memory of a PE in bytes, by default the machine's. Empty: no limit.
-std::optional<std::uint64_t> pe_memory_of(const RenderOptions& options, const Machine& machine);
 
 /// Returns the settings of the ring renderer. Throws UserError for an option out of range, or a machine that is not a
 /// ring.
 RingSettings ring_settings(const RenderOptions& options, const Scene& scene);
+
+// Options of the torus machine.
+
+/// The options as given on the command line. An empty value means the default.
+struct TorusOptions {
+    std::string nodes, voxels, packets;
+    Links links = Links::kTorus3d;
+    Injection inject = Injection::kAll;
+    bool one_return_per_ray = false;
+    std::optional<std::uint32_t> packet_words;
+    std::optional<std::uint32_t> queue;  // queue length in packets
+    bool async = false;
+};
+
+/// Adds the options, and adds the torus to the machines in the help of --machine. Call this function after
+/// add_render_options().
+void add_torus_options(CLI::App& command, TorusOptions& torus);
+
+/// Throws UserError with option, reason and remedy if a given option does not apply to the machine.
+void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine);
+
+/// Returns the settings of the torus renderer. Throws UserError for an option out of range.
+TorusSettings torus_settings(const RenderOptions& options, const TorusOptions& torus, const Scene& scene);
 
 }  // namespace raya

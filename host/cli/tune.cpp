@@ -8,16 +8,14 @@
 #include <filesystem>
 #include <memory>
 
-#include "host/base/clock.hpp"
 #include "host/base/log.hpp"
-#include "host/base/standard_streams.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
-#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_options.hpp"
-#include "host/cli/scene_input.hpp"
 #include "host/error.hpp"
 #include "host/model/number_format.hpp"
 #include "host/report/table.hpp"
@@ -80,8 +78,6 @@ TunedEntry entry_of(const Tuning& tuning, const std::string& scene) {
 }
 
 void tune_device(const CLI::App& parser, TuneCommand& command) {
-    if (!(command.seconds >= 1 && command.seconds <= 86400))
-        throw UserError(fmt::format("--seconds {}: must be 1..86400 seconds", command.seconds));
     Warnings warnings;
     warn_of_build_options(warnings);
     TrialSetup& render = command.render;
@@ -142,7 +138,8 @@ void add_rendered_options(CLI::App& command, TuneCommand& options) {
         ->type_name("P")
         ->capture_default_str();
     add_device_option(command, render.device);
-    add_value(command, "--seconds", options.seconds, "Duration of the search in seconds, 1..86400")
+    in_range(add_value(command, "--seconds", options.seconds, "Duration of the search in seconds, 1..86400"), 1, 86'400,
+             "seconds")
         ->type_name("S")
         ->capture_default_str();
     group.next(kKernels);

@@ -1,29 +1,29 @@
 // raya verify: checks a device, its driver and its compiler.
-#include "host/verify/verify.hpp"
+#include "host/cli/verify.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cstdio>
 #include <functional>
 #include <future>
-#include <map>
+#include <iomanip>
 #include <memory>
+#include <sstream>
 
 #include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
-#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
-#include "host/cli/scene_input.hpp"
-#include "host/cli/verify_output.hpp"
 #include "host/error.hpp"
-#include "host/verify/bisect.hpp"
-#include "host/verify/device_checks.hpp"
+#include "host/model/number_format.hpp"
 #include "host/verify/reproduce.hpp"
 #include "host/verify/supervisor.hpp"
+#include "host/verify/verify.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -31,10 +31,10 @@ namespace {
 // A check that takes longer counts as hung: ten build budgets. A check builds at most six programs (test_verify.cpp),
 // each within the budget; the rest is for its launches.
 constexpr std::chrono::duration<double> kDefaultTimeout = 10 * kBuildBudget;
-constexpr double kMaxTime_s = 1e6;
+constexpr double kMaxTimeS = 1e6;
 
 struct VerifyCommand {
-    std::string device, report, page, junit, tap, expect, reproduce, bisect, kernel_dir, only, skip, shard, as;
+    std::string device, report, page, junit, expect, reproduce, bisect, kernel_dir, only, skip, shard, as;
     std::uint32_t lanes = 0, repeat = 1;
     double timeout_s = kDefaultTimeout.count(), soak_s = 0;
     std::uint64_t seed = 1;
@@ -42,6 +42,34 @@ struct VerifyCommand {
 
     Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
 };
+
+/// Parses a command such as "render scene.nff --lanes 8"; "raya" may precede it. Quotes work as in a shell. Throws
+/// UserError, with --as, if `raya render` would refuse the options.
+RenderCommand parse_render(const std::string& text) {
+    std::vector<std::string> words;  // those with blanks are in quotes
+    std::istringstream in(text);
+    for (std::string word; in >> std::ws && !in.eof(); words.push_back(word))
+        in >> std::quoted(word, in.peek() == '\'' ? '\'' : '"');
+    if (!words.empty() && words.front() == "raya") words.erase(words.begin());
+    if (words.empty() || words.front() != "render")
+        throw UserError(fmt::format("--as \"{}\": must be a render, such as \"render scene.nff --lanes 8\"", text));
+    CLI::App program("", "raya");
+    program.formatter(std::make_shared<HelpFormatter>());
+    const auto command = std::make_shared<RenderCommand>();
+    CLI::App* const parser = declare_render_command(program, command);
+    parser->get_option("--output")->required(false);
+    add_verbosity_options(program, Ranks::single());
+    try {
+        parse_arguments(program, words);
+        refuse_options_of_other_machines(*parser, machine_named(command->render.machine));
+    } catch (const UserError& error) {
+        throw UserError(fmt::format("--as: {}", error.what()));
+    } catch (const CLI::ParseError&) {  // --help
+        throw UserError("--as: must be a render without --help");
+    }
+    if (is_standard_stream(command->render.scene)) throw UserError("--as: the scene must be a file, not stdin");
+    return *command;
+}
 
 // Sets the options that the render of --as has, too.
 void take_render(VerifyCommand& command) {
@@ -141,9 +169,6 @@ void run_verify(VerifyCommand command) {
     take_render(command);
     if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
     if (!command.page.empty()) check_page_name("--page", command.page);
-    for (const auto& [option, seconds] : {std::pair{"--timeout", command.timeout_s}, {"--soak", command.soak_s}})
-        if (!(seconds >= 0 && seconds <= kMaxTime_s))
-            throw UserError(fmt::format("{}: must be a time from 0 s to {:.0f} s", option, kMaxTime_s));
     const VerifySettings settings = settings_of(command);
     if (command.list) return list_checks(command, settings);
     if (!command.reproduce.empty()) check_case_folder(command.reproduce);
@@ -159,7 +184,6 @@ void run_verify(VerifyCommand command) {
         warn(text + "; raya verify --full --list prints the names of all checks");
     write_report_and_page({command.report, command.page}, verify_report(device_checks, settings));
     if (!command.junit.empty()) write_whole_file(command.junit, junit_report("raya verify", device_checks));
-    if (!command.tap.empty()) write_whole_file(command.tap, tap_report(device_checks));
     if (std::ranges::all_of(device_checks, &DeviceChecks::all_passed)) return;
     if (device_checks.size() == 1 && settings.soak_s == 0)
         analyse_first_failure(command, device_checks.front(), settings);
@@ -201,18 +225,23 @@ void add_verify_command(CLI::App& program) {
     add_value(*command, "--skip", options->skip, "Run no check whose \"LAYER NAME\" contains this text, as for --only")
         ->type_name("TEXT");
     command->add_flag("--list", options->list, "Print the names of the selected checks, and run none");
-    add_value(*command, "--repeat", options->repeat, "Number of runs of each check; it fails if one of them fails")
-        ->check(CLI::Range(1, 1'000'000))
+    in_range(
+        add_value(*command, "--repeat", options->repeat, "Number of runs of each check; it fails if one of them fails"),
+        1, 1e6)
         ->type_name("N");
     add_value(*command, "--shard", options->shard,
               "Run the I-th of N parts of the selected checks, to divide them over N jobs")
         ->type_name("I/N");
-    add_value(*command, "--timeout", options->timeout_s,
-              "Seconds after which a check counts as failed and its process is ended, builds included; 0: never")
+    in_range(add_value(*command, "--timeout", options->timeout_s,
+                       "Seconds after which a check counts as failed and its process is ended, builds included; 0: "
+                       "never"),
+             0, kMaxTimeS, "seconds")
         ->type_name("S")
         ->capture_default_str();
-    add_value(*command, "--soak", options->soak_s,
-              "Run random checks with random numbers of lanes for this time, such as 60s, 30m, 2h; print only failures")
+    in_range(add_value(*command, "--soak", options->soak_s,
+                       "Run random checks with random numbers of lanes for this time, such as 60s, 30m, 2h; print only "
+                       "failures"),
+             0, kMaxTimeS, "seconds")
         ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}))
         ->type_name("TIME");
     add_value(*command, "--seed", options->seed, "Seed of --soak: the same seed gives the same sequence of checks")
@@ -232,7 +261,6 @@ void add_verify_command(CLI::App& program) {
     add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
              "Write all checks and their failures as JSON; -: stdout; the lines about the checks then go to stderr");
     add_file(*command, FileUse::kWritten, "--junit", options->junit, "FILE.xml", "Write the results as JUnit XML");
-    add_file(*command, FileUse::kWritten, "--tap", options->tap, "FILE", "Write the results as TAP, version 14");
     add_file(
         *command, FileUse::kWrittenFolder, "--reproduce", options->reproduce, "DIR",
         "If a check fails: write the kernel launch that computes wrong words as a self-contained case, a C program "
@@ -247,6 +275,133 @@ void add_verify_command(CLI::App& program) {
              "Write all checks, and the first failure in full, as an HTML page; raya page makes the same page from a "
              "report");
     command->callback([options] { run_verify(*options); });
+}
+
+namespace {
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+std::string first_wrong(const Verdict& verdict) {
+    const Fault& f = verdict.fault;
+    if (f.where.empty() || f.got.empty()) return first_line(verdict.result);
+    return fmt::format("{}: expected {}, got {}", first_line(f.where), first_line(f.expected), first_line(f.got));
+}
+
+}  // namespace
+
+std::string SoakCounts::add(const Check& check, double seconds) {
+    Count& count = counts_[check.layer + " " + check.name];
+    ++count.runs;
+    const Outcome outcome = check.verdict.outcome;
+    if (outcome != Outcome::kFail && outcome != Outcome::kUnexpectedPass) return "";
+    const std::string wrong = first_wrong(check.verdict);
+    if (count.failures++ == 0) {
+        count.first_s = seconds;
+        count.first_wrong = wrong;
+    }
+    count.repeats += wrong == count.first_wrong;
+    const std::string lines = check_lines(check);
+    return fmt::format("after {:.1f} s: {}", seconds, count.failures == 1 ? lines : first_line(lines) + "\n");
+}
+
+std::string SoakCounts::summary() const {
+    std::string lines;
+    for (const auto& [name, count] : counts_)
+        if (count.failures > 0)
+            lines +=
+                fmt::format("{}: failed {} of {}, first after {:.1f} s; {} of {} with the same first wrong word: {}\n",
+                            name, count.failures, counted(count.runs, "time"), count.first_s, count.repeats,
+                            counted(count.failures, "failure"), count.first_wrong);
+    return lines;
+}
+
+namespace {
+
+// Returns the text "57 checks passed, 0 failed, 2 skipped in 12.3 s".
+std::string closing_text(const std::vector<Check>& checks, double seconds) {
+    const std::size_t expected = count_of(checks, Outcome::kExpectedFail),
+                      unexpected = count_of(checks, Outcome::kUnexpectedPass);
+    return fmt::format("{} passed, {} failed, {} skipped{}{} in {:.1f} s",
+                       counted(count_of(checks, Outcome::kPass), "check"), count_of(checks, Outcome::kFail),
+                       count_of(checks, Outcome::kSkip),
+                       expected ? fmt::format(", {} failed as expected", expected) : "",
+                       unexpected ? fmt::format(", {} passed unexpectedly", unexpected) : "", seconds);
+}
+
+void print(const std::string& lines) {
+    clear_status();
+    fmt::print("{}", lines);
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+DeviceOutput::DeviceOutput(const VerifySettings& settings, std::size_t index) : settings_(settings), index_(index) {}
+
+void DeviceOutput::device(const DeviceChecks& device, const std::vector<std::string>& unusable_devices,
+                          std::size_t devices) {
+    device_count_ = devices;
+    if (soaks() && devices > 1) prefix_ = device.name + ": ";
+    if (is_quiet()) return;
+    if (index_ == 0)
+        for (const std::string& line : unusable_devices) print(line + "\n");
+    print(fmt::format("{} ({}, driver {})\n", device.name, device.platform, device.driver));
+}
+
+void DeviceOutput::running(const std::string& layer, const std::string& name, double seconds) const {
+    if (shows_progress()) show_status(fmt::format("{}running {} {} ... {:.0f} s", prefix_, layer, name, seconds));
+}
+
+void DeviceOutput::finished(const Check& check) {
+    std::string lines;
+    if (soaks())
+        lines = counts_.add(check, seconds_since(start_));
+    else if (!is_quiet() || is_unwanted(check.verdict.outcome))
+        lines = check_lines(check);
+    if (!lines.empty()) print(prefix_ + lines);
+}
+
+void DeviceOutput::ended(const DeviceChecks& all) const {
+    std::string lines;
+    if (soaks()) lines = fmt::format("{}random checks with --seed {}\n", counts_.summary(), settings_.seed);
+    if (!is_quiet() || device_count_ == 1 || !all.all_passed())
+        lines += fmt::format("{}: {}\n", all.name, closing_text(all.checks, all.seconds));
+    if (!lines.empty()) print(lines);
+}
+
+void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
+    std::vector<Check> checks;
+    double seconds = 0;
+    for (const DeviceChecks& device : device_checks) {
+        checks.insert(checks.end(), device.checks.begin(), device.checks.end());
+        seconds += device.seconds;
+    }
+    fmt::print("{}: {}\n", counted(device_checks.size(), "device"), closing_text(checks, seconds));
+}
+
+Json verify_report(const std::vector<DeviceChecks>& device_checks, const VerifySettings& settings) {
+    Json devices = Json::array();
+    for (const DeviceChecks& device : device_checks) devices.push_back(to_json(device));
+    Json report = {{"kind", kVerifyReportKind}, {"program", name_and_version()}, {"depth", depth_name(settings.depth)}};
+    if (!settings.as.empty()) report["as"] = settings.as;
+    report["devices"] = devices;
+    return report;
+}
+
+RenderCase render_case(const std::string& text) {
+    const RenderCommand command = parse_render(text);
+    Scene scene = read_scene(command.render.scene, command.render.strict).scene;
+    change_view(command.render.view, scene);
+    const ImageSize size = image_size(command.render, scene);
+    const auto settings = [command](const Scene& other, const ImageSize& other_size) -> RenderCase::Settings {
+        RenderOptions options = command.render;
+        options.size = fmt::format("{}x{}", other_size.width, other_size.height);
+        if (machine_named(options.machine).kind == MachineKind::kTorus)
+            return torus_settings(options, command.torus, other);
+        return ring_settings_of(command, options, other);
+    };
+    return {std::move(scene), size, settings,
+            std::shared_ptr<ScopedTunedSource>(new ScopedTunedSource(use_tuned(command.render.no_tuned)))};
 }
 
 }  // namespace raya

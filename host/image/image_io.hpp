@@ -2,14 +2,92 @@
 // same bytes. PPM and PFM need no library.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "host/image/encoder.hpp"
-#include "host/image/image.hpp"
 
 namespace raya {
+
+// Images in memory, and the hash of an image.
+
+/// A colour image: linear, unclamped, row-major, row 0 on top, 3 floats (red, green, blue) per pixel.
+struct Image {
+    int width = 0;   // pixels
+    int height = 0;  // pixels
+    std::vector<float> rgb;
+};
+
+/// One number per pixel, such as its modelled cost: row-major, row 0 on top.
+struct GreyImage {
+    int width = 0;   // pixels
+    int height = 0;  // pixels
+    std::vector<float> values;
+};
+
+/// Returns the XXH3 hash (128 bits, as 32 lower-case hexadecimal digits) of width, height and the bits of all floats,
+/// as 32-bit little-endian words on any machine. Because bits are hashed, the hashes of -0 and +0 differ, and so do
+/// those of NaNs with different bits.
+std::string pixel_hash(const Image& image);
+
+// Conversion of linear colours to 8-bit codes of image files: exposure and transfer curve (sRGB, IEC
+// 61966-2-1, or a power).
+
+/// borders[k]: the linear value at which the nearest code changes from k to k + 1. Its encoded value is
+/// (k + 1/2) / 255.
+using CodeBorders = std::array<double, 255>;
+
+/// Returns the nearest code on the sRGB curve. The code follows from comparisons with the 255 borders, which are
+/// computed with the C library's pow(). The code is the same on every machine, because the relative error of pow() is
+/// only about 10^-16, and the relative distance of every float from every border is more than 10^-11.
+std::uint8_t srgb_code(float linear);
+
+/// Returns the linear value of a code on the sRGB curve.
+float srgb_light(std::uint8_t code);
+
+/// Converts pixels to codes: multiplies by 2^exposure, clips to 0..1, and applies the sRGB curve. A NaN component
+/// counts as 0, an infinite one as the largest float. The result is the same on every machine, except for values at the
+/// border of two codes, which depend on the rounding of exp2().
+class ToneCodes {
+  public:
+    explicit ToneCodes(double exposure = 0);
+
+    /// Returns the codes of one pixel. `rgb`: 3 linear values, red, green and blue.
+    std::array<std::uint8_t, 3> operator()(const float* rgb) const;
+
+  private:
+    double factor_;
+    static constexpr int kCells = 4096;
+    std::array<std::uint8_t, kCells + 1> codes_;  // [k]: the code of k / kCells; a search from there takes few steps
+};
+
+// A PNG encoder that does not need OpenImageIO, for images in HTML pages and reports.
+
+/// Returns the bytes of a PNG file (ISO/IEC 15948) without attributes. It stores the 8-bit sRGB code nearest to each
+/// value clamped to 0..1, as write_image() does by default. Throws std::logic_error if `image` has no pixels
+/// or does not have 3 floats per pixel.
+std::string plain_png(const Image& image);
+
+// Reduced images for reports and pages.
+
+inline constexpr int kPreviewSide = 256;  // default maximum of a preview's longer side, pixels
+
+/// Returns the length of one side of a preview. All lengths are in pixels. `image_side`: the same side of the image;
+/// `longer_side`: the image's longer side; `max_side`: maximum for the preview's longer side. Both sides are reduced by
+/// the same factor, but to at least 1 pixel. If `longer_side` is at most `max_side`, the size does not change.
+int preview_side(int image_side, int longer_side, int max_side = kPreviewSide);
+
+/// Reduces an image to at most `max_side` pixels per side and keeps its proportions. Each pixel of the result is the
+/// mean of the pixels that it covers, after clamping them to 0..1 (NaN: 0), in linear light. An image that is small
+/// enough is only clamped. Throws std::logic_error if `image` has no pixels.
+Image preview_of(const Image& image, int max_side = kPreviewSide);
+
+/// Returns the linear light that an sRGB screen displays for the 8-bit codes of `image` multiplied by 2^exposure.
+Image as_displayed(const Image& image, double exposure);
 
 inline constexpr std::array<std::string_view, 8> kImageExtensions{".png", ".exr",  ".pfm", ".ppm",
                                                                   ".tif", ".tiff", ".jpg", ".jpeg"};

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "host/base/whole_file.hpp"
-#include "host/mesh/mesh_scene.hpp"
+#include "host/mesh/mesh_file.hpp"
 
 namespace raya {
 namespace {

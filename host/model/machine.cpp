@@ -1,14 +1,13 @@
 #include "host/model/machine.hpp"
 
+#include <fmt/ranges.h>
 #include <fmt/core.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "host/error.hpp"
 #include "host/model/budget.hpp"
 #include "host/model/t805.hpp"
 

@@ -13,8 +13,6 @@
 #include "host/python/session.hpp"
 #include "host/ring/bus_and_ring.hpp"
 #include "host/ring/mapping.hpp"
-#include "host/ring/neighbour_exchange.hpp"
-#include "host/ring/schedule.hpp"
 #include "host/torus/topology.hpp"
 #include "tests/reference/reference.hpp"
 
@@ -40,14 +38,12 @@ raya_mapping mapping_of(const ImageSize& size, const std::string& mapping, Optio
 
 ImageSize size_of(const CostImage& cost) { return {cost.width, cost.height}; }
 
-py::array owners(std::uint32_t width, std::uint32_t height, const std::string& mapping, OptionalNumber offset,
-                 const std::string& fold, OptionalNumber pes) {
-    const raya_mapping owner_mapping = mapping_of({width, height}, mapping, offset, fold, pes);
-    py::array_t<std::uint32_t> array({height, width});
+py::array owners(const raya_mapping& mapping) {
+    py::array_t<std::uint32_t> array({mapping.height, mapping.width});
     auto owner = array.mutable_unchecked<2>();
-    for (std::uint32_t row = 0; row < height; ++row)
-        for (std::uint32_t column = 0; column < width; ++column)
-            owner(row, column) = raya_owner(owner_mapping, row, column);
+    for (std::uint32_t row = 0; row < mapping.height; ++row)
+        for (std::uint32_t column = 0; column < mapping.width; ++column)
+            owner(row, column) = raya_owner(mapping, row, column);
     return array;
 }
 
@@ -123,22 +119,6 @@ std::uint64_t neighbour_rotations(raya_mapping mapping) {
         for (const Leg& leg : shortest_route(mapping.pes, neighbour_distances(mapping, side)))
             rotations += leg.rotations();
     return rotations;
-}
-
-std::uint64_t rotations(std::uint32_t width, std::uint32_t height, const std::string& mapping, OptionalNumber offset,
-                        const std::string& fold, OptionalNumber pes) {
-    return neighbour_rotations(mapping_of({width, height}, mapping, offset, fold, pes));
-}
-
-std::uint64_t exchange_rotations(std::uint32_t width, std::uint32_t height, const std::string& mapping,
-                                 OptionalNumber offset, const std::string& fold, OptionalNumber pes) {
-    return sum_of(
-        exchange_moves(mapping_of({width, height}, mapping, offset, fold, pes), ExchangeMethod::kRing, false));
-}
-
-std::uint32_t pixels_of_largest_share(std::uint32_t width, std::uint32_t height, const std::string& mapping,
-                                      OptionalNumber offset, const std::string& fold, OptionalNumber pes) {
-    return largest_share(mapping_of({width, height}, mapping, offset, fold, pes));
 }
 
 // Computes modelled times of the SPA for every offset of the cyclic mapping: the time of the busiest PE in each pass,
@@ -251,21 +231,28 @@ py::list all_machines() {
 
 void add_loads(py::module_& module) {
     const auto add_mapping_function = [&](const char* name, auto function, const char* help) {
-        module.def(name, function, py::arg("width"), py::arg("height"), py::arg("mapping") = "",
-                   py::arg("offset") = py::none(), py::arg("fold") = "", py::arg("pes") = py::none(), help);
+        module.def(
+            name,
+            [function](std::uint32_t width, std::uint32_t height, const std::string& mapping, OptionalNumber offset,
+                       const std::string& fold, OptionalNumber pes) {
+                return function(mapping_of({width, height}, mapping, offset, fold, pes));
+            },
+            py::arg("width"), py::arg("height"), py::arg("mapping") = "", py::arg("offset") = py::none(),
+            py::arg("fold") = "", py::arg("pes") = py::none(), help);
     };
     add_mapping_function(
         "owners", owners,
         "uint32 [height, width]: the PE that owns each pixel. mapping, offset, fold and pes: as the options of raya "
         "render --machine grande. Raises ValueError.");
-    add_mapping_function("rotations", rotations,
+    add_mapping_function("rotations", neighbour_rotations,
                          "Number of rotations of the ring that bring each PE the neighbours of its pixels from all "
                          "four sides, if every PE sends all its pixels in each rotation.");
-    add_mapping_function("exchange_rotations", exchange_rotations,
-                         "Returns the same number as rotations(), but counts it with the renderer's function over all "
-                         "rows of the image.");
-    add_mapping_function("largest_share", pixels_of_largest_share,
-                         "Number of pixels of the PE that owns the most pixels.");
+    add_mapping_function(
+        "exchange_rotations",
+        [](const raya_mapping& mapping) { return sum_of(exchange_moves(mapping, ExchangeMethod::kRing, false)); },
+        "Returns the same number as rotations(), but counts it with the renderer's function over all "
+        "rows of the image.");
+    add_mapping_function("largest_share", largest_share, "Number of pixels of the PE that owns the most pixels.");
     module.def("loads", loads, py::arg("cost"), py::arg("mapping") = "", py::arg("offset") = py::none(),
                py::arg("fold") = "", py::arg("pes") = py::none(),
                "uint64 [P]: the load of each PE in modelled cycles, the sum of its pixels' costs. cost: integers "

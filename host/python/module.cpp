@@ -1,16 +1,181 @@
-// The Python module raya._engine, which loads and renders scenes and models loads. The package in raya/ imports it.
+// The Python module raya._engine: scenes, renders and models of loads. The package in raya/ imports it. This file has
+// the class Scene, and the functions that read, write, generate and change scenes.
 #include "host/base/module.hpp"
 
 #include <dlfcn.h>
+#include <fmt/core.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
 
 #include "host/base/log.hpp"
+#include "host/base/whole_file.hpp"
+#include "host/cli/options.hpp"
+#include "host/embedded.hpp"
 #include "host/error.hpp"
 #include "host/model/machine.hpp"
 #include "host/python/session.hpp"
-#include "host/torus/torus_result.hpp"
+#include "host/scene/generate.hpp"
+#include "host/scene/nff.hpp"
+#include "host/scene/packer.hpp"
+#include "host/scene/scene.hpp"
 #include "host/version.hpp"
 #include "kernels/shared/traffic.h"
+
+namespace raya {
+namespace {
+
+Scene loaded(const std::filesystem::path& file, bool strict) {
+    SceneInput input = read_scene(file.string(), strict);
+    for (const std::string& text : input.warnings.texts())
+        if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+    return std::move(input.scene);
+}
+
+using Point = std::array<double, 3>;
+Point point_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+Scene with_view(Scene scene, const py::kwargs& options) {
+    ViewOptions view;
+    CLI::App app;
+    add_view_options(app, view);
+    std::vector<std::string> arguments = option_arguments(options);
+    try {
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::ParseError& error) {
+        throw UserError(error.what());
+    }
+    change_view(view, scene);
+    return scene;
+}
+
+Scene turned_scene(Scene scene, double degrees) {
+    scene.view = turned(scene.view, degrees);
+    return scene;
+}
+
+Scene without_lights(Scene scene) {
+    scene.lights.clear();
+    return scene;
+}
+
+Scene example(const std::string& name) {
+    const auto file = embedded_files().find("scenes/" + name + ".nff");
+    if (file == embedded_files().end())
+        throw UserError(fmt::format("example '{}': no such scene; name a file of scenes/ without .nff", name));
+    Scene scene = parse_nff(file->second, file->first);
+    scene.name = name;
+    return scene;
+}
+
+std::size_t job_words(const Scene& scene) {
+    const Machine& spa = machine_named("spa");
+    return pack_job(scene, {{1, 1}, Sampling::kCentres, spa.bounces, cycles_of_events(), spa.format}).words().size();
+}
+
+void save(const Scene& scene, const std::filesystem::path& path) {
+    forget_input(path);  // a loaded scene may replace its file
+    write_whole_file(path, write_nff(scene));
+}
+
+void add_generators(py::module_& module) {
+    py::module_ generators = module.def_submodule("generate", "Functions that generate scenes, as raya generate does.");
+    generators.def("balls", generate_balls, py::arg("level") = 4,
+                   "SPD's sphereflake: 9^0 + ... + 9^level spheres. level: depth of the recursion, 0..6.");
+    generators.def(
+        "lattice", generate_lattice, py::arg("size") = 12,
+        "SPD's lattice: (size + 1)^3 spheres connected by cylinders. size: number of cells along each edge, 1..64.");
+    generators.def("gears", generate_gears, py::arg("size") = 4,
+                   "size^3 gear wheels. size: number of wheels along each edge, 1..16.");
+    generators.def(
+        "uniform", generate_uniform, py::arg("count"), py::arg("voxels"),
+        "count spheres (1..20000000) in a cube that is divided into x * y * z voxels. Each voxel contains floor(n) or "
+        "ceil(n) spheres, n = count / (x * y * z). voxels: (x, y, z).");
+    generators.def("random", generate_random, py::arg("count"), py::arg("seed") = 1,
+                   "count spheres (1..20000000) with random centres in the cube [-1, 1]^3.");
+    generators.def("terrain", generate_terrain, py::arg("triangles") = 100'000, py::arg("seed") = 1,
+                   "A height field of triangles (1..20000000) above a square whose cells have side 1.");
+    generators.def(
+        "cluster", [](std::uint64_t seed) { return generate_cluster(seed); }, py::arg("seed") = 1,
+        "Seven random spheres above a floor. Averaged over many seeds, load and imbalance match those that Kohata & "
+        "Ito (1993) report.");
+    generators.def("centre", generate_centre, "The scene of scenes/centre.nff.");
+}
+
+void add_scenes(py::module_& module) {
+    py::class_<Scene> scene(module, "Scene", "An immutable scene: objects, surfaces, lights and a view.");
+    scene.def_readonly("name", &Scene::name)
+        .def_property_readonly(
+            "width", [](const Scene& s) { return s.view.width; }, "Width of the image in pixels.")
+        .def_property_readonly(
+            "height", [](const Scene& s) { return s.view.height; }, "Height of the image in pixels.")
+        .def_property_readonly("objects", &Scene::object_count, "Number of spheres, planes, polygons and cones.")
+        .def_property_readonly(
+            "lights", [](const Scene& s) { return s.lights.size(); }, "Number of lights.")
+        .def_property_readonly(
+            "eye", [](const Scene& s) { return point_of(s.view.from); }, "[x, y, z]: the eye, scene units.")
+        .def_property_readonly(
+            "at", [](const Scene& s) { return point_of(s.view.at); },
+            "[x, y, z]: the point that the eye looks at, scene units.")
+        .def_property_readonly(
+            "nff", [](const Scene& s) { return write_nff(s); }, "str: the scene as NFF.")
+        .def("save", save, py::arg("path"), "Writes an NFF file atomically. Raises ValueError.")
+        .def(
+            "renamed",
+            [](Scene s, const std::string& name) {
+                s.name = name;
+                return s;
+            },
+            py::arg("name"), "Returns the scene with another name.")
+        .def("with_view", with_view,
+             "Returns the scene with another camera, background or lights. Keyword arguments: the options from_, at, "
+             "up, angle, background and light of raya render. Raises ValueError.")
+        .def(
+            "random_view", random_view, py::arg("seed"),
+            "Returns the scene seen from a random eye, at the same distance from the point `at`, 5 to 75 degrees above "
+            "it.")
+        .def("turned", turned_scene, py::arg("degrees"), "Returns the scene with the eye turned around the point `at`.")
+        .def("without_lights", without_lights,
+             "Returns the scene without lights, for which the kernels trace no shadow rays.")
+        .def("scattered", scattered, py::arg("seed"),
+             "Returns the scene with a random centre for each sphere. Every sphere lies in the cube [-1, 1]^3.")
+        .def("moved_into_voxels", moved_into_voxels,
+             "Returns the scene with each sphere moved so that it lies inside the voxel that contains its centre. The "
+             "cube [-1, 1]^3 has 4 x 4 x 4 voxels; radii must be less than half a voxel's side.")
+        .def("touching_walls", touching_walls,
+             "Returns the scene with six spheres moved: for each face of the cube [-1, 1]^3, the sphere nearest to the "
+             "face moves until it touches the face.")
+        .def(
+            "__eq__", [](const Scene& a, const Scene& b) { return a == b; }, py::is_operator())
+        .def("__repr__",
+             [](const Scene& s) {
+                 return fmt::format("<raya.Scene {}: {} objects, {}x{}>", s.name, s.object_count(), s.view.width,
+                                    s.view.height);
+             })
+        .def("__reduce__", [](const Scene& s) {
+            return py::make_tuple(py::module_::import("raya").attr("_unpickled"), py::make_tuple(write_nff(s), s.name));
+        });
+    forbid_new(scene, "raya.load() and raya.parse() make scenes");
+    module.def(
+        "load", loaded, py::arg("path"), py::arg("strict") = false,
+        "Reads an NFF file or a mesh. Skips unknown content with a warning unless strict. Raises ValueError with file, "
+        "place and reason.");
+    module.def(
+        "example", example, py::arg("name"),
+        "Returns one of the embedded scenes. name: 'centre', 'spheres', 'mirrors', 'glass', 'polygons', 'cones' or "
+        "'planes'. Raises ValueError.");
+    module.def("job_words", job_words, py::arg("scene"),
+               "Number of 32-bit words that the scene takes in each PE of the SPA.");
+    module.def(
+        "parse", [](const std::string& text, const std::string& name) { return parse_nff(text, name); },
+        py::arg("text"), py::arg("name") = "scene", "Parses NFF text. Raises ValueError.");
+    add_generators(module);
+}
+
+}  // namespace
+}  // namespace raya
 
 namespace {
 
@@ -40,5 +205,4 @@ PYBIND11_MODULE(_engine, module) {
     add_scenes(module);
     add_renders(module);
     add_loads(module);
-    add_study_settings(module);
 }

@@ -12,10 +12,10 @@
 #include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
-#include "host/cli/command_tree.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
-#include "host/cli/parse_failure.hpp"
+#include "host/cli/parse.hpp"
 #include "host/error.hpp"
 #include "host/ranks/ranks.hpp"
 
@@ -136,7 +136,7 @@ RenderCommand parse_options(CLI::App& program, const py::dict& options) {
             if (file_use_of(*option) == FileUse::kWritten && option->count() > 0 && option->as<std::string>() == "-")
                 throw UserError(option->get_name() + " -: name a file; Result has the report and the images");
         check_files(*render);
-        check_render(*render, command);
+        check_render(command);
     });
     std::vector<std::string> arguments = {"render"};
     for (const std::string& argument : option_arguments(options)) arguments.push_back(argument);
@@ -160,36 +160,6 @@ PixelSubset pop_pixels(py::dict& options) {
     return {stride, first};
 }
 
-// Parses the arguments of `raya study` and returns the settings as JSON, for raya.lab. If the arguments request help,
-// prints the help and raises SystemExit, because the program raya would exit.
-std::string study_settings(const std::vector<std::string>& arguments) {
-    CLI::App program("", "raya");
-    program.formatter(std::make_shared<HelpFormatter>());
-    std::string settings;
-    add_study_command(program, [&settings](const std::string& json) { settings = json; });
-    program.parse_complete_callback([&program] { check_files(*program.get_subcommands().front()); });
-    add_verbosity_options(program, Ranks::single());
-    set_verbosity(kDefaultVerbosity);
-    std::vector<std::string> command_line = {"study"};
-    command_line.insert(command_line.end(), arguments.begin(), arguments.end());
-    int code = 0;
-    try {
-        parse_arguments(program, command_line);
-    } catch (const CLI::ParseError& error) {
-        code = program.exit(error);
-    } catch (const UserError&) {
-        set_verbosity(kErrorsOnly);
-        throw;
-    }
-    set_verbosity(kErrorsOnly);
-    if (settings.empty()) {
-        std::fflush(stdout);
-        PyErr_SetObject(PyExc_SystemExit, py::int_(code).ptr());
-        throw py::error_already_set();
-    }
-    return settings;
-}
-
 }  // namespace
 
 void PythonSession::check_process() {
@@ -202,11 +172,6 @@ void PythonSession::check_process() {
 
 PythonSession::PythonSession(const std::string& device)
     : device_(choose_device_with_stacks(device)), session_(device_) {}
-
-void add_study_settings(py::module_& module) {
-    module.def("study_settings", study_settings, py::arg("arguments"),
-               "Parses the arguments of `raya study` and returns its settings as JSON. Prints help if requested.");
-}
 
 PythonSession& PythonSession::shared(const std::string& device) {
     // The map is never destroyed, because drivers may be unloaded before the program destroys static objects.

@@ -4,10 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -18,7 +15,7 @@
 #include "host/base/json.hpp"
 #include "host/cl/commands.hpp"
 #include "host/cli/render_command.hpp"
-#include "host/ring/schedule.hpp"
+#include "host/ring/mapping.hpp"
 
 namespace raya {
 
@@ -89,13 +86,8 @@ class PythonSession {
 using Result = std::shared_ptr<Render>;
 using ResultClass = py::class_<Render, Result>;
 
-/// Adds the members for renders on a torus to the Python class Result.
-void add_torus_results(py::module_& module, ResultClass& result);
-
 // Each function below adds the functions and classes of one source file to the Python module.
-void add_scenes(py::module_& module);
 void add_renders(py::module_& module);
 void add_loads(py::module_& module);
-void add_study_settings(py::module_& module);
 
 }  // namespace raya

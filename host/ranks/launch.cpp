@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "host/base/encoding.hpp"
 #include "host/base/module.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
@@ -20,19 +21,10 @@ namespace {
 
 constexpr double kDefaultTimeoutS = 600;  // time limit of each wait for other ranks, unless RAYA_RANK_TIMEOUT is set
 
-// Returns empty unless the whole text is a decimal number.
-std::optional<std::uint32_t> parsed_count(const char* text) {
-    std::uint32_t value = 0;
-    if (text == nullptr || *text == '\0') return {};
-    const char* end = text + std::strlen(text);
-    const auto [stop, error] = std::from_chars(text, end, value);
-    return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
-}
-
 double rank_timeout_s() {
-    const char* text = std::getenv("RAYA_RANK_TIMEOUT");
-    if (text == nullptr) return kDefaultTimeoutS;
-    const std::optional<std::uint32_t> seconds = parsed_count(text);
+    const std::string text = environment_value("RAYA_RANK_TIMEOUT");
+    if (text.empty()) return kDefaultTimeoutS;
+    const auto seconds = parsed_number<std::uint32_t>(text);
     if (!seconds || *seconds == 0)
         throw UserError(fmt::format("RAYA_RANK_TIMEOUT={}: must be a whole number of seconds, 1 or more", text));
     return *seconds;
@@ -82,7 +74,7 @@ std::string build_id() {
 
 }  // namespace
 
-std::optional<Launch> launch_from(const std::function<const char*(const char*)>& get_variable) {
+std::optional<Launch> launch_from(const std::function<std::string(const char*)>& get_variable) {
     struct VariableNames {
         const char *rank, *count;
     };
@@ -91,14 +83,12 @@ std::optional<Launch> launch_from(const std::function<const char*(const char*)>&
                                             {"PMI_RANK", "PMI_SIZE"},
                                             {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}};
     for (const VariableNames& names : kLaunchers)
-        if (const auto rank = parsed_count(get_variable(names.rank)))
-            return Launch{*rank, parsed_count(get_variable(names.count))};
+        if (const auto rank = parsed_number<std::uint32_t>(get_variable(names.rank)))
+            return Launch{*rank, parsed_number<std::uint32_t>(get_variable(names.count))};
     return {};
 }
 
-std::optional<Launch> find_launch() {
-    return launch_from([](const char* name) -> const char* { return std::getenv(name); });
-}
+std::optional<Launch> find_launch() { return launch_from(environment_value); }
 
 std::unique_ptr<Ranks> open_ranks() {
     const std::optional<Launch> launch = find_launch();

@@ -16,10 +16,9 @@ struct Launch {
     std::optional<std::uint32_t> count;  // number of ranks; empty if the launcher does not set it
 };
 
-/// Return rank and number of ranks, or empty if no launcher has started this process. find_launch() reads environment
-/// variables with std::getenv. launch_from() reads them with `get_variable`, which returns nullptr for an unset
-/// variable.
-std::optional<Launch> launch_from(const std::function<const char*(const char*)>& get_variable);
+/// Return rank and number of ranks, or empty if no launcher has started this process. launch_from() reads environment
+/// variables with `get_variable`, find_launch() with environment_value().
+std::optional<Launch> launch_from(const std::function<std::string(const char*)>& get_variable);
 std::optional<Launch> find_launch();
 
 /// Connects the ranks if a launcher has started more than one, else returns nullptr. Sets the environment variable

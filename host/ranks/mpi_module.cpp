@@ -10,14 +10,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <climits>
 #include <cstdlib>
-#include <memory>
 #include <thread>
 #include <vector>
 
-#include "host/base/clock.hpp"
+#include "host/base/log.hpp"
 #include "host/error.hpp"
 #include "host/ranks/transport.hpp"
 

@@ -5,16 +5,23 @@
 #include <algorithm>
 #include <set>
 #include <tuple>
-#include <vector>
 
-#include "host/base/json.hpp"
-#include "host/base/standard_streams.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/report/table.hpp"
 
 namespace raya {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Returns the JSON object with the rates of a row in Mrays/s.
+Json rates_json(const BenchMeasurement& row) { return {{"best", row.best_rate()}, {"median", row.median_rate()}}; }
+
+/// Returns the JSON members that identify a row.
+Json row_key_json(const BenchMeasurement& row) {
+    return {{"kernel", row.kernel}, {"scene", row.scene}, {"size", row.size},       {"array", row.array},
+            {"format", row.format}, {"lanes", row.lanes}, {"group", row.group_size}};
+}
 
 Json row_json(const BenchMeasurement& row) {
     Json json = row_key_json(row);
@@ -78,13 +85,6 @@ BenchReport report_of(const Json& json) {
 }
 
 }  // namespace
-
-Json row_key_json(const BenchMeasurement& row) {
-    return {{"kernel", row.kernel}, {"scene", row.scene}, {"size", row.size},       {"array", row.array},
-            {"format", row.format}, {"lanes", row.lanes}, {"group", row.group_size}};
-}
-
-Json rates_json(const BenchMeasurement& row) { return {{"best", row.best_rate()}, {"median", row.median_rate()}}; }
 
 Json to_json(const BenchReport& report) {
     Json rows = Json::array();

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/base/json.hpp"
-#include "host/report/roofline.hpp"
+#include "host/report/render_report.hpp"
 
 namespace raya {
 
@@ -46,12 +46,6 @@ struct BenchReport {
     std::vector<BenchBuild> builds{};  // with --build; `rows` is then empty
     Json compared{};                   // result of compare_bench() and the baseline's name; null: no comparison
 };
-
-/// Returns the JSON members that identify a row.
-Json row_key_json(const BenchMeasurement& row);
-
-/// Returns the JSON object with the rates of a row in Mrays/s.
-Json rates_json(const BenchMeasurement& row);
 
 /// Value of the member "kind", which identifies the report.
 inline constexpr const char* kBenchReportKind = "raya bench";

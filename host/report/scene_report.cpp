@@ -32,6 +32,8 @@ Json objects_json(const Scene& s) {
             {"cones", s.cones.size()}};
 }
 
+Json vector_json(const Vec3& v) { return std::array{v.x, v.y, v.z}; }
+
 Json extent_json(const SceneReport& r) {
     Json box = Json::object();
     if (!r.box.isEmpty()) box = {{"min", vector_json(r.box.min)}, {"max", vector_json(r.box.max)}};
@@ -193,8 +195,6 @@ std::string summary_text(const SceneReport& r) {
     for (const FormatFit& f : r.formats) text += fmt::format("format  {}\n", format_text(f));
     return text + "\n" + machine_table(r.machines) + refusals_text(r.machines);
 }
-
-Json vector_json(const Vec3& v) { return std::array{v.x, v.y, v.z}; }
 
 Json skipped_json(const std::vector<SceneRemark>& skipped) {
     Json list = Json::array();

@@ -61,8 +61,6 @@ Json to_json(const SceneReport& report);
 /// Returns the text for the terminal: objects, camera, lights, extent, formats, and a table of machines.
 std::string summary_text(const SceneReport& report);
 
-Json vector_json(const Vec3& v);
-
 /// Returns the member `skipped` of a report.
 Json skipped_json(const std::vector<SceneRemark>& skipped);
 

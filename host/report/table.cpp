@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "host/base/json.hpp"
-
 namespace raya {
 namespace {
 

@@ -1,9 +1,12 @@
 #include "host/ring/bus_and_ring.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <span>
 #include <utility>
-#include <vector>
+
+#include "host/error.hpp"
+#include "host/model/budget.hpp"
 
 namespace raya {
 
@@ -137,5 +140,178 @@ void Ring::move(const char* label, const Buffer<float>& source, std::size_t firs
     session_.copy(label, source, first_source * block_words_, target, first_target * block_words_,
                   blocks * block_words_);
 }
+
+namespace {
+
+constexpr std::size_t kColours = 3;
+
+}  // namespace
+
+NeighbourExchange::NeighbourExchange(Session& session, Communication& communication, const raya_mapping& mapping,
+                                     std::uint32_t capacity, std::uint32_t band, ExchangeMethod method,
+                                     const Distribution& pes)
+    : pes_(mapping.pes),
+      capacity_(capacity),
+      band_(band),
+      method_(method),
+      ring_(session, communication, pes, kColours, band),
+      bus_(session, communication, pes) {
+    for (raya_u32 side = 0; side < RAYA_SIDES; ++side) distances_[side] = neighbour_distances(mapping, side);
+    if (method == ExchangeMethod::kBroadcast)
+        broadcast_blocks_ = session.buffer<float>("blocks that were broadcast", std::size_t{pes_} * kColours * band);
+}
+
+void NeighbourExchange::visit(const Buffer<float>& pixels, std::initializer_list<raya_u32> sides,
+                              const ArrivalCallback& on_arrival) {
+    for (std::uint32_t begin = 0; begin < capacity_; begin += band_) {
+        if (method_ == ExchangeMethod::kBroadcast) exchange_by_broadcast(pixels, sides, begin, on_arrival);
+        for (const raya_u32 side : sides) {
+            if (method_ == ExchangeMethod::kRing) exchange_by_rotation(pixels, side, begin, on_arrival);
+            if (method_ == ExchangeMethod::kBus) exchange_by_transfers(pixels, side, begin, on_arrival);
+        }
+    }
+}
+
+// Rotates the ring along the shortest route, and reports an arrival at each stop.
+void NeighbourExchange::exchange_by_rotation(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin,
+                                             const ArrivalCallback& on_arrival) {
+    for (const Leg& leg : shortest_route(pes_, distances_[side])) {
+        ring_.load(pixels, capacity_, begin);
+        std::uint32_t rotations = 0;
+        for (const std::uint32_t stop : leg.stops) {
+            for (; rotations < stop; ++rotations) ring_.rotate(leg.direction);
+            on_arrival({ring_.blocks(), side, leg.direction == RingDirection::kDown ? stop : pes_ - stop, begin});
+        }
+    }
+}
+
+// For each distance, sends the block of PE (i + distance) mod P over the bus to each PE i.
+void NeighbourExchange::exchange_by_transfers(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin,
+                                              const ArrivalCallback& on_arrival) {
+    for (const std::uint32_t distance : distances_[side]) {
+        if (distance == 0) ring_.load(pixels, capacity_, begin);
+        for (std::size_t pe = 0; distance > 0 && pe < pes_; ++pe)
+            bus_.send(pixels, {(pe + distance) % pes_, capacity_, begin, kColours}, ring_.blocks(),
+                      {pe, band_, 0, kColours}, band_pixels(begin));
+        on_arrival({ring_.blocks(), side, distance, begin});
+    }
+}
+
+// Broadcasts the block of each PE in turn. Broadcasts nothing if every PE itself owns all its pixels' neighbours.
+void NeighbourExchange::exchange_by_broadcast(const Buffer<float>& pixels, std::initializer_list<raya_u32> sides,
+                                              std::uint32_t begin, const ArrivalCallback& on_arrival) {
+    const bool any_distant = std::ranges::any_of(
+        sides, [&](raya_u32 side) { return !distances_[side].empty() && distances_[side].back() > 0; });
+    for (std::size_t pe = 0; any_distant && pe < pes_; ++pe)
+        bus_.broadcast_from(pixels, {pe, capacity_, begin, kColours}, *broadcast_blocks_, {pe, band_, 0, kColours},
+                            band_pixels(begin));
+    for (const raya_u32 side : sides)
+        for (const std::uint32_t distance : distances_[side]) {
+            distance == 0 ? ring_.load(pixels, capacity_, begin) : ring_.take(*broadcast_blocks_, distance);
+            on_arrival({ring_.blocks(), side, distance, begin});
+        }
+}
+
+// Returns the number of pixels of the band that starts at `begin`; the last band may be shorter.
+std::size_t NeighbourExchange::band_pixels(std::uint32_t begin) const { return std::min(band_, capacity_ - begin); }
+
+RingFilter::RingFilter(Kernels& kernels, const ExchangeSetup& setup)
+    : setup_(setup),
+      add_neighbours_(kernels.get<AddNeighboursKernel>()),
+      take_means_(kernels.get<TakeMeansKernel>()),
+      sums_(setup.session.buffer<float>("filter sums", 3ull * setup.pes.count() * setup.capacity)) {
+    Buffer<float> no_blocks = setup.session.buffer<float>("no blocks", 3);
+    add_neighbours("warm-up", {no_blocks, RAYA_LEFT, 0, 0}, 0, 0);
+    setup.session.launch("warm-up", take_means_, setup.pes.count(), setup.group_size, setup.broadcast,
+                         Uint<"capacity">{0}, Uint<"first_pe">{0}, sums_);
+}
+
+void RingFilter::apply(Buffer<float>& pixels, NeighbourExchange& exchange) {
+    const SpanLog::Span span = setup_.session.span("filter");
+    sum_two_sides(pixels, exchange, "filter.sum_rows", RAYA_LEFT, RAYA_RIGHT);
+    sum_two_sides(pixels, exchange, "filter.sum_columns", RAYA_ABOVE, RAYA_BELOW);
+    setup_.session.launch("filter.take_means", take_means_, setup_.pes.count(), setup_.group_size, setup_.broadcast,
+                          Uint<"capacity">{setup_.capacity}, Uint<"first_pe">{setup_.pes.first()}, pixels);
+}
+
+// Computes pixels = (pixels + neighbours on the first side) + neighbours on the second side. The rounded sum depends on
+// the order, so the sides are exchanged one after the other.
+void RingFilter::sum_two_sides(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label,
+                               raya_u32 first_side, raya_u32 second_side) {
+    setup_.session.copy("filter.begin_sums", pixels, 0, sums_, 0, pixels.size());
+    for (const raya_u32 side : {first_side, second_side})
+        exchange.visit(pixels, {side}, [&](const Arrival& arrival) {
+            add_neighbours(label, arrival, exchange.band(), setup_.capacity);
+        });
+    std::swap(pixels, sums_);
+}
+
+void RingFilter::add_neighbours(const std::string& label, const Arrival& arrival, std::uint32_t band,
+                                std::uint32_t capacity) {
+    setup_.session.launch(label, add_neighbours_, setup_.pes.count(), setup_.group_size, setup_.broadcast,
+                          Uint<"side">{arrival.side}, Uint<"distance">{arrival.distance}, Uint<"begin">{arrival.begin},
+                          Uint<"band">{band}, Uint<"capacity">{capacity}, Uint<"first_pe">{setup_.pes.first()},
+                          arrival.blocks, sums_);
+}
+
+RingContrast::RingContrast(Kernels& kernels, const ExchangeSetup& setup, float threshold)
+    : setup_(setup),
+      threshold_(threshold),
+      mark_contrasts_(kernels.get<MarkContrastsKernel>()),
+      marks_(setup.session.buffer<std::uint8_t>("marks", std::size_t{setup.pes.count()} * setup.capacity)) {
+    Buffer<float> no_blocks = setup.session.buffer<float>("no blocks", 3);
+    mark_contrasts("warm-up", {no_blocks, RAYA_LEFT, 0, 0}, 0, 0, no_blocks);
+}
+
+void RingContrast::apply(const Buffer<float>& pixels, NeighbourExchange& exchange) {
+    setup_.session.write("clear marks", marks_, std::vector<std::uint8_t>(marks_.size()));
+    exchange.visit(pixels, {RAYA_LEFT, RAYA_RIGHT, RAYA_ABOVE, RAYA_BELOW}, [&](const Arrival& arrival) {
+        mark_contrasts("supersample.compare", arrival, exchange.band(), setup_.capacity, pixels);
+    });
+}
+
+void RingContrast::mark_contrasts(const std::string& label, const Arrival& arrival, std::uint32_t band,
+                                  std::uint32_t capacity, const Buffer<float>& pixels) {
+    setup_.session.launch(label, mark_contrasts_, setup_.pes.count(), setup_.group_size, setup_.broadcast,
+                          Uint<"side">{arrival.side}, Uint<"distance">{arrival.distance}, Uint<"begin">{arrival.begin},
+                          Uint<"band">{band}, Uint<"capacity">{capacity}, Uint<"first_pe">{setup_.pes.first()},
+                          threshold_, arrival.blocks, pixels, marks_);
+}
+
+namespace {
+
+// Names of the methods, in the order of AntialiasMethod.
+constexpr std::array<const char*, 3> kMethods = {"none", "filter", "supersample"};
+
+}  // namespace
+
+std::string antialias_name(AntialiasMethod method) { return kMethods.at(static_cast<std::size_t>(method)); }
+
+void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool dynamic) {
+    if (dynamic && method != AntialiasMethod::kNone)
+        throw UserError(
+            fmt::format("--antialias {} with a dynamic or hybrid --mapping: the owner of a neighbour is only known at "
+                        "run time; use cyclic, column, rows, blocks, grid or tiles",
+                        antialias_name(method)));
+    if (method == AntialiasMethod::kNone || mapping.kind != RAYA_RANDOM) return;
+    throw UserError(fmt::format(
+        "--antialias {} with --mapping {}: the neighbours of a pixel are on random PEs of the ring; use cyclic, "
+        "column, rows, blocks, grid or tiles",
+        antialias_name(method), mapping_text(mapping)));
+}
+
+MovesOfSides smoothing_moves(const Antialias& antialias, const raya_mapping& mapping) {
+    if (antialias.method == AntialiasMethod::kNone) return {};
+    return exchange_moves(mapping, antialias.exchange, antialias.method == AntialiasMethod::kSupersample);
+}
+
+SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t pixels) {
+    SmoothingCycles cycles;
+    if (method == AntialiasMethod::kFilter) cycles.filter = filter_cycles(pixels);
+    if (method == AntialiasMethod::kSupersample) cycles.compare = compare_cycles(pixels);
+    return cycles;
+}
+
+std::string points_name(raya_u32 points) { return points == RAYA_POINTS_DIAGONALS ? "diagonals" : "axes"; }
 
 }  // namespace raya

@@ -1,16 +1,23 @@
 // Bus and ring of the machine (Kohata & Ito 1993, section on the array).
 // Buffer transfers with labels model the transfers of bus and ring; raya counts them.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "host/array/render.hpp"
 #include "host/cl/commands.hpp"
+#include "host/cl/kernel_options.hpp"
 #include "host/model/t805.hpp"
 #include "host/ring/mapping.hpp"
+#include "kernels/shared/neighbours.h"
 
 namespace raya {
 
@@ -100,5 +107,152 @@ class Ring {
     Buffer<float> front_, back_;              // current blocks; target of a rotation
     std::vector<float> outgoing_, incoming_;  // block to send to another rank; block received from another rank
 };
+
+// Exchange of neighbouring pixels between PEs, over ring or bus. Every PE receives the blocks of the PEs that own
+// neighbours of its pixels.
+
+/// Blocks that have arrived, one in every PE.
+struct Arrival {
+    Buffer<float>& blocks;   // [PE][3][band]
+    raya_u32 side;           // side of the neighbours that the blocks contain: RAYA_LEFT..RAYA_BELOW
+    std::uint32_t distance;  // PE i has received the block of PE (i + distance) mod P
+    std::uint32_t begin;     // index of the block's first pixel in the share of PE (i + distance) mod P
+};
+
+/// Exchanges neighbouring pixels. Each move carries a band: at most `band` pixels of each PE. If a PE's memory can hold
+/// a second share (see PeMemory), the band is the whole share; otherwise the bands of the share are moved one after
+/// another.
+class NeighbourExchange {
+  public:
+    /// `capacity`: number of pixels in each PE's memory; `band`: number of pixels in a band, 1..capacity.
+    NeighbourExchange(Session& session, Communication& communication, const raya_mapping& mapping,
+                      std::uint32_t capacity, std::uint32_t band, ExchangeMethod method, const Distribution& pes);
+
+    std::uint32_t band() const { return band_; }
+
+    /// Moves every pixel to the PEs that need it as a neighbour on one of `sides`, and calls `on_arrival` after each
+    /// arrival of blocks that contain such neighbours. `pixels`: pixels of this rank's PEs, [PE][3][capacity]. The
+    /// order of the sides is unspecified.
+    void visit(const Buffer<float>& pixels, std::initializer_list<raya_u32> sides,
+               const std::function<void(const Arrival&)>& on_arrival);
+
+  private:
+    using ArrivalCallback = std::function<void(const Arrival&)>;
+
+    void exchange_by_rotation(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin,
+                              const ArrivalCallback& on_arrival);
+    void exchange_by_transfers(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin,
+                               const ArrivalCallback& on_arrival);
+    void exchange_by_broadcast(const Buffer<float>& pixels, std::initializer_list<raya_u32> sides, std::uint32_t begin,
+                               const ArrivalCallback& on_arrival);
+    std::size_t band_pixels(std::uint32_t begin) const;
+
+    std::uint32_t pes_, capacity_, band_;
+    ExchangeMethod method_;
+    std::array<std::vector<std::uint32_t>, RAYA_SIDES> distances_;
+    Ring ring_;
+    Bus bus_;
+    std::optional<Buffer<float>> broadcast_blocks_;  // [PE][3][band]; a modelled PE stores only one of the blocks
+};
+
+// The parts of anti-aliasing that need neighbouring pixels: the 3 x 3 filter (kernels/ring/filter.cl), and the
+// detection of pixels that differ from a neighbour (kernels/ring/contrast.cl).
+
+/// Arguments that all launches of RingFilter and RingContrast have in common.
+struct ExchangeSetup {
+    Session& session;
+    Buffer<std::uint32_t> broadcast;  // the job's words
+    Distribution pes;                 // PEs on the device
+    std::uint32_t capacity = 0;       // number of pixels in the memory of each PE
+    std::uint32_t group_size = 1;
+};
+
+using AddNeighboursKernel = DescribedKernel<"ring/filter.cl", "add_neighbours", const Buffer<std::uint32_t>&,
+                                            Uint<"side">, Uint<"distance">, Uint<"begin">, Uint<"band">,
+                                            Uint<"capacity">, Uint<"first_pe">, const Buffer<float>&, Buffer<float>&>;
+using TakeMeansKernel = DescribedKernel<"ring/filter.cl", "take_means", const Buffer<std::uint32_t>&, Uint<"capacity">,
+                                        Uint<"first_pe">, Buffer<float>&>;
+
+class RingFilter {
+  public:
+    /// The kernels must be built for one lane. Allocates the device memory, and launches each kernel once without
+    /// pixels, because PoCL compiles a kernel at its first launch.
+    RingFilter(Kernels& kernels, const ExchangeSetup& setup);
+
+    /// Replaces every pixel by the mean of its 3 x 3 neighbourhood. `pixels`: [PE][3][capacity]; afterwards `pixels`
+    /// refers to another buffer of the same size.
+    void apply(Buffer<float>& pixels, NeighbourExchange& exchange);
+
+  private:
+    void sum_two_sides(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label,
+                       raya_u32 first_side, raya_u32 second_side);
+    void add_neighbours(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity);
+
+    ExchangeSetup setup_;
+    AddNeighboursKernel add_neighbours_;
+    TakeMeansKernel take_means_;
+    Buffer<float> sums_;  // [PE][3][capacity]
+};
+
+using MarkContrastsKernel =
+    DescribedKernel<"ring/contrast.cl", "mark_contrasts", const Buffer<std::uint32_t>&, Uint<"side">, Uint<"distance">,
+                    Uint<"begin">, Uint<"band">, Uint<"capacity">, Uint<"first_pe">, cl_float, const Buffer<float>&,
+                    const Buffer<float>&, Buffer<std::uint8_t>&>;
+
+class RingContrast {
+  public:
+    /// The kernel must be built for one lane. Allocates the device memory, and launches the kernel once without pixels,
+    /// because PoCL compiles a kernel at its first launch. `threshold`, 0..1, must be representable in the number
+    /// format.
+    RingContrast(Kernels& kernels, const ExchangeSetup& setup, float threshold);
+
+    /// Marks each pixel that differs from a neighbour by the threshold or more. `pixels`: [PE][3][capacity].
+    void apply(const Buffer<float>& pixels, NeighbourExchange& exchange);
+
+    /// [PE][capacity]: 1 for marked pixels, else 0.
+    Buffer<std::uint8_t>& marks() { return marks_; }
+
+  private:
+    void mark_contrasts(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity,
+                        const Buffer<float>& pixels);
+
+    ExchangeSetup setup_;
+    float threshold_;
+    MarkContrastsKernel mark_contrasts_;
+    Buffer<std::uint8_t> marks_;
+};
+
+// Anti-aliasing methods, which are applied to the image after the first pass (Kohata & Ito 1993).
+
+enum class AntialiasMethod {
+    kNone,
+    kFilter,      // mean of the 3 x 3 neighbourhood of every pixel
+    kSupersample  // mean of five samples for each pixel that differs from a neighbour
+};
+
+struct Antialias {
+    AntialiasMethod method = AntialiasMethod::kNone;
+    double threshold = 0.125;            // supersampling: minimum colour difference that marks a pixel, 0..1
+    raya_u32 points = RAYA_POINTS_AXES;  // supersampling: added samples, RAYA_POINTS_AXES or RAYA_POINTS_DIAGONALS
+    ExchangeMethod exchange = ExchangeMethod::kRing;
+};
+
+/// Returns "none", "filter" or "supersample".
+std::string antialias_name(AntialiasMethod method);
+
+/// Throws UserError if the method needs neighbours and the mapping is dynamic or random. With such a mapping the
+/// neighbours of a PE's pixels are not on PEs at a few fixed distances on the ring.
+void check_antialias(AntialiasMethod method, const raya_mapping& mapping, bool dynamic);
+
+/// Returns "axes" or "diagonals". `points`: RAYA_POINTS_AXES or RAYA_POINTS_DIAGONALS.
+std::string points_name(raya_u32 points);
+
+/// Returns, for each side, the number of ring or bus moves that bring the neighbouring pixels to every PE, if each move
+/// carries a PE's whole share. The filter processes the sides one by one, as its rounded sums depend on the sides'
+/// order. Supersampling compares the sides in any order, so that one series of broadcasts serves all sides.
+MovesOfSides smoothing_moves(const Antialias& antialias, const raya_mapping& mapping);
+
+/// Returns the modelled cycles of the method's arithmetic on neighbours, for a PE that owns `pixels` pixels.
+SmoothingCycles smoothing_cycles(AntialiasMethod method, std::uint64_t pixels);
 
 }  // namespace raya

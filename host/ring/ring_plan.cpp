@@ -6,12 +6,9 @@
 
 #include "host/accel/bvh.hpp"
 #include "host/accel/partition.hpp"
-#include "host/base/clock.hpp"
-#include "host/cl/kernel_options.hpp"
-#include "host/model/machine.hpp"
+#include "host/base/log.hpp"
 #include "host/model/number_format.hpp"
 #include "host/ring/mapping.hpp"
-#include "host/scene/packer.hpp"
 #include "kernels/shared/bvh.h"
 
 namespace raya {

@@ -4,7 +4,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "host/array/render.hpp"
 #include "host/base/log.hpp"
@@ -14,7 +13,6 @@
 #include "host/model/machine.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/ring/bus_and_ring.hpp"
-#include "host/ring/neighbour_exchange.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
 #include "kernels/shared/mapping.h"

@@ -9,10 +9,8 @@
 
 #include "host/array/checkpoints.hpp"
 #include "host/ring/bus_and_ring.hpp"
-#include "host/ring/neighbour_exchange.hpp"
 #include "host/ring/ring_plan.hpp"
 #include "host/ring/ring_result.hpp"
-#include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {

@@ -8,10 +8,10 @@
 
 #include "host/array/render.hpp"
 #include "host/model/t805.hpp"
-#include "host/report/roofline.hpp"
+#include "host/report/render_report.hpp"
 #include "host/report/trace_file.hpp"
+#include "host/ring/mapping.hpp"
 #include "host/ring/ring_plan.hpp"
-#include "host/ring/schedule.hpp"
 
 namespace raya {
 
@@ -69,5 +69,10 @@ std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const Rin
 /// memory holds only a block of its share, and each side of the neighbourhood shows a quarter of the cycles of
 /// filtering or comparing. If `pes` is 0, adds only a remark to the metadata.
 void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes);
+
+// The ring machine's part of a render report.
+
+/// Returns accelerator, anti-aliasing, communication, operations and modelled time.
+MachineReport ring_report(const RingSettings& settings, const RingResult& result);
 
 }  // namespace raya

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <vector>
 
 #include "host/error.hpp"
 #include "host/scene/split_mix.hpp"
@@ -231,6 +233,192 @@ Scene touching_walls(Scene scene) {
                                   [&](const Sphere& a, const Sphere& b) { return extent(a) < extent(b); });
             outermost_sphere.centre[axis] = sign * (1 - outermost_sphere.radius);
         }
+    return scene;
+}
+
+namespace {
+
+/// Returns the directions from a sphere with axis +z to the nine smaller spheres that touch it, in SPD's order: the
+/// directions to the twelve neighbours in a dense sphere packing, without the three downward ones. The nine directions
+/// form three groups, a third of a turn apart. Each group has one upward direction and two in the equatorial plane.
+std::array<Vec3, 9> nine_directions() {
+    std::array<Vec3, 9> directions;
+    const double upper = std::sqrt(2.0 / 3.0), outward = std::sqrt(1.0 / 3.0);
+    for (std::size_t group = 0; group < 3; ++group) {
+        const double azimuth = std::numbers::pi * (1.0 / 4 + 2.0 / 3 * static_cast<double>(group));
+        const double left_azimuth = azimuth - std::numbers::pi / 6, right_azimuth = azimuth + std::numbers::pi / 6;
+        directions[3 * group] = Vec3(outward * std::cos(azimuth), outward * std::sin(azimuth), upper);
+        directions[3 * group + 1] = Vec3(std::cos(left_azimuth), std::sin(left_azimuth), 0);
+        directions[3 * group + 2] = Vec3(std::cos(right_azimuth), std::sin(right_azimuth), 0);
+    }
+    return directions;
+}
+
+/// Returns `v` after the shortest rotation that maps +z to the unit vector `axis` (Rodrigues' formula); if `axis` is
+/// -z, after half a turn about y, as in SPD.
+Vec3 turned_from_z(const Vec3& v, const Vec3& axis) {
+    if (axis.z < -1 + 1e-9) return {-v.x, v.y, -v.z};
+    const Vec3 pivot(-axis.y, axis.x, 0);
+    return v * axis.z + pivot.cross(v) + pivot * (pivot.dot(v) / (1 + axis.z));
+}
+
+void add_flake(Scene& scene, int level, const Vec3& centre, double radius, const Vec3& axis) {
+    static const std::array<Vec3, 9> directions = nine_directions();
+    scene.spheres.push_back({{rounded(centre.x), rounded(centre.y), rounded(centre.z)}, rounded(radius), 1});
+    if (level == 0) return;
+    for (const Vec3& direction : directions) {
+        const Vec3 outward = turned_from_z(direction, axis);
+        add_flake(scene, level - 1, centre + outward * (radius * 4 / 3), radius / 3, outward);
+    }
+}
+
+/// Number of teeth of a wheel. It is a multiple of four, so that wheels that mesh on one side mesh on all four sides.
+constexpr int kTeeth = 24;
+
+/// A corner of the outline of a tooth.
+struct Corner {
+    double turn;    // angle from the tooth's centre line, in pitches; a pitch is 1 / kTeeth of a turn
+    double radius;  // distance from the wheel's axis, as a multiple of the radius of the pitch circle
+};
+
+/// The outline of a tooth, counter-clockwise: foot, flank, tip, tip, flank, foot. A tooth is narrower than half a pitch
+/// at the pitch circle, and shorter than the gap that it enters, so that meshing wheels do not touch.
+constexpr std::array<Corner, 6> kTooth{
+    {{-0.32, 0.9}, {-0.235, 1}, {-0.12, 1.075}, {0.12, 1.075}, {0.235, 1}, {0.32, 0.9}}};
+
+/// Returns a view of the cube [-1, 1]^3 from above, towards one of its vertical edges.
+View view_of_wheels() { return {{2.4, 3.2, 3.0}, {0, 0, -0.15}, {0, 0, 1}, 36, 0, 512, 512}; }
+
+/// Returns the surfaces of the wheels: brass, steel, glass and red enamel.
+std::vector<Surface> wheel_surfaces() {
+    return {{{0.85, 0.65, 0.25}, 0.7, 0.3, 30, 0, 1, {}},
+            {{0.75, 0.8, 0.85}, 0.4, 0.6, 100, 0, 1, {}},
+            {{0.75, 0.95, 0.85}, 0.2, 0.1, 100, 0.7, 1.1, {}},
+            {{0.8, 0.15, 0.12}, 0.9, 0.1, 20, 0, 1, {}}};
+}
+
+/// A wheel with a vertical axis.
+struct Wheel {
+    Vec3 centre;
+    double radius;     // radius of the pitch circle
+    double thickness;  // length along the axis
+    double turn;       // angle of the first tooth from the x axis, in pitches
+    int surface;
+};
+
+/// Returns the wheel's outline at z = `height`, counter-clockwise as seen from above.
+std::vector<Vec3> outline(const Wheel& wheel, double height) {
+    std::vector<Vec3> corners;
+    for (int tooth = 0; tooth < kTeeth; ++tooth)
+        for (const Corner& corner : kTooth) {
+            const double angle = 2 * std::numbers::pi * (tooth + wheel.turn + corner.turn) / kTeeth;
+            const double radius = wheel.radius * corner.radius;
+            corners.emplace_back(rounded(wheel.centre.x + radius * std::cos(angle)),
+                                 rounded(wheel.centre.y + radius * std::sin(angle)), height);
+        }
+    return corners;
+}
+
+/// Adds the upper face, the lower face, and a quadrilateral for each of their edges. All fronts face outwards.
+void add_wheel(Scene& scene, const Wheel& wheel) {
+    const std::vector<Vec3> upper = outline(wheel, rounded(wheel.centre.z + wheel.thickness / 2));
+    const std::vector<Vec3> lower = outline(wheel, rounded(wheel.centre.z - wheel.thickness / 2));
+    scene.polygons.push_back({upper, {}, wheel.surface});
+    scene.polygons.push_back({{lower.rbegin(), lower.rend()}, {}, wheel.surface});
+    for (std::size_t i = 0; i < upper.size(); ++i) {
+        const std::size_t next = (i + 1) % upper.size();
+        scene.polygons.push_back({{lower[i], lower[next], upper[next], upper[i]}, {}, wheel.surface});
+    }
+}
+
+// Sizes of the lattice, relative to the distance between the centres of neighbouring spheres. A cylinder starts inside
+// a sphere, at 0.99 of half the sphere's radius from the centre, and ends at the same depth inside the next sphere.
+constexpr double kSphereRadius = 1.0 / 4, kCylinderRadius = 1.0 / 16, kCylinderStart = 0.99 / 8;
+
+/// Returns a view from near the middle of an upper edge, diagonally down through the cube. The eye is half a lattice
+/// distance away from a column and from a layer of spheres, so the eye is outside all objects. SPD's own view is known
+/// only for size 12.
+View view_of_lattice(int size) {
+    const double x = (size / 2 + 0.5) / size, z = 1 - 0.5 / size;
+    return {rounded({x, 1, z}), rounded({x, -1, z - 2}), {0.2, 1, 0}, 60, 0, 512, 512};
+}
+
+// Adds a sphere and the cylinders from it to its neighbours in the directions +x, +y and +z.
+void add_sphere_and_cylinders(Scene& scene, int size, const std::array<int, 3>& position) {
+    const double distance = 1.0 / size;
+    const Vec3 centre(position[0] * distance, position[1] * distance, position[2] * distance);
+    scene.spheres.push_back({rounded(centre), rounded(kSphereRadius * distance), 0});
+    for (int axis = 0; axis < 3; ++axis) {
+        if (position[static_cast<std::size_t>(axis)] == size) continue;
+        Vec3 base = centre, apex = centre;
+        base[axis] += kCylinderStart * distance;
+        apex[axis] += (1 - kCylinderStart) * distance;
+        const double radius = rounded(kCylinderRadius * distance);
+        scene.cones.push_back({rounded(base), radius, rounded(apex), radius, 1 + axis});
+    }
+}
+
+}  // namespace
+
+Scene generate_balls(int level) {
+    if (level < 0 || level > kMaxBallsLevel)
+        throw UserError(fmt::format("balls: level {}: must be 0..{}", level, kMaxBallsLevel));
+    Scene scene;
+    scene.name = fmt::format("balls{}.nff", level);
+    scene.background = {0.078, 0.361, 0.753};
+    scene.view = {{2.1, 1.3, 1.7}, {0, 0, 0}, {0, 0, 1}, 45, 0.01, 512, 512};
+    scene.lights = {{{4, 3, 2}, {}}, {{1, -4, 4}, {}}, {{-3, 1, 5}, {}}};
+    scene.surfaces = {{{1, 0.75, 0.33}, 0.8, 0, 100000, 0, 1, {}}, {{1, 0.9, 0.7}, 0.5, 0.5, 3.0827, 0, 1, {}}};
+    scene.polygons = {{{{12, 12, -0.5}, {-12, 12, -0.5}, {-12, -12, -0.5}, {12, -12, -0.5}}, {}, 0}};
+    add_flake(scene, level, {0, 0, 0}, 0.5, {0, 0, 1});
+    merge_equal_surfaces(scene);
+    return scene;
+}
+
+Scene generate_gears(int size) {
+    if (size < 1 || size > kMaxGearsSize)
+        throw UserError(fmt::format("gears: size {}: must be 1..{}", size, kMaxGearsSize));
+    Scene scene;
+    scene.name = fmt::format("gears{}.nff", size);
+    scene.background = {0.078, 0.361, 0.753};
+    scene.view = view_of_wheels();
+    scene.lights = {{{4, 3, 5}, {}}, {{1, 6, 3}, {}}, {{-4, 2, 6}, {}}, {{5, -2, 2}, {}}, {{0, 0, 8}, {}}};
+    scene.surfaces = wheel_surfaces();
+    const int ground = static_cast<int>(scene.surfaces.size());
+    scene.surfaces.push_back({{0.85, 0.8, 0.7}, 0.9, 0, 0, 0, 1, {}});
+    scene.polygons = {{{{12, 12, -1.2}, {-12, 12, -1.2}, {-12, -12, -1.2}, {12, -12, -1.2}}, {}, ground}};
+    const double distance = 2.0 / size;
+    for (int x = 0; x < size; ++x)
+        for (int y = 0; y < size; ++y)
+            for (int z = 0; z < size; ++z) {
+                const Vec3 centre = Vec3(-1) + (Vec3(x, y, z) + Vec3(0.5)) * distance;
+                const double turn = (x + y) % 2 == 0 ? 0 : 0.5;  // pitches; 0.5: teeth face the gaps of the neighbours
+                add_wheel(scene, {centre, distance / 2, 0.4 * distance, turn, (x + 2 * y + z) % ground});
+            }
+    merge_equal_surfaces(scene);
+    return scene;
+}
+
+Scene generate_lattice(int size) {
+    if (size < 1 || size > kMaxLatticeSize)
+        throw UserError(fmt::format("lattice: size {}: must be 1..{}", size, kMaxLatticeSize));
+    Scene scene;
+    scene.name = fmt::format("lattice{}.nff", size);
+    scene.background = {0.078, 0.361, 0.753};
+    scene.view = view_of_lattice(size);
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double coordinate : {2, -1}) {
+            Vec3 position(0.5);
+            position[axis] = coordinate;
+            scene.lights.push_back({position, {}});
+        }
+    scene.surfaces = {{{0.9, 0.9, 0.9}, 0.5, 0.5, 3.0827, 0, 0, {}}};
+    for (const Colour& colour : {Colour(0.9, 0.1, 0.1), Colour(0.1, 0.9, 0.1), Colour(0.1, 0.1, 0.9)})
+        scene.surfaces.push_back({colour, 0.99, 0, 100000, 0, 0, {}});
+    for (int x = 0; x <= size; ++x)
+        for (int y = 0; y <= size; ++y)
+            for (int z = 0; z <= size; ++z) add_sphere_and_cylinders(scene, size, {x, y, z});
+    merge_equal_surfaces(scene);
     return scene;
 }
 

@@ -3,15 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstddef>
-#include <functional>
 #include <iterator>
 #include <utility>
 
-#include "host/base/standard_streams.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
-#include "host/scene/nff_dialects.hpp"
+#include "host/scene/nff_tokens.hpp"
 
 namespace raya {
 

@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <numeric>

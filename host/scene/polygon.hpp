@@ -3,7 +3,6 @@
 #include <array>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "host/scene/scene.hpp"

@@ -1,19 +1,353 @@
 #include "host/torus/async_machine.hpp"
 
 #include <fmt/core.h>
-#include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <deque>
+#include <functional>
 #include <iterator>
+#include <optional>
+#include <queue>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "host/error.hpp"
-#include "host/torus/async_simulation.hpp"
 #include "host/torus/link_exchange.hpp"
+#include "kernels/shared/packet.h"
 
 namespace raya {
+namespace {
+
+/// Runs one simulation. The constructor's arguments must be valid and outlive this object.
+class AsyncSimulation {
+  public:
+    AsyncSimulation(const raya_torus& torus, const History& history, const AsyncMachine& machine);
+    AsyncResult run();
+
+  private:
+    static constexpr std::uint32_t kNone = UINT32_MAX;
+    static constexpr std::uint32_t kClasses = 2;  // number of message classes: class 0 is returns, class 1 rays
+    static constexpr double kMsPerNs = 1e-6;
+
+    enum class EventKind : std::uint8_t { kJobDone, kTaskDone, kTransferDone };
+    struct Event {
+        double time = 0;           // ns
+        std::uint64_t number = 0;  // index in the order of scheduling; orders events of equal time
+        EventKind kind{};
+        std::uint32_t location = 0;  // node (kJobDone, kTaskDone) or channel
+        // Version of the node or channel at the time of scheduling. After a later change the event is obsolete.
+        std::uint32_t version = 0;
+        bool operator>(const Event& other) const {
+            return time != other.time ? time > other.time : number > other.number;
+        }
+    };
+
+    // A message that waits until a port has `slots_needed` free slots. The message is in the input thread of channel
+    // `channel`. If `channel` is kNone, the message is in the node's main task.
+    struct BlockedMessage {
+        std::uint32_t channel = kNone, message = 0, slots_needed = 1;
+    };
+
+    // One direction of a link: the output thread at its start, the transfer, and the input thread at its end.
+    struct Channel {
+        std::uint32_t start = 0, end = 0, opposite = 0;               // nodes at both ends; the link's other channel
+        std::array<std::deque<std::uint32_t>, kClasses> port{};       // [class]: messages in the port
+        std::array<std::vector<BlockedMessage>, kClasses> blocked{};  // [class]: messages that wait for the port
+        std::array<bool, kClasses> input_occupied{};                  // [class]: the input thread's slot is occupied
+        // Message that is being sent, from the start of the sender's job to the end of the transfer.
+        std::optional<std::uint32_t> sending{};
+        std::uint32_t sent_class = 0, version = 0;  // class of `sending`; number of set_rate() calls
+        bool transferring = false;
+        double words_left = 0, rate = 0, rate_since = 0, transfer_start = 0;  // words, words/ns, ns, ns
+    };
+
+    // Work of the communication task for one message at one end of a channel.
+    struct MessageJob {
+        std::uint32_t channel = 0, message = 0;
+        bool receiving = false;
+    };
+
+    struct Node {
+        std::deque<MessageJob> jobs{};
+        bool in_job = false;                          // the processor works on jobs.front()
+        std::deque<std::uint32_t> queue{};            // messages that wait for the main task
+        std::deque<std::uint32_t> injection_tasks{};  // tasks that no message causes and that have not started
+        std::uint32_t task = kNone;                   // current task of the main task
+        std::uint32_t sent_count = 0;  // number of messages of `task` that are sent; kNone until its computation ends
+        bool computing = false;
+        // Remaining computation time of `task` at time `remaining_since_ns`.
+        double remaining_ns = 0, remaining_since_ns = 0;
+        double blocked_since_ns = 0;  // time at which the main task began to wait for a port
+        std::uint32_t version = 0;    // number of starts and preemptions of the computation
+    };
+
+    void schedule(double delay_ns, EventKind kind, std::uint32_t location, std::uint32_t version);
+    void handle(const Event& event);
+
+    // The processors.
+    void add_job(std::uint32_t node, const MessageJob& job);
+    void run_processor(std::uint32_t node);
+    void preempt_main(Node& n);
+    void finish_job(std::uint32_t node);
+    void finish_task(std::uint32_t node);
+    void start_next_task(std::uint32_t node);
+    void send_outputs(std::uint32_t node);
+    void deliver(std::uint32_t message);
+
+    // The links.
+    std::uint32_t class_of(std::uint32_t message) const {
+        return history_.messages[message].kind == RAYA_KIND_RETURN ? 0 : 1;
+    }
+    std::uint32_t next_channel(std::uint32_t node, std::uint32_t message) const;
+    bool enqueue(std::uint32_t channel_index, const BlockedMessage& blocked_message);
+    void admit_blocked(std::uint32_t channel_index, std::uint32_t message_class);
+    void start_sending(std::uint32_t channel_index);
+    void begin_transfer(std::uint32_t channel_index);
+    void set_rate(std::uint32_t channel_index);
+    void end_transfer(std::uint32_t channel_index);
+    void receive(std::uint32_t channel_index, std::uint32_t message);
+    void free_input(std::uint32_t channel_index, std::uint32_t message_class);
+
+    const raya_torus& torus_;
+    const History& history_;
+    const AsyncMachine& machine_;
+    std::vector<std::uint32_t> task_of_message_;
+    std::vector<bool> delivered_;
+    std::vector<Node> nodes_;
+    std::vector<Channel> channels_;
+    std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
+    std::uint64_t event_count_ = 0, finished_tasks_ = 0;
+    double now_ = 0;  // ns
+    AsyncResult result_;
+};
+
+constexpr double kBytesPerWord = 4, kNsPerS = 1e9;
+
+// Adds a job of the communication task. The job preempts the main task.
+void AsyncSimulation::add_job(std::uint32_t node, const MessageJob& job) {
+    nodes_[node].jobs.push_back(job);
+    run_processor(node);
+}
+
+void AsyncSimulation::preempt_main(Node& n) {
+    if (n.task == kNone || !n.computing) return;
+    n.remaining_ns -= now_ - n.remaining_since_ns;
+    n.computing = false;
+    ++n.version;
+}
+
+void AsyncSimulation::run_processor(std::uint32_t node) {
+    Node& n = nodes_[node];
+    if (n.in_job) return;
+    if (!n.jobs.empty()) {
+        preempt_main(n);
+        n.in_job = true;
+        const std::uint32_t words = history_.messages[n.jobs.front().message].words;
+        const double ns = machine_.cycle_ns * (machine_.message_cycles + machine_.word_cycles * words);
+        result_.nodes[node].messages_ms += ns * kMsPerNs;
+        return schedule(ns, EventKind::kJobDone, node, 0);
+    }
+    if (n.task == kNone || n.computing || n.sent_count != kNone) return;
+    n.computing = true;
+    n.remaining_since_ns = now_;
+    schedule(std::max(0.0, n.remaining_ns), EventKind::kTaskDone, node, ++n.version);
+}
+
+void AsyncSimulation::finish_job(std::uint32_t node) {
+    Node& n = nodes_[node];
+    const MessageJob job = n.jobs.front();
+    n.jobs.pop_front();
+    n.in_job = false;
+    if (job.receiving)
+        receive(job.channel, job.message);
+    else
+        begin_transfer(job.channel);
+    run_processor(node);
+}
+
+// Starts the task of the first ray in the queue or, if the queue is empty, the node's next task without a cause.
+void AsyncSimulation::start_next_task(std::uint32_t node) {
+    Node& n = nodes_[node];
+    if (n.task != kNone || (n.queue.empty() && n.injection_tasks.empty())) return;
+    if (!n.queue.empty()) {
+        n.task = task_of_message_[n.queue.front()];
+        n.queue.pop_front();
+    } else {
+        n.task = n.injection_tasks.front();
+        n.injection_tasks.pop_front();
+    }
+    n.sent_count = kNone;
+    n.remaining_ns = machine_.cycle_ns * static_cast<double>(history_.tasks[n.task].cycles);
+    result_.nodes[node].compute_ms += n.remaining_ns * kMsPerNs;
+    run_processor(node);
+}
+
+void AsyncSimulation::finish_task(std::uint32_t node) {
+    Node& n = nodes_[node];
+    n.computing = false;
+    n.sent_count = 0;
+    ++finished_tasks_;
+    send_outputs(node);
+}
+
+// Sends the remaining messages of the current task until a port is full.
+void AsyncSimulation::send_outputs(std::uint32_t node) {
+    Node& n = nodes_[node];
+    const std::span<const HistoryMessage> messages = history_.sent_by(n.task);
+    while (n.sent_count < messages.size()) {
+        const std::uint32_t message = history_.tasks[n.task].first_message + n.sent_count;
+        const std::uint32_t channel_index = next_channel(node, message);
+        if (channel_index == kNone) {
+            ++n.sent_count;
+            deliver(message);
+            continue;
+        }
+        const std::uint32_t slots = class_of(message) == 1 ? machine_.entry_slots : 1;
+        if (!enqueue(channel_index, {kNone, message, slots})) {
+            n.blocked_since_ns = now_;
+            return;
+        }
+        ++n.sent_count;
+    }
+    n.task = kNone;
+    start_next_task(node);
+}
+
+void AsyncSimulation::deliver(std::uint32_t message) {
+    if (delivered_[message]) throw std::logic_error("async: a message arrives twice");
+    delivered_[message] = true;
+    ++result_.delivered;
+    if (task_of_message_[message] == HistoryTask::kNoCause) return;
+    const std::uint32_t node = history_.messages[message].destination;
+    auto& queue = nodes_[node].queue;
+    queue.push_back(message);
+    result_.nodes[node].queue_max = std::max<std::uint64_t>(result_.nodes[node].queue_max, queue.size());
+    start_next_task(node);
+}
+
+// Returns the channel by which the message leaves the node; kNone if the node is the message's destination.
+std::uint32_t AsyncSimulation::next_channel(std::uint32_t node, std::uint32_t message) const {
+    const std::uint32_t destination = history_.messages[message].destination;
+    if (node == destination) return kNone;
+    const std::uint32_t link =
+        class_of(message) == 0 ? raya_return_link(torus_, node) : raya_next_link(torus_, node, destination);
+    return node * RAYA_LINKS + link;
+}
+
+// Puts the message into the channel's port and returns true. If too few slots are free, adds the message to the blocked
+// messages instead and returns false.
+bool AsyncSimulation::enqueue(std::uint32_t channel_index, const BlockedMessage& blocked_message) {
+    const std::uint32_t message_class = class_of(blocked_message.message);
+    Channel& channel = channels_[channel_index];
+    if (channel.port[message_class].size() + blocked_message.slots_needed > machine_.buffer) {
+        channel.blocked[message_class].push_back(blocked_message);
+        return false;
+    }
+    channel.port[message_class].push_back(blocked_message.message);
+    start_sending(channel_index);
+    return true;
+}
+
+// Called when a slot of a port has become free. Repeatedly moves a message into the port: the first blocked message for
+// which enough slots are free. So a ray that stays in its ring can overtake a ray that waits to enter the ring.
+void AsyncSimulation::admit_blocked(std::uint32_t channel_index, std::uint32_t message_class) {
+    Channel& channel = channels_[channel_index];
+    for (;;) {
+        auto& blocked = channel.blocked[message_class];
+        const auto fits = [&](const BlockedMessage& b) {
+            return channel.port[message_class].size() + b.slots_needed <= machine_.buffer;
+        };
+        const auto first = std::ranges::find_if(blocked, fits);
+        if (first == blocked.end()) return;
+        const BlockedMessage next = *first;
+        blocked.erase(first);
+        channel.port[message_class].push_back(next.message);
+        start_sending(channel_index);
+        if (next.channel != kNone) {
+            free_input(next.channel, message_class);
+        } else {
+            Node& n = nodes_[channel.start];
+            result_.nodes[channel.start].port_ms += (now_ - n.blocked_since_ns) * kMsPerNs;
+            ++n.sent_count;
+            send_outputs(channel.start);
+        }
+    }
+}
+
+// Sends the port's first message of a class for which the input thread has a free slot. Returns have priority over
+// rays, because returns are short.
+void AsyncSimulation::start_sending(std::uint32_t channel_index) {
+    Channel& channel = channels_[channel_index];
+    if (channel.sending) return;
+    for (std::uint32_t message_class = 0; message_class < kClasses; ++message_class) {
+        if (channel.port[message_class].empty() || channel.input_occupied[message_class]) continue;
+        channel.sending = channel.port[message_class].front();
+        channel.sent_class = message_class;
+        channel.input_occupied[message_class] = true;
+        return add_job(channel.start, {channel_index, *channel.sending, false});
+    }
+}
+
+void AsyncSimulation::begin_transfer(std::uint32_t channel_index) {
+    Channel& channel = channels_[channel_index];
+    channel.transferring = true;
+    channel.words_left = history_.messages[*channel.sending].words;
+    channel.rate = 0;
+    channel.transfer_start = now_;
+    set_rate(channel_index);
+    if (channels_[channel.opposite].transferring) set_rate(channel.opposite);
+}
+
+// Sets the rate of the channel's transfer to the rate that is now available, and reschedules the end of the transfer.
+void AsyncSimulation::set_rate(std::uint32_t channel_index) {
+    Channel& channel = channels_[channel_index];
+    channel.words_left -= channel.rate * (now_ - channel.rate_since);
+    channel.rate_since = now_;
+    double ns = 0;
+    if (machine_.one_way > 0) {
+        channel.rate = (channels_[channel.opposite].transferring ? machine_.both_ways / 2 : machine_.one_way) /
+                       (kBytesPerWord * kNsPerS);
+        ns = channel.words_left / channel.rate;
+    }
+    schedule(std::max(0.0, ns), EventKind::kTransferDone, channel_index, ++channel.version);
+}
+
+void AsyncSimulation::end_transfer(std::uint32_t channel_index) {
+    Channel& channel = channels_[channel_index];
+    const std::uint32_t message = *channel.sending, message_class = channel.sent_class;
+    AsyncLink& link = result_.links[channel_index];
+    link.busy_ms += (now_ - channel.transfer_start) * kMsPerNs;
+    ++link.messages;
+    link.words += history_.messages[message].words;
+    channel.transferring = false;
+    channel.sending.reset();
+    channel.port[message_class].pop_front();
+    if (channels_[channel.opposite].transferring) set_rate(channel.opposite);
+    add_job(channel.end, {channel_index, message, true});
+    admit_blocked(channel_index, message_class);
+    start_sending(channel_index);
+}
+
+// Called when the communication task has received a message: delivers or forwards the message.
+void AsyncSimulation::receive(std::uint32_t channel_index, std::uint32_t message) {
+    const std::uint32_t node = channels_[channel_index].end, next = next_channel(node, message);
+    if (next == kNone) {
+        deliver(message);
+        return free_input(channel_index, class_of(message));
+    }
+    const bool same_ring = next % RAYA_LINKS == channel_index % RAYA_LINKS;
+    const std::uint32_t slots = class_of(message) == 0 || same_ring ? 1 : machine_.entry_slots;
+    if (enqueue(next, {channel_index, message, slots})) free_input(channel_index, class_of(message));
+}
+
+void AsyncSimulation::free_input(std::uint32_t channel_index, std::uint32_t message_class) {
+    channels_[channel_index].input_occupied[message_class] = false;
+    start_sending(channel_index);
+}
+
+}  // namespace
 
 AsyncSimulation::AsyncSimulation(const raya_torus& torus, const History& history, const AsyncMachine& machine)
     : torus_(torus),

@@ -2,20 +2,18 @@
 #pragma once
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "host/array/render.hpp"
-#include "host/base/clock.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/torus/link_exchange.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/topology.hpp"
 #include "host/torus/torus_result.hpp"
-#include "host/torus/torus_settings.hpp"
 #include "kernels/shared/traffic.h"
 
 namespace raya {

@@ -3,13 +3,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "host/base/encoding.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/error.hpp"
-#include "host/scene/packer.hpp"
-#include "host/torus/topology.hpp"
+#include "host/scene/scene.hpp"
 #include "host/version.hpp"
 #include "kernels/shared/packet.h"
 #include "kernels/shared/traffic.h"
@@ -112,6 +114,17 @@ std::string memories_hash(const NodeMemories& memories, const NodeDistribution& 
     return bytes_hash({all.data(), all.size()});
 }
 
+/// Throws UserError if there are more voxels or lights than the fields of a packet can number.
+void check_packet_fields(const TorusSettings& s, const Scene& scene) {
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+        if (s.voxels[axis] > RAYA_MAX_PLACES)
+            throw UserError(
+                fmt::format("--voxels {}: must be at most {} along an axis", sides_text(s.voxels), RAYA_MAX_PLACES));
+    if (scene.lights.size() > RAYA_MAX_LIGHTS)
+        throw UserError(fmt::format("{}: {} lights: the torus supports at most {}; use fewer, or a ring machine",
+                                    scene.name, scene.lights.size(), RAYA_MAX_LIGHTS));
+}
+
 }  // namespace
 
 TorusSettings default_torus(const ImageSize& size) {
@@ -128,16 +141,6 @@ TorusSettings default_torus(const ImageSize& size) {
 
 JobSettings job_settings(const TorusSettings& s, const LengthScale& scale) {
     return {{s.width, s.height}, s.sampling, s.bounces, t805_cycles(s.packets), s.format, scale.exponent};
-}
-
-void check_packet_fields(const TorusSettings& s, const Scene& scene) {
-    for (std::uint32_t axis = 0; axis < 3; ++axis)
-        if (s.voxels[axis] > RAYA_MAX_PLACES)
-            throw UserError(
-                fmt::format("--voxels {}: must be at most {} along an axis", sides_text(s.voxels), RAYA_MAX_PLACES));
-    if (scene.lights.size() > RAYA_MAX_LIGHTS)
-        throw UserError(fmt::format("{}: {} lights: the torus supports at most {}; use fewer, or a ring machine",
-                                    scene.name, scene.lights.size(), RAYA_MAX_LIGHTS));
 }
 
 TorusSettings checked_settings(TorusSettings s, const Scene& scene, const DeviceInfo& device) {
@@ -192,6 +195,157 @@ StateSettings state_settings(const TorusSettings& s, const TorusJob& job, const 
             {"--sampling", s.sampling == Sampling::kCorners ? "corners" : "centres"},
             {"every Nth pixel, from", fmt::format("{}, {}", s.pixels.stride, s.pixels.first)},
             {"another scene, camera or light", memories_hash(job.memories, distribution)}};
+}
+
+namespace {
+
+Vec3 vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+// Projects a point P onto the image: solves P - eye = c (corner + x column_step + y row_step) for depth c, column x and
+// row y.
+class Projection {
+  public:
+    Projection(const raya_job& job, const NumberFormat& format)
+        : eye_(vec3(job.eye)),
+          corner_(vec3(job.corner)),
+          column_step_(vec3(job.column_step)),
+          row_step_(vec3(job.row_step)),
+          normal_(column_step_.cross(row_step_)),
+          pixel_distance_(std::min(column_step_.length(), row_step_.length())) {
+        const double width = job.mapping.width, height = job.mapping.height;
+        // Bound of the rounding error of a direction, in pixels: 16 units in the last place of the sum of the lengths
+        // of the direction's terms. The margin is one pixel larger, because the edge of a window is half-open.
+        const double unit = std::ldexp(1.0, -format.fraction_bits);
+        margin_ = 1 + 16 * unit * (corner_.length() + width * column_step_.length() + height * row_step_.length()) /
+                          pixel_distance_;
+        for (const double x : {-1.0, width})
+            for (const double y : {-1.0, height})
+                max_distance_ = std::max(max_distance_, (corner_ + x * column_step_ + y * row_step_).length());
+    }
+
+    const Vec3& eye() const { return eye_; }
+    double margin() const { return margin_; }
+    double pixel_distance() const { return pixel_distance_; }  // minimum distance of adjacent pixels at depth c = 1
+    double max_distance() const { return max_distance_; }      // maximum |P - eye| of a pixel at depth c = 1
+
+    // Returns depth c of P.
+    double depth(const Vec3& p) const { return (p - eye_).dot(normal_) / corner_.dot(normal_); }
+
+    // Returns column and row of P, which must be in front of the eye.
+    std::array<double, 2> pixel(const Vec3& p) const {
+        const Vec3 flat = (p - eye_) / depth(p) - corner_;
+        return {flat.dot(row_step_.cross(normal_)) / column_step_.dot(row_step_.cross(normal_)),
+                flat.dot(column_step_.cross(normal_)) / row_step_.dot(column_step_.cross(normal_))};
+    }
+
+  private:
+    Vec3 eye_, corner_, column_step_, row_step_, normal_;
+    double pixel_distance_, margin_, max_distance_ = 0;
+};
+
+// Bounds of projected points: [0] columns, [1] rows.
+struct ScreenBounds {
+    double low[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    double high[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    bool whole = false;  // true: no bound is known, so the window is the whole image
+    bool is_nonempty() const { return whole || low[0] <= high[0]; }
+};
+
+// Extent of the bounding box along an axis. `slack`: bound of the rounding error of a ray's entry point
+// (grid/traversal.clh), which is a few fp32 units in the last place of the path length and of the origin.
+struct BoxExtent {
+    double low, high, slack;
+};
+
+BoxExtent extent_of(const raya_grid& grid, std::uint32_t axis, double eye) {
+    const double low = raya_voxel_plane(grid, axis, 0), high = raya_voxel_plane(grid, axis, grid.divisions[axis]);
+    return {low, high, std::ldexp(std::abs(eye) + std::max(std::abs(low), std::abs(high)), -20)};
+}
+
+// Clips a face to the points with depth >= `min_depth` (Sutherland & Hodgman 1974).
+std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4>& face, double min_depth) {
+    std::vector<Vec3> polygon;
+    for (std::size_t i = 0; i < face.size(); ++i) {
+        const Vec3 &a = face[i], &b = face[(i + 1) % face.size()];
+        const double depth_a = projection.depth(a), depth_b = projection.depth(b);
+        if (depth_a >= min_depth) polygon.push_back(a);
+        if ((depth_a >= min_depth) != (depth_b >= min_depth))
+            polygon.push_back(a + (min_depth - depth_a) / (depth_b - depth_a) * (b - a));
+    }
+    return polygon;
+}
+
+// Extends the bounds by a face of the voxel at place `at`. The face lies in plane `k` of the grid planes perpendicular
+// to `axis`. `distance`: distance of plane `k` from the eye.
+void add_face(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, const raya_place& at,
+              std::uint32_t axis, std::uint32_t k, double distance) {
+    const std::uint32_t second = (axis + 1) % 3, third = (axis + 2) % 3;
+    std::array<Vec3, 4> face;
+    for (std::uint32_t corner = 0; corner < 4; ++corner) {
+        face[corner][axis] = raya_voxel_plane(grid, axis, k);
+        face[corner][second] = raya_voxel_plane(grid, second, at.at[second] + (corner == 1 || corner == 2 ? 1 : 0));
+        face[corner][third] = raya_voxel_plane(grid, third, at.at[third] + corner / 2);
+    }
+    // The clipping depth is smaller than the depth of any visible point of the face.
+    for (const Vec3& p : clipped(projection, face, distance / projection.max_distance() / 2)) {
+        const std::array<double, 2> pixel = projection.pixel(p);
+        for (std::size_t i = 0; i < 2; ++i) {
+            bounds.low[i] = std::min(bounds.low[i], pixel[i]);
+            bounds.high[i] = std::max(bounds.high[i], pixel[i]);
+        }
+    }
+}
+
+void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
+    const raya_place at = raya_place_of(voxel, grid.divisions[0], grid.divisions[1]);
+    bool contains_eye = true;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const double eye = projection.eye()[axis];
+        const BoxExtent box = extent_of(grid, axis, eye);
+        const double low = raya_voxel_plane(grid, axis, at.at[axis]),
+                     high = raya_voxel_plane(grid, axis, at.at[axis] + 1);
+        contains_eye = contains_eye && eye >= low - box.slack && eye <= high + box.slack;
+        const double distance_below = box.low - eye, distance_above = eye - box.high,
+                     distance = std::max(distance_below, distance_above);
+        const bool faces_eye =
+            distance_below > 0 ? low <= box.low + box.slack : distance_above > 0 && high >= box.high - box.slack;
+        if (!faces_eye) continue;
+        // No bound is known if the eye is so close to the face that rounding may move the entry point by a pixel.
+        bounds.whole = bounds.whole || box.slack * projection.max_distance() > distance * projection.pixel_distance();
+        add_face(bounds, projection, grid, at, axis, at.at[axis] + (distance_above > 0 ? 1 : 0), distance);
+    }
+    bounds.whole = bounds.whole || contains_eye;
+}
+
+std::uint32_t clamped(double value, std::uint32_t max) {
+    return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(max)));
+}
+
+}  // namespace
+
+std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& grid, const raya_torus& torus,
+                                       const NumberFormat& format) {
+    constexpr int kMinWindowBits = 10;  // with fewer fraction bits there is no error bound, so no window
+    const Projection projection(job, format);
+    const std::uint32_t width = job.mapping.width, height = job.mapping.height;
+    std::vector<PixelWindow> windows;
+    for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
+        ScreenBounds bounds;
+        const std::uint32_t voxels = raya_node_voxels(torus, grid, node);
+        bounds.whole = voxels > 0 && format.fraction_bits < kMinWindowBits;
+        for (std::uint32_t i = 0; i < voxels && !bounds.whole; ++i)
+            add_voxel(bounds, projection, grid, raya_voxel_of_node(torus, grid, node, i));
+        PixelWindow window{{0, height}, {0, width}};
+        if (!bounds.is_nonempty()) window = {{0, 0}, {0, 0}};
+        if (bounds.is_nonempty() && !bounds.whole) {
+            const double m = projection.margin();
+            window = {
+                {clamped(std::floor(bounds.low[1] - m), height), clamped(std::ceil(bounds.high[1] + m) + 1, height)},
+                {clamped(std::floor(bounds.low[0] - m), width), clamped(std::ceil(bounds.high[0] + m) + 1, width)}};
+        }
+        windows.push_back(window);
+    }
+    return windows;
 }
 
 }  // namespace raya

@@ -3,23 +3,18 @@
 #pragma once
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "host/base/checkpoint.hpp"
 #include "host/cl/commands.hpp"
 #include "host/cl/device.hpp"
-#include "host/cl/kernel_options.hpp"
 #include "host/model/mapping_rule.hpp"
 #include "host/model/number_format.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
-#include "host/torus/buffer_plan.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/topology.hpp"
-#include "host/torus/torus_settings.hpp"
-#include "kernels/shared/node.h"
 
 namespace raya {
 
@@ -41,9 +36,6 @@ std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& gri
 TorusSettings default_torus(const ImageSize& size);
 
 JobSettings job_settings(const TorusSettings& settings, const LengthScale& scale);
-
-/// Throws UserError if there are more voxels or lights than the fields of a packet can number.
-void check_packet_fields(const TorusSettings& settings, const Scene& scene);
 
 /// Returns the settings with the lanes, group size and other kernel settings chosen for the device. Throws UserError
 /// like check_packet_fields(), and if the kernels cannot be built with the settings. Needs neither the packed scene nor

@@ -8,15 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "host/cl/profile.hpp"
 #include "host/error.hpp"
-#include "host/image/image.hpp"
 #include "host/model/machine.hpp"
 #include "host/model/t805.hpp"
-#include "host/ranks/ranks.hpp"
-#include "host/report/roofline.hpp"
-#include "host/scene/scene.hpp"
-#include "host/torus/torus_settings.hpp"
+#include "host/report/render_report.hpp"
+#include "host/torus/topology.hpp"
 #include "kernels/shared/packet.h"
 #include "kernels/shared/torus.h"
 #include "kernels/shared/traffic.h"
@@ -145,5 +141,15 @@ struct TorusRun {
     std::vector<std::uint64_t> link_words{};
     std::vector<raya_head> returns{};
 };
+
+// The torus's part of a render report.
+
+/// Returns nodes, packets, links, operations and modelled time. `asynchronous`: the time of the machine without
+/// supersteps, if it was simulated.
+MachineReport torus_report(const TorusSettings& settings, const TorusResult& result,
+                           const std::optional<AsynchronousTime>& asynchronous);
+
+/// Returns the numbers of operations of all counted events on T805s (host/model/t805.hpp).
+Json t805_budget_json(const EventCounts& events, const PacketCharge& packets);
 
 }  // namespace raya

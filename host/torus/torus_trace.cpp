@@ -4,16 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <iterator>
-#include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <stdexcept>
 
 #include "host/model/t805.hpp"
-#include "host/report/trace_file.hpp"
 #include "host/torus/topology.hpp"
 
 namespace raya {

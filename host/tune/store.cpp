@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "host/base/encoding.hpp"
 #include "host/base/module.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
@@ -109,9 +110,8 @@ std::string file_name_part(const std::string& name) {
 // Returns the folder that an environment variable contains. Ignores relative paths, as the XDG Base Directory
 // Specification requires.
 std::optional<fs::path> folder_of_variable(const char* variable) {
-    const char* text = std::getenv(variable);
-    if (text == nullptr || !fs::path(text).is_absolute()) return {};
-    return fs::path(text);
+    const fs::path folder = environment_value(variable);
+    return folder.is_absolute() ? std::optional(folder) : std::nullopt;
 }
 
 }  // namespace
@@ -181,8 +181,7 @@ void save_tuned(const DeviceInfo& device, const TunedFile& tuned) {
 }
 
 TunedSource stored_choices(std::function<void(const std::string&)> warn) {
-    const char* const variable = std::getenv("RAYA_TUNED");
-    const std::string setting = variable != nullptr ? variable : "";
+    const std::string setting = environment_value("RAYA_TUNED");
     if (!setting.empty() && setting != "off")
         throw UserError(fmt::format("RAYA_TUNED={}: must be off, or not set", setting));
     const auto folder = tuned_folder();

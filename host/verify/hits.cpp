@@ -1,16 +1,16 @@
 #include "host/verify/hits.hpp"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <sstream>
 
 #include "host/accel/partition.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/embedded.hpp"
-#include "host/model/number_format.hpp"
 #include "host/scene/nff.hpp"
 #include "host/scene/split_mix.hpp"
 #include "host/verify/verify.hpp"
@@ -270,6 +270,32 @@ void verify_geometry(Verification& v) {
                         .filter = true,
                         .grid = false,
                         .sources = v.sources()});
+}
+
+std::vector<KnownScene> known_scenes() {
+    std::vector<KnownScene> all;
+    for (const char* name : {"spheres", "planes", "polygons", "cones"}) {
+        const std::string file = fmt::format("host/verify/known_{}.nff", name);
+        const std::string& text = embedded_files().at(file);
+        KnownScene known{name, parse_nff(text, file), {}};
+        // A quadrilateral that is not planar, which the reader would cut into triangles.
+        if (file.ends_with("polygons.nff"))
+            known.scene.polygons.push_back({{{200, 0, 12}, {200, 8, 20}, {192, 8, 12}, {192, 0, 20}}, {}, 0});
+        std::istringstream lines(text);
+        for (std::string line, object; std::getline(lines, line);) {
+            if (!line.starts_with("#hit ")) continue;
+            std::istringstream in(line.substr(5));
+            KnownHit hit;
+            for (auto* vector : {&hit.origin, &hit.direction})
+                for (float& number : *vector) in >> number;
+            in >> object >> hit.t >> hit.limit >> std::ws;
+            if (object != "-") hit.object = static_cast<std::uint32_t>(std::stoul(object));
+            std::getline(in, hit.description);
+            known.hits.push_back(hit);
+        }
+        all.push_back(std::move(known));
+    }
+    return all;
 }
 
 }  // namespace raya

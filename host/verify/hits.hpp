@@ -9,22 +9,21 @@
 
 #include "host/cl/kernel_source.hpp"
 #include "host/model/number_format.hpp"
-#include "host/scene/packer.hpp"
 #include "host/scene/scene.hpp"
 #include "host/verify/verdict.hpp"
 
 namespace raya {
 
 inline constexpr std::uint32_t kNoObject = 0xffffffffu;  // equals RAYA_NO_OBJECT of the kernels
-inline constexpr float kDefaultRayLimit = 4096;          // limit of a ray (maximum t), beyond all objects of the scenes
+inline constexpr float kDefaultRayLimit = 4096;          // maximum t of a ray, beyond all objects of the scenes
 
 /// A ray, and its hit in a KnownScene.
 struct KnownHit {
-    const char* description;
-    std::array<float, 3> origin, direction;
-    std::uint32_t object;  // object number in the job, or kNoObject
-    float t;               // distance of the hit; unused for a miss
-    float limit = kDefaultRayLimit;
+    std::string description{};
+    std::array<float, 3> origin{}, direction{};
+    std::uint32_t object = kNoObject;  // object number in the job
+    float t = 0;                       // distance of the hit; unused for a miss
+    float limit = 0;                   // maximum distance
 };
 
 /// A scene, and rays whose hits are calculated by hand.
@@ -34,8 +33,7 @@ struct KnownScene {
     std::vector<KnownHit> hits;
 };
 
-/// Returns scenes of spheres, planes, polygons and patches, and cones, with hits from outside and inside, tangents,
-/// misses and equal distances. All numbers are exact in formats with at least 12 fraction bits.
+/// Returns the scenes host/verify/known_*.nff, with hits from outside and inside, tangents, misses and equal distances.
 std::vector<KnownScene> known_scenes();
 
 /// Rays in the memory layout of the kernels.

@@ -2,20 +2,215 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <bit>
+#include <array>
+#include <cstdint>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "host/model/machine.hpp"
 #include "host/model/number_format.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
 #include "host/torus/history.hpp"
+#include "host/torus/topology.hpp"
 #include "host/torus/torus_renderer.hpp"
-#include "host/verify/renderings.hpp"
+#include "host/verify/reference_images.hpp"
+#include "host/verify/verify.hpp"
 
 namespace raya {
 namespace {
+
+/// A reference image and the settings that must not change any bit of it.
+struct Rendering {
+    std::string image;
+    Depth depth = Depth::kFull;               // verify() includes the rendering at this and greater depths
+    std::uint32_t lanes = 0, group_size = 0;  // 0: the device's default
+    MappingRule mapping = cyclic_mapping(8);  // mapping of pixels to PEs of the ring
+    std::uint32_t pes = kReferenceSide;
+    std::uint32_t work_per_launch = 0;  // see RingSettings and TorusSettings; 0: default
+    AccelKind accel = AccelKind::kNone;
+    bool packets = false;  // ring: RingSettings::packets
+    bool torus = false;
+    std::array<std::uint32_t, 3> nodes = {2, 2, 2};
+    // More voxels than nodes, so that some nodes have several.
+    std::array<std::uint32_t, 3> voxels = {nodes[0] + 1, nodes[1] + 2, nodes[2]};
+    Links links = Links::kTorus3d;
+    Injection inject = Injection::kAll;
+    std::uint32_t queue = 0;     // capacity of the queues of the torus, packets; 0: default
+    std::uint32_t pe_bytes = 0;  // memory of a PE of the ring; 0: no limit
+    bool history = false;        // record the cycles of each packet and check their sum in each node
+    bool global_words = false;   // job words are in global memory, as if local memory were too small
+    bool fallback_code = false;  // as if the device did not round division, square root and fma correctly, and the
+                                 // compiler had none of the builtins that raya uses
+
+    /// Returns the name of the renderer with its accelerator or torus, such as "ring", "bvh" or "torus2d 3x2x2 root".
+    /// It is the key in StoredImage::counts: renderings of an image by the same renderer have equal counts.
+    std::string check_kind() const;
+
+    std::string name() const;
+};
+
+// Returns the mapping's name in names of checks.
+std::string mapping_name(const MappingRule& mapping) {
+    if (mapping == column_mapping()) return "column";
+    return mapping.kind == RAYA_RANDOM ? "random" : mapping_text(mapping);
+}
+
+std::string Rendering::check_kind() const {
+    if (torus)
+        return fmt::format("{} {}{}{}", links_name(links), sides_text(nodes), inject == Injection::kRoot ? " root" : "",
+                           queue ? fmt::format(", queue {}", queue) : "");
+    if (packets) return "packets";
+    return accel == AccelKind::kNone ? "ring" : accel_text({.kind = accel});
+}
+
+std::string Rendering::name() const {
+    std::string text = torus ? check_kind()
+                             : fmt::format("{} on {}{}", mapping_name(mapping), pes,
+                                           accel == AccelKind::kNone ? "" : ", " + check_kind());
+    if (mapping.kind == RAYA_FOLD_BLOCK) text += ", block fold";
+    if (work_per_launch) text += ", launches of " + counted(work_per_launch, torus ? "unit" : "test");
+    if (pe_bytes) text += fmt::format(", PEs of {} bytes", pe_bytes);
+    if (history) text += ", history";
+    if (global_words) text += ", global words";
+    if (fallback_code) text += ", fallback code";
+    if (lanes) text += fmt::format(", {}x{}", lanes, group_size);
+    if (!lanes && group_size) text += fmt::format(", groups of {}", group_size);
+    return fmt::format("{}: {}", image, text);
+}
+
+constexpr auto kGrid = AccelKind::kGrid, kBvh = AccelKind::kBvh;
+
+// Returns renderings that together use every kernel and option. Building kernels takes most of a rendering's time, so
+// renderings with equal build options are adjacent and use the same build. For the same reason some renderings of
+// depth kQuick combine several features, such as global words and fallback code. The renderings of depth kBrief need
+// three builds: one for each machine and one for a reduced format.
+std::vector<Rendering> standard_renderings() {
+    constexpr auto k2d = Links::kTorus2d;
+    constexpr auto kRoot = Injection::kRoot;
+    constexpr auto kBrief = Depth::kBrief, kQuick = Depth::kQuick;
+    return {
+        {.image = "glass fp32", .depth = kBrief},
+        {.image = "glass fp32 filter", .depth = kBrief, .mapping = cyclic_mapping(5), .pes = 10},
+        {.image = "glass fp32 axes", .depth = kBrief, .mapping = rows_mapping(), .pes = 16},
+        {.image = "glass fp32 diagonals",
+         .depth = kQuick,
+         .mapping = grid_mapping(4, 4),
+         .pes = 16,
+         .work_per_launch = 1},
+        {.image = "glass fp32 filter",
+         .depth = kQuick,
+         .group_size = 8,
+         .mapping = cyclic_mapping(8, Fold::kBlock),
+         .pes = 7,
+         .work_per_launch = 1,
+         .pe_bytes = 3300},
+        {.image = "glass fp32", .depth = kQuick, .mapping = tiles_mapping(5, 4), .pes = 7},
+        {.image = "glass fp32", .global_words = true},
+        {.image = "glass fp32", .fallback_code = true},
+        {.image = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
+        {.image = "glass fp32", .lanes = 4, .group_size = 32, .mapping = random_mapping(1), .pes = 5},
+        {.image = "ties fp32",
+         .depth = kQuick,
+         .mapping = blocks_mapping(),
+         .pes = 5,
+         .global_words = true,
+         .fallback_code = true},
+        {.image = "ties fp32"},
+        {.image = "ties fp32", .accel = kGrid},
+        {.image = "ties fp32", .accel = kBvh},
+        {.image = "ties fp32", .torus = true},
+        {.image = "polygons fp32", .mapping = tiles_mapping(5, 4), .pes = 7},
+        {.image = "polygons fp32", .depth = kQuick, .accel = kGrid},
+        {.image = "polygons fp32", .accel = kGrid, .global_words = true, .fallback_code = true},
+        {.image = "far fp32", .depth = kQuick, .accel = kGrid},
+        {.image = "polygons fp32", .depth = kQuick, .accel = kBvh},
+        {.image = "leaves fp32", .depth = kQuick, .lanes = 4, .group_size = 1, .accel = kBvh},
+        {.image = "leaves spa22", .depth = kQuick, .lanes = 1, .group_size = 1, .accel = kBvh},
+        {.image = "polygons fp32",
+         .depth = kQuick,
+         .mapping = tiles_mapping(4, 4),
+         .pes = 7,
+         .accel = kBvh,
+         .packets = true},
+        {.image = "leaves fp32", .mapping = tiles_mapping(4, 4), .pes = 7, .accel = kBvh, .packets = true},
+        {.image = "cones fp32",
+         .mapping = tiles_mapping(20, 1),
+         .pes = 7,
+         .accel = kBvh,
+         .packets = true,
+         .fallback_code = true},
+        {.image = "polygons fp32", .accel = kBvh, .global_words = true, .fallback_code = true},
+        {.image = "cones fp32", .lanes = 8, .group_size = 1, .accel = kBvh, .fallback_code = true},
+        {.image = "polygons fp32", .lanes = 4, .group_size = 1, .accel = kBvh, .fallback_code = true},
+        {.image = "polygons fp32", .depth = kQuick, .torus = true},
+        {.image = "polygons fp32", .depth = kQuick, .work_per_launch = 1, .torus = true},
+        {.image = "far fp32",
+         .depth = kQuick,
+         .group_size = 64,
+         .torus = true,
+         .nodes = {3, 2, 2},
+         .voxels = {4, 2, 2},
+         .history = true,
+         .fallback_code = true},
+        {.image = "far fp32",
+         .depth = kQuick,
+         .group_size = 64,
+         .torus = true,
+         .nodes = {3, 2, 2},
+         .voxels = {4, 2, 2},
+         .queue = 40,
+         .history = true,
+         .fallback_code = true},
+        {.image = "polygons fp32", .torus = true, .global_words = true},
+        {.image = "polygons fp32", .depth = kBrief, .torus = true, .nodes = {3, 2, 2}, .links = k2d, .inject = kRoot},
+        {.image = "cones fp32", .mapping = blocks_mapping(), .pes = 5, .global_words = true},
+        {.image = "mirrors spa22", .depth = kBrief, .mapping = column_mapping(), .pes = kReferenceSide},
+        {.image = "mirrors spa22 filter", .depth = kQuick, .mapping = cyclic_mapping(16), .pes = kReferenceSide},
+        {.image = "cones e5m10", .depth = kQuick, .fallback_code = true},
+        {.image = "mirrors spa22", .fallback_code = true},
+        {.image = "polygons spa22", .torus = true, .fallback_code = true},
+        {.image = "mirrors spa22 axes", .mapping = cyclic_mapping(3), .pes = 100},
+        {.image = "planes fp32 corners", .accel = kGrid},
+        {.image = "spheres e8m12t", .depth = kQuick},
+        {.image = "glass e8m21"},
+        {.image = "mirrors spa22", .torus = true, .links = k2d},
+        {.image = "polygons spa22", .accel = kGrid},
+        {.image = "polygons spa22", .depth = kQuick, .accel = kBvh},
+        {.image = "spheres e8m12t", .accel = kBvh},
+        {.image = "polygons spa22", .torus = true, .nodes = {1, 3, 2}, .inject = kRoot},
+        {.image = "glass fp32", .torus = true, .nodes = {4, 4, 4}, .links = k2d},
+        {.image = "glass fp32", .lanes = 1, .group_size = 1, .torus = true, .queue = 21}};
+}
+
+// Returns renderings with every number of lanes and groups of 1 and 32 work-items, on both machines, in fp32 and
+// reduced formats.
+std::vector<Rendering> renderings_of_all_builds() {
+    std::vector<Rendering> all;
+    for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
+        for (const std::uint32_t group : {1u, 32u}) {
+            for (const char* image : {"glass fp32", "polygons fp32", "mirrors spa22", "cones e5m10", "spheres e8m12t"})
+                all.push_back({.image = image, .lanes = lanes, .group_size = group});
+            for (const char* image : {"polygons fp32", "polygons spa22"}) {
+                all.push_back({.image = image, .lanes = lanes, .group_size = group, .accel = kGrid});
+                all.push_back({.image = image, .lanes = lanes, .group_size = group, .accel = kBvh});
+                all.push_back({.image = image, .lanes = lanes, .group_size = group, .torus = true});
+            }
+            all.push_back({.image = "polygons fp32",
+                           .lanes = lanes,
+                           .group_size = group,
+                           .mapping = tiles_mapping(4, 4),
+                           .pes = 7,
+                           .accel = kBvh,
+                           .packets = true});
+            all.push_back({.image = "glass fp32 filter", .lanes = lanes, .group_size = group});
+            all.push_back({.image = "mirrors spa22 axes", .lanes = lanes, .group_size = group});
+        }
+    return all;
+}
 
 KernelChoice kernels_for(KernelChoice choice, const Rendering& r) {
     choice.local_words = !r.global_words;
@@ -197,7 +392,7 @@ void verify_images(Verification& v) {
         return r.lanes == 0 || v.given_lanes() == 0 || r.lanes == v.given_lanes();
     };
     for (const Rendering& r : renderings)
-        if (v.depth() >= r.min_depth && has_given_lanes(r))
+        if (v.depth() >= r.depth && has_given_lanes(r))
             v.check("image", r.name(), [&](Session& session) { return check_rendering(v, session, r); });
     if (!v.full()) return;
     const Rendering ring{.image = "glass fp32"}, grid{.image = "polygons fp32", .accel = AccelKind::kGrid},

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
 
 #include "host/cl/kernel_options.hpp"
 #include "host/cl/measure.hpp"
-#include "host/model/number_format.hpp"
+#include "host/embedded.hpp"
 #include "host/verify/verify.hpp"
 #include "kernels/shared/chains.h"
 
@@ -253,6 +255,54 @@ void verify_number_format(Verification& v, const NumberFormat& format, std::uint
     const NumberBuild build{.format = format, .lanes = lanes};
     v.check("number", build.name(),
             [&](Session&) { return skipped(fmt::format("there are no stored results in {}", format_name(format))); });
+}
+
+namespace {
+
+constexpr std::uint32_t kOne = 0x3f800000;  // 1.0f
+
+std::size_t operation_number(const std::string& name) {
+    for (std::size_t k = 0; k < kNumberOperations.size(); ++k)
+        if (name == kNumberOperations[k].name) return k;
+    throw std::logic_error("known answers: no operation " + name);
+}
+
+KnownAnswer answer_of(const std::vector<std::string>& fields, const NumberOperation& operation) {
+    if (fields.size() != operation.operands + 1 && fields.size() != operation.operands + 2)
+        throw std::logic_error(fmt::format("known answers: {} fields for {}", fields.size(), operation.name));
+    KnownAnswer answer{{kOne, kOne, kOne}, word_of(fields[operation.operands]), word_of(fields.back())};
+    for (std::size_t k = 0; k < operation.operands; ++k) answer.operands[k] = word_of(fields[k]);
+    return answer;
+}
+
+}  // namespace
+
+std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
+    std::vector<FormatAnswers> all;
+    std::size_t operation = 0;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.empty() || line[0] == '#') continue;
+        std::vector<std::string> fields;
+        std::istringstream in(line);
+        for (std::string field; in >> field;) fields.push_back(field);
+        // The name of a format contains a letter that is not a hexadecimal digit: the p of "fp32" or the m of "eXmY".
+        if (fields[0].find_first_of("mp") != std::string::npos && fields.size() == 2) {
+            const NumberFormat format = parse_format(fields[0]);
+            if (all.empty() || all.back().format != format) all.push_back({format, {}});
+            operation = operation_number(fields[1]);
+            continue;
+        }
+        if (all.empty()) throw std::logic_error("known answers: a line before the first section");
+        all.back().operations[operation].push_back(answer_of(fields, kNumberOperations[operation]));
+    }
+    return all;
+}
+
+const std::vector<FormatAnswers>& known_answers() {
+    static const std::vector<FormatAnswers> all =
+        parse_known_answers(embedded_files().at("host/verify/known_answers.csv"));
+    return all;
 }
 
 }  // namespace raya

@@ -133,9 +133,6 @@ struct FormatAnswers {
 /// comment. Throws std::logic_error for a syntax error, because the file is generated.
 std::vector<FormatAnswers> parse_known_answers(const std::string& text);
 
-/// Inverse of parse_known_answers().
-std::string known_answers_text(const std::vector<FormatAnswers>& all);
-
 /// Returns the answers of known_answers.csv, which is embedded in the program.
 const std::vector<FormatAnswers>& known_answers();
 

@@ -7,35 +7,20 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "host/base/encoding.hpp"
 #include "host/embedded.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/scene/nff.hpp"
-#include "host/verify/verdict.hpp"
 
 namespace raya {
 namespace {
 
-constexpr const char* kReferenceHeading =
-    "# Hashes, counts and pixels of the reference images, made by tests/verify/make_reference_images.cpp: do not "
-    "edit.\n"
-    "# An image has a line \"NAME: HASH\", lines \"counts KIND: COUNTER NUMBER ...\", and a line for each row of "
-    "pixels.\n"
-    "# A pixel is RED/GREEN/BLUE, bits of fp32 numbers in hexadecimal without trailing zeros; \".\" repeats the pixel "
-    "to the\n"
-    "# left, \"=\" the pixel at the same position in the previous image.\n";
-
 // Parses a text such as "3f8/3f8/0". Throws std::logic_error unless the text has three numbers.
 std::vector<float> colour_of(const std::string& text) {
     std::vector<float> rgb;
-    std::istringstream in(text);
-    for (std::string digits; std::getline(in, digits, '/');) rgb.push_back(std::bit_cast<float>(word_of(digits)));
+    for (const std::string& digits : split(text, '/')) rgb.push_back(std::bit_cast<float>(word_of(digits)));
     if (rgb.size() != 3) throw std::logic_error("reference images: '" + text + "' is not a colour");
     return rgb;
-}
-
-std::string colour_text(const float* rgb) {
-    const auto digits = [&](std::size_t k) { return digits_of(std::bit_cast<std::uint32_t>(rgb[k])); };
-    return digits(0) + '/' + digits(1) + '/' + digits(2);
 }
 
 void read_row(const std::string& line, const Image& previous, Image& image) {
@@ -137,25 +122,6 @@ std::vector<StoredImage> parse_reference_images(const std::string& text) {
         if (pixel_hash(stored.image) != stored.hash)
             throw std::logic_error("reference images: '" + stored.name + "': pixels do not match the hash");
     return all;
-}
-
-std::string reference_images_text(const std::vector<StoredImage>& all) {
-    std::string text = kReferenceHeading;
-    std::vector<std::string> previous;
-    for (const StoredImage& stored : all) {
-        const auto width = static_cast<std::size_t>(stored.image.width);
-        previous.resize(stored.image.rgb.size() / 3);
-        text += fmt::format("{}: {}\n", stored.name, stored.hash);
-        for (const auto& [kind, counts] : stored.counts) text += fmt::format("counts {}: {}\n", kind, counts);
-        std::string left;
-        for (std::size_t i = 0; i < previous.size(); ++i) {
-            const std::string pixel = colour_text(&stored.image.rgb.at(3 * i));
-            const bool first = i % width == 0, last = (i + 1) % width == 0;
-            text += (pixel == left && !first ? "." : pixel == previous[i] ? "=" : pixel) + (last ? "\n" : " ");
-            left = previous[i] = pixel;
-        }
-    }
-    return text;
 }
 
 const StoredImage& stored_image(const ReferenceImage& image) {

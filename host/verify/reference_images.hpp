@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "host/cl/commands.hpp"
-#include "host/image/image.hpp"
+#include "host/image/image_io.hpp"
 #include "host/model/machine.hpp"
-#include "host/model/number_format.hpp"
-#include "host/ring/neighbour_exchange.hpp"
+#include "host/ring/bus_and_ring.hpp"
 #include "host/ring/ring_plan.hpp"
 #include "host/scene/scene.hpp"
 #include "host/verify/verdict.hpp"
@@ -57,8 +56,6 @@ struct StoredImage {
 /// without trailing zeros; "." repeats the pixel to the left, "=" the pixel at the same position in the previous image.
 /// Throws std::logic_error for a syntax error.
 std::vector<StoredImage> parse_reference_images(const std::string& text);
-/// Inverse of parse_reference_images().
-std::string reference_images_text(const std::vector<StoredImage>& all);
 
 /// Returns the result of `image` in reference_images.txt, which is embedded in the program. Throws std::logic_error if
 /// the result is missing.

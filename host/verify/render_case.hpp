@@ -8,7 +8,7 @@
 #include "host/model/mapping_rule.hpp"
 #include "host/ring/ring_plan.hpp"
 #include "host/scene/scene.hpp"
-#include "host/torus/torus_settings.hpp"
+#include "host/torus/topology.hpp"
 
 namespace raya {
 

@@ -1,18 +1,15 @@
 #include "host/verify/supervisor.hpp"
 
 #include <fmt/core.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <optional>
 
 #include "host/base/child_process.hpp"
-#include "host/base/clock.hpp"
 #include "host/base/json.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/capture.hpp"
-#include "host/cl/driver.hpp"
 #include "host/error.hpp"
 
 namespace raya {

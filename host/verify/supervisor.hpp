@@ -14,9 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "host/verify/device_checks.hpp"
-#include "host/verify/render_case.hpp"
 #include "host/verify/verify.hpp"
+#include "host/verify/render_case.hpp"
 
 namespace raya {
 

@@ -70,13 +70,6 @@ inline std::uint32_t word_of(std::string digits) {
     return static_cast<std::uint32_t>(std::stoul(digits, nullptr, 16));
 }
 
-/// Inverse of word_of().
-inline std::string digits_of(std::uint32_t word) {
-    std::string digits = fmt::format("{:08x}", word);
-    while (digits.size() > 1 && digits.back() == '0') digits.pop_back();
-    return digits;
-}
-
 // Runs the kernels of one program on buffers with given contents, and reads the results.
 
 /// Maximum number of lanes. A row is one set of operands, processed by one lane. Checks pad the rows to a multiple of

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/base/clock.hpp"
+#include "host/base/log.hpp"
 #include "host/cl/commands.hpp"
 #include "host/error.hpp"
 

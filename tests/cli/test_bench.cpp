@@ -168,7 +168,7 @@ TEST_CASE("bench --build: lists compile times, and exits with 4 if one takes lon
     CHECK(limited_run.code == 4);
     CHECK_THAT(limited_run.err, Catch::StartsWith("raya: ring/trace.cl, none, fp32, 4 lanes: ") &&
                                     Catch::Contains("to compile, above --limit 0.001 s"));
-    check_refused(outputs, build({"--limit", "0"}), 2, {"--limit 0: must be above 0"});
+    check_refused(outputs, build({"--limit", "0"}), 2, {"--limit 0: must be 0.001..1000000 seconds"});
     check_refused(outputs, {"bench", "--limit", "1"}, 2, {"--limit requires --build"});
     check_refused(outputs, build({"--compare", folder / "b.json"}), 2, {"--compare", "excludes", "--build"});
     check_refused(outputs, {"bench", "--compare", folder / "b.json"}, 2, {"the report has no measurements"});

@@ -58,8 +58,8 @@ TEST_CASE("render --checkpoint, --resume: refuse missing, invalid and conflictin
     const auto refused = [&](const Arguments& extra_options, const Arguments& message) {
         check_refused(folder, render_arguments(folder, extra_options), 2, message);
     };
-    refused({"--resume"}, {"--resume", "--checkpoint FILE.rst"});
-    refused({"--checkpoint-every", "5"}, {"--checkpoint-every", "--checkpoint FILE.rst"});
+    refused({"--resume"}, {"--resume requires --checkpoint"});
+    refused({"--checkpoint-every", "5"}, {"--checkpoint-every requires --checkpoint"});
     refused({"--checkpoint", "-"}, {"--checkpoint -"});
     refused({"--checkpoint", folder / "s.rst", "--checkpoint-every", "-1"}, {"--checkpoint-every -1", "0..86400"});
     refused({"--checkpoint", folder / "none/s.rst"}, {"none"});

@@ -87,7 +87,7 @@ TEST_CASE("COMMAND --help, --help-all: give unit, default and range of every opt
         {{"bench"}, bench},
         {{"devices"}, {"every OpenCL device of every platform"}},
         {{"generate"}, {"balls", "lattice", "gears", "uniform", "random", "centre"}},
-        {{"generate", "balls"}, {"--level LEVEL", "default: 4", "0..6", "7,381 spheres", "SCENE.nff"}},
+        {{"generate", "balls"}, {"--level N", "default: 4", "0..6", "7,381 spheres", "SCENE.nff"}},
         {{"generate", "lattice"}, {"--size N", "default: 12", "1..64", "2,197 spheres", "SCENE.nff"}},
         {{"generate", "gears"}, {"--size N", "default: 4", "1..16", "9,345 polygons", "SCENE.nff"}},
         {{"generate", "uniform"}, {"1..20000000", "--voxels XxYxZ", "1..256 each"}},
@@ -166,36 +166,6 @@ TEST_CASE("render --profile: prints launches and times of every labelled command
     for (const auto& command : commands) CHECK_THAT(out, Catch::Contains(command["label"].get<std::string>()));
     CHECK_THAT(out, Catch::Contains("kernel build "));
     CHECK(lines_that_start_with(out, "roof").size() == 1);  // one line per kernel; trace is the only kernel
-}
-
-TEST_CASE("render --counters: the roofline has the processor time of PoCL's threads for each kernel", "[cli]") {
-    const RenderFiles files("centre", {"--profile", "--counters", "--size", "256", "--quiet"});
-    const Document measured = files.report()["measured"];
-    const std::string& out = files.run().out;
-    CAPTURE(out);
-    REQUIRE(measured["roofline"].size() == 1);
-    const Document& counts = measured["roofline"][0]["host_counts"];
-    CHECK_THAT(out, Catch::Contains("\nkernel  cores  Gcycles  Ginstr"));
-    const bool all_counted = std::none_of(counts.begin(), counts.end(), [](const Document& n) { return n.is_null(); });
-    CHECK(lines_that_start_with(out, "counts").size() == (all_counted ? 0 : 1));
-    if (counts["processor_ns"].is_null()) return;  // this Linux permits no counters
-    double total_ns = 0;
-    for (const Document& command : measured["commands"])
-        if (command["label"] == "trace" && command["kind"] == "kernel") total_ns = command["total_ns"];
-    // The host's thread only waits. On a busy computer each of PoCL's threads gets a part of a processor.
-    CHECK(counts["processor_ns"] > 0.1 * total_ns);
-    CHECK(counts["processor_ns"] < 1.1 * total_ns * std::thread::hardware_concurrency() + 5e6);
-}
-
-TEST_CASE("render --counters: requires a roofline and a CPU", "[cli]") {
-    const ScratchFolder outputs;
-    const auto refuse = [&](Arguments options, const Arguments& message, const RunOptions& run_options) {
-        options.insert(options.end(), {"--counters", "--size", "8", "--pes", "8"});
-        check_refused(outputs, render_into(outputs, scene_file("centre"), options), 2, message, run_options);
-    };
-    refuse({}, {"--counters: ", "add --profile or --page FILE.html"}, {});
-    const RunOptions gpu = device_with_fault("clGetDeviceInfo 4096 4");  // CL_DEVICE_TYPE is CL_DEVICE_TYPE_GPU
-    refuse({"--profile"}, {"--counters: ", "is not a CPU", "--device cpu"}, gpu);
 }
 
 TEST_CASE("generate: every kind of scene can be rendered", "[cli]") {

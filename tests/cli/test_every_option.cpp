@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "host/cli/parse_failure.hpp"
+#include "host/cli/parse.hpp"
 #include "host/error.hpp"
 #include "tests/base/scratch_folder.hpp"
 #include "tests/cli/all_commands.hpp"

@@ -56,8 +56,7 @@ Arguments arguments_for(CLI::App& command, const Path& path, const Arguments& tw
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         const auto at = std::find(two_options.begin(), two_options.end(), name);
-        const bool precedes_others = name == "STUDY";  // without it, the first scene would be the study
-        if (at == two_options.end() && !option->get_required() && !precedes_others) continue;
+        if (at == two_options.end() && !option->get_required()) continue;
         if (!option->get_positional()) arguments.push_back(name);
         if (at != two_options.end())
             arguments.push_back(two_values[static_cast<std::size_t>(at - two_options.begin())]);
@@ -154,36 +153,6 @@ TEST_CASE("file options: no command overwrites kernels that it reads, or an inpu
     CHECK(pairs > 25);
     CHECK((file_contents(kernels / "ring/trace.cl") == kernel));
     CHECK(file_contents(folder / "fig7.csv") == "content");
-}
-
-/// Runs raya and checks that it refuses the arguments and does not change `file`, a scene.
-void check_unchanged(const std::string& file, const Arguments& arguments, const Arguments& message) {
-    const std::string before = file_contents(file);
-    const RunOutcome run = run_raya(arguments);
-    INFO(run.describe());
-    CHECK(run.code == 2);
-    CHECK(run.out.empty());
-    for (const std::string& part : message) CHECK_THAT(run.err, Catch::Contains(part));
-    CHECK(file_contents(file) == before);
-}
-
-TEST_CASE("file options: derived output names (replay) overwrite no input and no output", "[cli][file_options]") {
-    const ScratchFolder folder;
-    const std::string scene = scene_file("planes"), image = folder / "a.ppm";
-    const auto copy = [&](const std::string& name) {
-        fs::copy(scene, folder / name);
-        return folder / name;
-    };
-    const auto render_with = [&](const std::string& input, Arguments arguments) {
-        arguments.insert(arguments.begin(), {"render", input});
-        return arguments;
-    };
-    const std::string platform = copy("p.xml"), history = copy("p.replay");
-    const Arguments packets = {"-o",       image,    "--machine", "torus", "--packets", folder / "p.csv.gz",
-                               "--replay", "simgrid"};
-    for (const std::string& file : {platform, history})
-        check_unchanged(file, render_with(file, packets), {"--replay", file, "SCENE"});
-    CHECK_FALSE(fs::exists(image));
 }
 
 }  // namespace

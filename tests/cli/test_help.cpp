@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "host/cli/command_text.hpp"
+#include "host/cli/help.hpp"
 #include "tests/cli/all_commands.hpp"
 #include "tests/cli/refusals.hpp"
 
@@ -50,11 +50,7 @@ std::string output_on_terminal(Arguments arguments, unsigned short columns) {
 TEST_CASE("help COMMAND: prints the same as COMMAND --help", "[cli][help]") {
     CHECK(help_of({"help"}) == help_of({"--help"}));
     CHECK(help_of({"help", "render"}) == help_of({"render", "--help"}));
-    CHECK(help_of({"help", "study"}) == help_of({"study", "-h"}));
-    CHECK(help_of({"help", "study"}) == help_of({"study", "fig7", "--help"}));
     CHECK(help_of({"help", "help"}) == help_of({"help", "--help"}));
-    CHECK_THAT(help_of({"help", "study"}),
-               Catch::StartsWith("Usage: raya study [STUDY]") && Catch::Contains("Load of each PE, column split"));
     CHECK_THAT(help_of({"help", "page"}), !Catch::Contains("script"));  // scripts are an implementation detail
 }
 
@@ -62,7 +58,6 @@ TEST_CASE("help: the error for an unknown command names the closest command, or 
     const ScratchFolder outputs;
     check_refused(outputs, {"help", "rendr"}, 2,
                   {"raya: help: no command rendr (did you mean render?); commands: render"});
-    check_refused(outputs, {"help", "study", "fig7"}, 2, {"study has no command fig7; see raya help study"});
     check_refused(outputs, {"help", "render", "fig7"}, 2, {"render has no command fig7; see raya help render"});
 }
 

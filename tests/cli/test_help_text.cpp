@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "host/cli/command_text.hpp"
+#include "host/cli/help.hpp"
 #include "tests/cli/run_program.hpp"
 
 namespace raya {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "host/verify/device_checks.hpp"
+#include "host/verify/verify.hpp"
 #include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 
@@ -38,7 +38,7 @@ constexpr const char *kTriangle = "usemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\
 TEST_CASE("no output overwrites a file that --as, a mesh or a list of failures names", "[cli][hostile]") {
     const ScratchFolder inputs, outputs;
     const std::string scene = copied_scene(inputs);
-    for (const char* option : {"--report", "--junit", "--tap"})
+    for (const char* option : {"--report", "--junit"})
         check_unchanged(inputs, {"verify", "--as", "render " + scene + " --size 16", "--only", "number", option, scene},
                         {option, "would overwrite the input"});
     write_text(inputs / "x.obj", std::string("mtllib m.mtl\n") + kTriangle);

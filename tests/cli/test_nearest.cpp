@@ -1,7 +1,7 @@
 // Suggestions for misspelt names.
 #include <catch2/catch.hpp>
 
-#include "host/cli/parse_failure.hpp"
+#include "host/cli/parse.hpp"
 
 namespace raya {
 namespace {

@@ -6,7 +6,6 @@
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
 #include "host/ring/mapping.hpp"
-#include "host/ring/schedule.hpp"
 #include "tests/ring/small_mapping.hpp"
 
 using namespace raya;

@@ -35,9 +35,9 @@ TEST_CASE("render: the error for an unknown name lists the known names", "[cli]"
 
 TEST_CASE("render: the error for a number outside its range names the range", "[cli]") {
     check_render_options({{{"--lanes", "3"}, {"--lanes 3", "1, 4, 8 or 16"}},
-                          {{"--lanes", "0"}, {"--lanes", "1 or more"}},
+                          {{"--lanes", "0"}, {"--lanes 0", "1, 4, 8 or 16"}},
                           {{"--group", "1025"}, {"--group 1025", "1..1024"}},
-                          {{"--group", "0"}, {"--group", "1 or more"}},
+                          {{"--group", "0"}, {"--group 0", "1..1024"}},
                           {{"--bounces", "32"}, {"--bounces 32", "0..31"}},
                           {{"--size", "8", "--pes", "0"}, {"--pes 0", "1..64", "at most one for each pixel"}},
                           {{"--size", "8x4", "--pes", "33"}, {"--pes 33", "1..32"}},
@@ -75,7 +75,7 @@ TEST_CASE("render --size: refuses wrong syntax", "[cli]") {
 }
 
 TEST_CASE("render: refuses a text that is not a whole number", "[cli]") {
-    for (const std::string option : {"--pes", "--offset", "--bounces", "--lanes", "--group"})
+    for (const std::string option : {"--pes", "--offset", "--bounces", "--group"})
         check_render_options({{{option, "x"}, {option + " x: not a whole number; " + option + ": "}}});
     for (const std::string value : {"-1", "4294967296"})
         check_render_options({{{"--pes", value}, {"--pes " + value + ": out of range", "1..W*H"}}});

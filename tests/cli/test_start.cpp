@@ -82,7 +82,6 @@ TEST_CASE("commands: refuse wrong inputs before they load a driver or OpenImageI
                                                            {"tune", "--kernel-dir", missing},
                                                            {"bench", "--compare", missing},
                                                            {"explore", missing, "-o", outputs / "x.html"},
-                                                           {"study", "fig7", missing, "-o", outputs / "d"},
                                                            {"verify", "--kernel-dir", missing}};
     for (const std::vector<std::string>& arguments : refused) {
         CAPTURE(arguments);

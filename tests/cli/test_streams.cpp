@@ -143,10 +143,6 @@ TEST_CASE("-: refused for two outputs, two inputs, and files that cannot be stre
     check_refused(outputs, {"bench", "--compare", "-"}, 2, {"stdin: not valid JSON"});
     check_refused(outputs, {"study", "fig7", scene, "-o", "-"}, 2, {"-o -: a study writes several files"});
     check_refused(outputs, {"tune", "-"}, 2, {"tune -: ", "name a file"});
-    check_refused(
-        outputs,
-        {"render", scene, "-o", outputs / "x.ppm", "--machine", "torus", "--packets", "-", "--replay", "simgrid"}, 2,
-        {"add --packets FILE.csv.gz"});
 }
 
 TEST_CASE("-: no output overwrites the file behind redirected stdin or stdout", "[cli][file_options]") {

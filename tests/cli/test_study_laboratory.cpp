@@ -121,6 +121,16 @@ TEST_CASE("study: shards merge to the results of one process, and a manifest rep
     CHECK_THAT(checked, Catch::Contains("the same results: of the data files, 4 equal, 0 different"));
 }
 
+TEST_CASE("study --help, help study: list the studies and the options", "[cli]") {
+    const RunOutcome help = run_raya({"help", "study"});
+    INFO(help.describe());
+    CHECK(help.code == 0);
+    CHECK_THAT(help.out, Catch::StartsWith("Usage: raya study [STUDY|all|FILE.py] [SCENE...] -o DIR") &&
+                             Catch::Contains("Load of each PE, column split") && Catch::Contains("-o, --output DIR"));
+    for (const Arguments& same : {Arguments{"study", "-h"}, {"study", "fig7", "--help"}, {"study", "--help-all"}})
+        CHECK(run_raya(same).out == help.out);
+}
+
 TEST_CASE("study: refuses wrong names, sizes, scenes and devices, and leaves no folder", "[cli]") {
     const ScratchFolder outputs;
     check_refused(outputs, study_arguments("fig6", outputs), 2, {"no study fig6 (did you mean fig7?)", "FILE.py"});

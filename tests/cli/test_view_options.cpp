@@ -2,7 +2,7 @@
 #include <fmt/core.h>
 
 #include "host/base/whole_file.hpp"
-#include "host/cli/view_options.hpp"
+#include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/scene/nff.hpp"
 #include "host/scene/split_mix.hpp"

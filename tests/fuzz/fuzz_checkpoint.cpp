@@ -1,7 +1,7 @@
 // Fuzz target for checkpoints as `raya render --resume` reads them. The reader must throw an error or return the
 // vectors of this render. If they are written and read again, they must not change.
 #include "host/base/log.hpp"
-#include "host/cli/checkpoint_options.hpp"
+#include "host/cli/render_command.hpp"
 #include "host/error.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

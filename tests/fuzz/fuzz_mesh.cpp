@@ -4,7 +4,7 @@
 
 #include "host/error.hpp"
 #include "host/mesh/import_records.hpp"
-#include "host/mesh/mesh_scene.hpp"
+#include "host/mesh/mesh_file.hpp"
 #include "host/scene/nff.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "host/error.hpp"
 #include "host/scene/nff.hpp"
-#include "host/scene/nff_dialects.hpp"
+#include "host/scene/nff_tokens.hpp"
 #include "host/scene/polygon.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

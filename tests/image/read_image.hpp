@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "host/image/image.hpp"
+#include "host/image/image_io.hpp"
 
 namespace raya {
 

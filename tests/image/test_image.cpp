@@ -5,7 +5,7 @@
 #include <random>
 #include <utility>
 
-#include "host/image/image.hpp"
+#include "host/image/image_io.hpp"
 
 namespace raya {
 namespace {

@@ -14,7 +14,6 @@
 #include <string>
 
 #include "host/error.hpp"
-#include "host/image/image.hpp"
 #include "host/image/image_io.hpp"
 #include "tests/base/scratch_folder.hpp"
 #include "tests/image/read_image.hpp"

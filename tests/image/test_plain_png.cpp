@@ -3,8 +3,7 @@
 #include <random>
 
 #include "host/base/whole_file.hpp"
-#include "host/image/image.hpp"
-#include "host/image/plain_png.hpp"
+#include "host/image/image_io.hpp"
 #include "tests/base/scratch_folder.hpp"
 #include "tests/image/read_image.hpp"
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <random>
 
-#include "host/image/plain_png.hpp"
+#include "host/image/image_io.hpp"
 
 namespace raya {
 namespace {

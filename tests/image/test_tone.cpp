@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "host/image/image.hpp"
+#include "host/image/image_io.hpp"
 #include "host/scene/split_mix.hpp"
 #include "tests/image/read_image.hpp"
 

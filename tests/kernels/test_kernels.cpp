@@ -3,9 +3,9 @@
 
 #include "host/cl/kernel_options.hpp"
 #include "host/error.hpp"
-#include "host/ring/neighbour_exchange.hpp"
+#include "host/ring/bus_and_ring.hpp"
 #include "host/ring/ring_plan.hpp"
-#include "host/torus/composer.hpp"
+#include "host/torus/torus_renderer.hpp"
 #include "host/torus/link_exchange.hpp"
 #include "host/torus/node_array.hpp"
 

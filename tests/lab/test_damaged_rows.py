@@ -74,12 +74,9 @@ def test_rows_without_damage_give_a_page(folder):
 
 
 def test_program_with_damaged_rows_writes_no_files(folder):
-    settings = {"study": study_with(folder, next(iter(DAMAGES))), "scenes": [], "output": str(folder / "made/x"),
-                "size": None, "network": None, "views": None, "seed": 1, "device": "", "strict": False, "no_tuned": True, "verbosity": 0,
-                "shard": None, "merge": [], "missing": [], "check": ""}
     path = os.pathsep.join([str(Path(raya.__file__).absolute().parents[1]), os.environ.get("PYTHONPATH", "")])
-    run = subprocess.run([sys.executable, "-m", "raya.lab", "--settings", json.dumps(settings)], text=True,
-                         capture_output=True, env={**os.environ, "PYTHONPATH": path}, timeout=120)
+    run = subprocess.run([sys.executable, "-m", "raya.lab", study_with(folder, next(iter(DAMAGES))), "-o", str(folder / "made/x"), "--no-tuned"],
+                         text=True, capture_output=True, env={**os.environ, "PYTHONPATH": path}, timeout=120)
     assert run.returncode == 2 and run.stdout == ""
     assert run.stderr.startswith("raya: study damaged: damaged.py, line 15: KeyError") and run.stderr.count("\n") == 1
     assert not (folder / "made").exists()

@@ -392,7 +392,7 @@ def test_check_refuses_damaged_manifests_and_other_inputs(study):
         with pytest.raises(ValueError, match="out/manifest.json: is not a manifest"):
             run("--check", file)
     file.write_text(whole.replace('"seed": 1', '"seed": 0'))
-    with pytest.raises(ValueError, match="out/manifest.json: --seed 0"):
+    with pytest.raises(ValueError, match="out/manifest.json: study: --seed 0: must be 1..90000"):
         run("--check", file)
     file.write_text(whole)
     with pytest.raises(ValueError, match="out/manifest.json: it is of study squares.py, not of fig7"):

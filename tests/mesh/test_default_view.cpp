@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/mesh/mesh_scene.hpp"
+#include "host/mesh/mesh_file.hpp"
 #include "host/scene/polygon.hpp"
 #include "host/scene/scene.hpp"
 #include "tests/mesh/mesh_files.hpp"

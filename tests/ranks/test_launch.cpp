@@ -12,7 +12,7 @@ namespace {
 std::optional<Launch> launch_in(const std::map<std::string, std::string>& environment) {
     return launch_from([&](const char* name) {
         const auto found = environment.find(name);
-        return found == environment.end() ? nullptr : found->second.c_str();
+        return found == environment.end() ? std::string() : found->second;
     });
 }
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <mutex>
 
-#include "host/ranks/ping.hpp"
+#include "host/ranks/ranks.hpp"
 #include "tests/ranks/thread_ranks.hpp"
 
 namespace raya {

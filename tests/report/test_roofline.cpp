@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "host/model/budget.hpp"
-#include "host/report/roofline.hpp"
+#include "host/report/render_report.hpp"
 #include "host/report/table.hpp"
 #include "tests/document.hpp"
 
@@ -98,28 +98,6 @@ TEST_CASE("roofline_table: contains the bound of each kernel and its percentage 
     CHECK(json[0]["operations_per_s"] == Approx(1e10));
     CHECK(json[0]["share_of_roof"] == Approx(0.1));
     CHECK(json[1]["share_of_format"].is_null());
-}
-
-TEST_CASE("roofline_table: has the events of the host's processor if they were counted", "[report]") {
-    LabelSummary launches = kernel("trace", 1'000'000);
-    launches.host_counts.emplace().of = {4e6, 8e6, NAN, 5000, 1'500'000, 7};
-    const KernelWork work{.label = "trace", .operations = 2'000'000};
-    Roofline all = roofline(kPeak, {work}, {launches});
-    all.host_counts_unavailable = "no cache misses: not offered";
-    const std::string table = roofline_table(all);
-    CAPTURE(table);
-    CHECK_THAT(table,
-               Contains("\ntrace    1.50   0.0040  0.0080         2.00      4.00              -           0.005  "
-                        "          7\n"));
-    CHECK_THAT(table, Contains("\ncounts  no cache misses: not offered\n"));
-    const Document counts = read_back(roofline_json(all))[0]["host_counts"];
-    CHECK(counts["cycles"] == 4'000'000);
-    CHECK(counts["cache_misses"].is_null());
-    CHECK(counts["processor_ns"] == 1'500'000);
-    CHECK(counts["page_faults"] == 7);
-    const Roofline uncounted = roofline(kPeak, {work}, {kernel("trace", 1)});
-    CHECK_THAT(roofline_table(uncounted), !Contains("cores"));
-    CHECK_FALSE(read_back(roofline_json(uncounted))[0].contains("host_counts"));
 }
 
 TEST_CASE("profile_table: lists builds and waiting times separately from commands", "[report]") {

@@ -3,7 +3,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "host/ring/schedule.hpp"
+#include "host/ring/mapping.hpp"
 
 using namespace raya;
 

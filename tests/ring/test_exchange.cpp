@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "host/ring/neighbour_exchange.hpp"
+#include "host/ring/bus_and_ring.hpp"
 #include "host/scene/packer.hpp"
 #include "kernels/shared/job.h"
 #include "tests/ring/grid_scene.hpp"

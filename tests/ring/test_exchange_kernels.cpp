@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/ring/mapping.hpp"
-#include "host/ring/neighbour_exchange.hpp"
+#include "host/ring/bus_and_ring.hpp"
 #include "host/scene/packer.hpp"
 #include "kernels/shared/job.h"
 #include "tests/ring/small_mapping.hpp"

@@ -1,7 +1,7 @@
 // The load of a PE is the sum of its pixels' costs: the kernels count the same events per PE and per pixel.
 #include <catch2/catch.hpp>
 
-#include "host/ring/schedule.hpp"
+#include "host/ring/mapping.hpp"
 #include "tests/ring/render_scene.hpp"
 
 namespace raya {

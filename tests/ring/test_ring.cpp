@@ -10,8 +10,7 @@
 
 #include "host/ring/bus_and_ring.hpp"
 #include "host/ring/mapping.hpp"
-#include "host/ring/neighbour_exchange.hpp"
-#include "host/verify/transfers.hpp"
+#include "host/verify/machines.hpp"
 #include "tests/ring/small_mapping.hpp"
 
 using namespace raya;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "host/ring/mapping.hpp"
-#include "host/ring/neighbour_exchange.hpp"
+#include "host/ring/bus_and_ring.hpp"
 #include "kernels/shared/share_pixels.h"
 #include "tests/ring/small_mapping.hpp"
 

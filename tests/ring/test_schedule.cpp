@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "host/ring/schedule.hpp"
+#include "host/ring/mapping.hpp"
 #include "host/scene/split_mix.hpp"
 #include "kernels/shared/share_pixels.h"
 #include "tests/ring/small_mapping.hpp"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/image/image.hpp"
+#include "host/image/image_io.hpp"
 #include "host/model/number_format.hpp"
 
 namespace raya::whole_image {

@@ -7,7 +7,7 @@
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
 #include "host/scene/nff.hpp"
-#include "host/scene/nff_dialects.hpp"
+#include "host/scene/nff_tokens.hpp"
 #include "tests/base/scratch_folder.hpp"
 
 namespace raya {

@@ -160,7 +160,7 @@ def duplicate_types(types):
 # (file, injected include, part of the error message): a folder lower in the table, an independent folder, a cycle, OpenCL in a report.
 INJECTED = [
     ("host/scene/scene.hpp", "host/ring/mapping.hpp", "may not include host/ring/"),
-    ("host/torus/node_transfers.cpp", "host/ring/mapping.hpp", "may not include host/ring/"),
+    ("host/torus/node_array.cpp", "host/ring/mapping.hpp", "may not include host/ring/"),
     ("kernels/number/lanes.clh", "kernels/number/number.clh", "in a cycle"),
     ("host/report/table.hpp", "host/cl/opencl.hpp", "includes OpenCL's headers"),
 ]

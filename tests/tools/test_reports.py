@@ -137,7 +137,7 @@ class Reports:
         def render(scene, *options, output="x.ppm", launcher=()):
             self.make("render", "render", scene, *options, *quick_options, "-o", output, launcher=launcher)
 
-        render(spheres, *ring, "--page", "r.html", "--counters")
+        render(spheres, *ring, "--page", "r.html")
         render(odd, *ring, "--mapping", "rows", "--light", "1,2,3", output="x.pfm")
         render(spheres, *ring, "--antialias", "filter", "--exchange", "bus", "--exposure", "1", "--fold", "block")
         render(spheres, *ring, "--antialias", "supersample", "--points", "diagonals")

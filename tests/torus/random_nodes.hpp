@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "host/scene/packer.hpp"
-#include "host/torus/buffer_plan.hpp"
 #include "host/torus/node_memory.hpp"
 #include "host/torus/topology.hpp"
 #include "tests/kernels/random_scene.hpp"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "host/cl/kernel_options.hpp"
-#include "host/torus/composer.hpp"
+#include "host/torus/torus_renderer.hpp"
 #include "tests/scene/random_below.hpp"
 
 namespace raya {

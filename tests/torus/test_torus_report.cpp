@@ -3,7 +3,7 @@
 #include <string>
 
 #include "host/torus/topology.hpp"
-#include "host/torus/torus_report.hpp"
+#include "host/torus/torus_result.hpp"
 #include "tests/document.hpp"
 
 namespace raya {

@@ -1,6 +1,8 @@
 // Makes the known answers of the number layer: rows with an operation, its operands, and the result that MPFR computes.
 // The operands are selected so that the rows of each operation cover every rounding feature.
 #pragma once
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,6 +13,7 @@
 #include "host/verify/numbers.hpp"
 #include "tests/number/oracle_results.hpp"
 #include "tests/number/random_operands.hpp"
+#include "tests/verify/digits.hpp"
 #include "tests/verify/exact_value.hpp"
 
 namespace raya {
@@ -249,6 +252,27 @@ inline FormatAnswers answers_in(const NumberFormat& format) {
     }
     MpfrOracle oracle(format);
     return oracle_answers(oracle, format);
+}
+
+/// Inverse of parse_known_answers().
+inline std::string known_answers_text(const std::vector<FormatAnswers>& all) {
+    std::string text =
+        "# Known answers of the number layer, made by tests/verify/make_known_answers.cpp with MPFR: do not edit.\n"
+        "# A line \"FORMAT OPERATION\" starts a section. Each further line has the bits of the operands, of the "
+        "result\n"
+        "# and, if it differs, of the result of a device that replaces denormal operands and results by zeros:\n"
+        "# fp32 numbers in hexadecimal without trailing zeros.\n";
+    for (const FormatAnswers& answers : all)
+        for (std::size_t k = 0; k < kNumberOperations.size(); ++k) {
+            text += fmt::format("{} {}\n", format_name(answers.format), kNumberOperations[k].name);
+            for (const KnownAnswer& answer : answers.operations[k]) {
+                for (std::size_t i = 0; i < kNumberOperations[k].operands; ++i)
+                    text += digits_of(answer.operands[i]) + ' ';
+                text += digits_of(answer.result);
+                text += (answer.flushed != answer.result ? ' ' + digits_of(answer.flushed) : "") + '\n';
+            }
+        }
+    return text;
 }
 
 /// Returns the text of host/verify/known_answers.csv. The text has at least one format for each code path of the number

@@ -7,7 +7,6 @@ manifest.json, and index.md if there are several. With --shard writes a part of 
 study; 3 no usable OpenCL device, or its driver crashed; 4 other results than those of the manifest, or a shard is missing. A signal ends the program
 with that signal's status.
 """
-import json
 import os
 import signal
 import sys
@@ -17,27 +16,16 @@ from shlex import quote
 from types import SimpleNamespace
 
 import raya
-from raya import _engine
 from raya.lab import manifest, shards
 from raya.lab.claims import decide
 from raya.lab.document import names_of, write_document, write_page
+from raya.lab.options import settings_of
 from raya.lab.page import format_value
 from raya.lab.study import studies, study_of_file
 from raya.lab.worker import Worker, warn_as_raya
 from tqdm import tqdm
 
 EXIT_USER, EXIT_DEVICE, EXIT_DIFFERENT = 2, 3, 4
-
-
-def settings_of(arguments):
-    """Returns the options of `raya study` as a namespace. `raya study` passes them as JSON (--settings); raya's own parser parses the arguments of a
-    direct call."""
-    if arguments[:1] != ["--settings"]:
-        arguments = ["--settings", _engine.study_settings(arguments)]
-    options = SimpleNamespace(**json.loads(arguments[1]))
-    if options.network:
-        options.network = 1e-6 * options.network[0], 1e-9 * options.network[1]  # seconds per message, seconds per byte
-    return options
 
 
 def repeating_options(options, recorded, source):

@@ -76,20 +76,6 @@ function labels(r) {
   ];
 }
 
-// Returns a table of the events of the host's processor, if the rows have them. rows: as in rooflineOf().
-function hostCounts(rows) {
-  const counted = rows.filter(([, row]) => has(row, "host_counts"));
-  const keys = ["cycles", "instructions", "cache_misses", "branch_misses", "page_faults"];
-  const cell = (row, key, text) => has(row, `host_counts.${key}`) ? text(num(row, `host_counts.${key}`)) : "-";
-  return counted.length > 0 &&
-    table(
-      "Events of the host's processor", ["kernel", "processor time", ...keys.map((key) => key.replace("_", " "))],
-      counted.map(
-        ([name, row]) =>
-          [name, cell(row, "processor_ns", (ns) => msText(1e-6 * ns)),
-           ...keys.map((key) => cell(row, key, (count) => fixed(count, 0)))]));
-}
-
 // Returns a roofline chart and a table. rows: [name, row of the report].
 function rooflineOf(peak, rows) {
   const format = str(peak, "format"), points = [], giga = (path, digits = 2) => fixed(1e-9 * num(peak, path), digits);
@@ -116,7 +102,6 @@ function rooflineOf(peak, rows) {
     table(
       "Roofline", ["no.", "kernel", "Mrays/s", "Gop/s", "GB/s", "op/byte", "bound", "of the roof", "of the format"],
       cells),
-    hostCounts(rows),
     paragraph(
       `The peak was measured by small programs in the same run: ${
         giga("fp32_multiply_adds_per_s")} Gop/s of multiply-adds in fp32; in ${format} ` +
