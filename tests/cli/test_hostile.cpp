@@ -149,8 +149,8 @@ TEST_CASE("verify: refuses times that are no times; --reproduce leaves no folder
 }
 
 TEST_CASE("every command has --help-all", "[cli][hostile]") {
-    for (const char* command : {"render", "devices", "machines", "info", "generate", "bench", "tune", "study", "page",
-                                "explore", "verify", "ping", "help"}) {
+    for (const char* command : {"render", "devices", "machines", "info", "generate", "bench", "tune", "page", "explore",
+                                "verify", "ping", "help"}) {
         const RunOutcome run = run_raya({command, "--help-all"});
         INFO(run.describe());
         CHECK(run.code == 0);

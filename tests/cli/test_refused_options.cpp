@@ -94,7 +94,6 @@ TEST_CASE("raya: refuses unknown, missing and repeated arguments, and points to 
     check_refused(outputs, {"frobnicate"}, 2, {"raya: no command frobnicate; commands: render, explore, devices"});
     check_refused(outputs, {"rendr"}, 2, {"raya: no command rendr (did you mean render?); commands:"});
     check_refused(outputs, {"verify", "--ful"}, 2, {"no option --ful (did you mean --full?); see raya verify --help"});
-    check_refused(outputs, {"study", "fig7", "fig8", "-o", outputs / "z"}, 2, {"fig8 is a study", "raya study all"});
     check_refused(outputs, {"render"}, 2, {"SCENE is required", "--help"});
     check_refused(outputs, {"render", scene}, 2, {"--output is required", "--help"});
     check_refused(outputs, {"devices", "extra"}, 2, {"extra", "--help"});

@@ -141,7 +141,6 @@ TEST_CASE("-: refused for two outputs, two inputs, and files that cannot be stre
         check_refused(outputs, arguments, 2, {"only one file can go to stdout"});
     }
     check_refused(outputs, {"bench", "--compare", "-"}, 2, {"stdin: not valid JSON"});
-    check_refused(outputs, {"study", "fig7", scene, "-o", "-"}, 2, {"-o -: a study writes several files"});
     check_refused(outputs, {"tune", "-"}, 2, {"tune -: ", "name a file"});
 }
 

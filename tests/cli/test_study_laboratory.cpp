@@ -148,6 +148,9 @@ TEST_CASE("study: refuses wrong names, sizes, scenes and devices, and leaves no 
                   {"none.nff"});
     check_refused(outputs, study_arguments("fig8", outputs, {scene_file("glass"), scene_file("cones")}), 2,
                   {"fig8 takes one scene", "2 were given"});
+    check_refused(outputs, {"study", "fig7", "fig8", "-o", outputs / "z"}, 2, {"fig8 is a study", "raya study all"});
+    check_refused(outputs, {"study", "fig7", scene_file("glass"), "-o", "-"}, 2,
+                  {"-o -: a study writes several files"});
     check_refused(outputs, {"study", "fig8"}, 2, {"--output is required"});
     for (const Arguments& no_study : {Arguments{"study"}, {"study", "--merge", outputs / "none"}})
         check_refused(outputs, no_study, 2, {"STUDY is required"});
