@@ -17,7 +17,7 @@ struct UnreadableFile : std::runtime_error {
 /// Treatment of a named pipe by read_file().
 enum class Pipes { kRefused, kRead };
 
-/// Returns all bytes of a regular file, or of stdin if the name is "-" (standard_streams.hpp). Reads a pipe
+/// Returns all bytes of a regular file, or of stdin if the name is "-". Reads a pipe
 /// (`<(command)` in a shell) only with Pipes::kRead. Throws UnreadableFile if the file does not exist, is a folder or a
 /// device, may not be read, has more than `max_bytes` bytes, or if reading fails.
 std::string read_file(const std::filesystem::path& path, Pipes pipes = Pipes::kRefused,
@@ -45,7 +45,7 @@ void forget_promised_outputs();
 
 /// Throws UserError with file, reason and remedy if write_whole_file() could not write `path`: it is a folder, its
 /// folder is missing or not writable, or the existing file is not writable. Writes nothing. Commands call it before
-/// long work, so that they fail early. For "-", reserves stdout for the file (standard_streams.hpp).
+/// long work, so that they fail early. For "-", reserves stdout for the file.
 void check_writable(const std::filesystem::path& path);
 
 /// Returns a text that is the same for all paths of a file: the file's device and inode. For a file that does not

@@ -69,7 +69,7 @@ class Session {
     Program build(const std::string& name, const std::string& source, const std::vector<std::string>& options) const;
 
     /// Returns a reference to the maximum amount of work of a launch with this label, in units that the kernel defines;
-    /// LaunchLoop (host/array/launch_loop.hpp) lowers the maximum. UINT32_MAX, which means no limit, unless the device
+    /// LaunchLoop (host/array/render.hpp) lowers the maximum. UINT32_MAX, which means no limit, unless the device
     /// may end loops early.
     std::uint32_t& launch_limit(const std::string& label) {
         constexpr std::uint32_t kCautiousLimit = 2048;  // a test takes some 25 iterations, of 65,535
@@ -185,7 +185,7 @@ class Session {
     /// Enables the messages of compile_notice().
     void announce_compiling() { announces_compiling_ = true; }
 
-    /// Returns the thread of announce_compiling() (base/progress.hpp), or an empty thread if messages are not enabled.
+    /// Returns the thread of announce_compiling() (base/log.hpp), or an empty thread if messages are not enabled.
     /// Keep the thread while kernels are compiled and launched for the first time.
     [[nodiscard]] std::jthread compile_notice() const;
 

@@ -223,8 +223,6 @@ std::string driver_cache_problem() {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 // After 4 s the program starts again; then the drivers have as much time. A driver that takes longer is left out only
 // if another one answers.
 constexpr unsigned kLimit_s = 4;

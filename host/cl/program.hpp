@@ -166,7 +166,8 @@ class KernelBuilds final : public SessionObserver {
 class Program {
   public:
     /// Builds `source` for `device` with `options`, joined by blanks; `name` is for messages. The option "--il" builds
-    /// from SPIR-V (spirv.hpp). Throws DeviceError, with options, device and the whole build log, if the build fails.
+    /// from SPIR-V (kernel_source.hpp). Throws DeviceError, with options, device and the whole build log, if the build
+    /// fails.
     Program(const cl::Context& context, const cl::Device& device, std::string name, const std::string& source,
             const std::vector<std::string>& options);
 

@@ -96,8 +96,7 @@ void refuse_value(const std::string& option, const std::string& value, const cha
 
 CLI::Option* in_range(CLI::Option* option, double min, double max, const char* unit) {
     return option->check([=](const std::string& text) {
-        double number = 0;
-        std::from_chars(text.data(), text.data() + text.size(), number);
+        const double number = parsed_number<double>(text).value_or(0);
         if (number >= min && number <= max) return std::string();
         const std::string range = std::isinf(max) ? fmt::format("{} or more", min) : fmt::format("{}..{}", min, max);
         throw UserError(fmt::format("{} {}: must be {}{}{}", option->get_name(), text, range, *unit ? " " : "", unit));

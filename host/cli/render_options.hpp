@@ -1,4 +1,4 @@
-// Options of all commands that render. torus_options.hpp has the options of the torus machine.
+// Options of all commands that render.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -70,7 +70,7 @@ class MeshScene {
 bool is_mesh_file(const std::filesystem::path& path);
 
 /// Reads a scene: a mesh if is_mesh_file(), else NFF as read_nff() does. Every face of a mesh becomes plain triangles
-/// that have passed the checks of NFF's polygons. Another process reads the file (import_process.hpp).
+/// that have passed the checks of NFF's polygons. Another process reads the file (import_program.cpp).
 /// Throws UserError with the file's name. If `remarks` is null (--strict), throws UserError for everything that would
 /// otherwise become a remark.
 Scene read_scene_file(const std::filesystem::path& path, std::vector<SceneRemark>* remarks = nullptr);

@@ -72,7 +72,7 @@ enum class MachineKind {
     kTorus  // the scene: the PEs are nodes that store voxels and send rays to each other (host/torus/)
 };
 
-/// Rates from which modelled_time() (model/time_model.hpp) computes the time of a ring machine. An infinite rate
+/// Rates from which modelled_time() (model/t805.hpp) computes the time of a ring machine. An infinite rate
 /// stands for a transfer that takes no time. docs/clock.md has the origin of the SPA's numbers.
 struct MachineClock {
     double cycle_ns = 0;          // time of a cycle of a PE

@@ -55,7 +55,7 @@ inline constexpr double kMaxScatter = 0.15;
 struct Roofline {
     DevicePeak peak{};
     std::vector<RooflineRow> rows{};
-    std::string unavailable{};              // reason why there is no roofline; empty: there is one
+    std::string unavailable{};  // reason why there is no roofline; empty: there is one
 };
 
 /// Returns a row for each kernel of `works` that `commands` contains with a time > 0; no rows if the peak is unknown.
@@ -101,7 +101,7 @@ struct RenderReport {
         struct {
             int width = 0, height = 0;  // pixels
             std::string png;            // contents of the PNG file; empty: no preview
-        } preview{};                    // shown in the report's page (host/image/plain_png.hpp)
+        } preview{};                    // shown in the report's page (host/image/image_io.hpp)
     } image;
 
     struct {

@@ -65,7 +65,7 @@ std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const Rin
 /// each of `pes` selected PEs (host/report/trace_file.hpp). The phases are broadcast, trace, rotations (or bus
 /// transfers) and sums or comparisons, supersampling, gather. In the tracing phases each PE waits for the busiest PE.
 /// Counters: live rays (one for each PE that traces) and the imbalance u of the phase. The times are those of
-/// modelled_time() (host/model/time_model.hpp) and end at its total. Each phase is shown as a whole, even if a PE's
+/// modelled_time() (host/model/t805.hpp) and end at its total. Each phase is shown as a whole, even if a PE's
 /// memory holds only a block of its share, and each side of the neighbourhood shows a quarter of the cycles of
 /// filtering or comparing. If `pes` is 0, adds only a remark to the metadata.
 void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes);

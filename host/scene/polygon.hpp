@@ -33,7 +33,7 @@ std::vector<Polygon> triangles_of(const Polygon& polygon);
 // Validation of polygon outlines, views and colours from scene files and the command line.
 
 /// Shorter lengths are treated as 0, because products of four lengths must not underflow a double. Scenes may use any
-/// unit of length; length_scale.hpp handles lengths that are too small for a number format.
+/// unit of length; length_scale() handles lengths that are too small for a number format.
 inline constexpr double kMinSceneLength = 1e-30;
 
 /// Maximum distance of a vertex from the plane of its polygon, relative to the polygon's size (the longest side of its

@@ -1,3 +1,5 @@
+// Checks of transfers over the bus, the ring and links, and of the buffer copies that implement them. A model on the
+// host computes the expected contents.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,9 +12,6 @@
 #include "kernels/shared/torus.h"
 
 namespace raya {
-
-// Checks of transfers over the bus, the ring and links, and of the buffer copies that implement them. A model on the
-// host computes the expected contents.
 
 class Verification;
 

@@ -10,8 +10,8 @@
 #include <set>
 #include <vector>
 
-#include "host/ring/mapping.hpp"
 #include "host/ring/bus_and_ring.hpp"
+#include "host/ring/mapping.hpp"
 #include "kernels/shared/share_pixels.h"
 #include "tests/ring/small_mapping.hpp"
 
@@ -34,7 +34,7 @@ std::vector<std::uint32_t> listed_owners(const raya_mapping& m) {
     return owners;
 }
 
-/// Returns the distances according to the definition in route.hpp, computed with signed numbers.
+/// Returns the distances according to the definition in mapping.hpp, computed with signed numbers.
 Distances defined_distances(const raya_mapping& m, raya_u32 side) {
     const std::vector<std::uint32_t> owners = listed_owners(m);
     const std::int64_t right = side == RAYA_LEFT ? -1 : side == RAYA_RIGHT ? 1 : 0;

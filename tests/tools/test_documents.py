@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the documents: targets of links exist, paragraphs are short, the outputs printed in README.md equal raya's outputs, the paper's numbers equal
+"""Checks the documents: targets of links and files named by their path exist (also those that
+comments name), paragraphs are short, the outputs printed in README.md equal raya's outputs, the paper's numbers equal
 its data, and the version is the same in all files for citation.
 
   test_documents.py RAYA    RAYA: the program, which runs the examples of README.md in the project's folder
@@ -23,8 +24,9 @@ MEASURED_LINES = re.compile(r"time |PASS |trace |ring/|torus/|.*: \d+ checks pas
 MEASURED = re.compile(r"\d+(\.\d+)?(?= s\b| Mrays/s\b)|(?<= on ).*(?= \()|^.*(?=: \d+ checks)|(?<=\s)\d+\.\d+|\b\d+ lanes?\b|(?<=\s)\d+(?=\s+\d)|(?<=\s)\d{2,3}$")
 
 
-def documents():
-    names = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"], cwd=ROOT, capture_output=True, text=True, check=True)
+def documents(*patterns):
+    listing = ["git", "ls-files", "--cached", "--others", "--exclude-standard", *(patterns or ["*.md"])]
+    names = subprocess.run(listing, cwd=ROOT, capture_output=True, text=True, check=True)
     return [ROOT / name for name in names.stdout.split("\n") if name and (ROOT / name).is_file()]
 
 
@@ -44,6 +46,13 @@ def broken_links(page, text):
             yield f"{page.relative_to(ROOT)}: {target} does not exist"
         elif anchor and target_file.suffix == ".md" and anchor not in anchors(target_file.read_text()):
             yield f"{page.relative_to(ROOT)}: {target} has no such heading"
+
+
+def missing_files(page, text):
+    """Yields a fault for each source file that a document or a comment names by its path and that does not exist."""
+    for path in sorted(set(re.findall(r"(?<![\w/.])(?:host|kernels|tests|tools)/[\w/]+\.(?:cpp|hpp|clh?|py|sh)\b", text))):
+        if "NAME" not in path and not (ROOT / path).exists():  # NAME.cpp is a placeholder in a recipe
+            yield f"{page}: {path} does not exist"
 
 
 def long_texts(page, text):
@@ -127,10 +136,14 @@ def main():
         faults += broken_links(page, text)
         if page.name not in GENERATED | {PAPER}:
             faults += long_texts(page, text)
+    for file in documents("*.md", "*.dot", "host/*.[ch]pp", "host/*.js", "kernels/*.cl", "kernels/*.clh", "kernels/*.h", "tests/mutants/*.txt"):
+        if file.name != "CHANGELOG.md":
+            faults += missing_files(file.relative_to(ROOT), file.read_text())
     faults += wrong_citations()
     readme = (ROOT / "README.md").read_text()
-    if not list(broken_links(ROOT / "README.md", "[a](docs/none.md)")) or not list(long_texts(ROOT / "README.md", "word " * 81)):
-        faults.append("test_documents.py: does not detect a broken link or a long paragraph")
+    bad = broken_links(ROOT / "README.md", "[a](docs/none.md)"), missing_files("a", "`host/none.cpp`"), long_texts(ROOT / "README.md", "word " * 81)
+    if not all(map(list, bad)):
+        faults.append("test_documents.py: does not detect a broken link, a missing file or a long paragraph")
     faults += wrong_examples(raya, readme)
     wrong = "    $ build/raya devices\n    a device that nobody has\n"
     readings = [masked(f"{name}: {count} checks passed, 0 failed in {count}.5 s") for name, count in (("cpu", 64), ("Intel(R) Xeon(R)", 64), ("cpu", 65))]

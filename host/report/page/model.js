@@ -85,7 +85,7 @@ function loadsOf(owners, costs, pes) {
   return loads;
 }
 
-// Uses the formulas of host/model/time_model.cpp, in the same order of operations.
+// Uses the formulas of host/model/t805.cpp, in the same order of operations.
 function balanceOf(loads) {
   const pes = loads.length;
   let sum = 0, busiest = 0, idlest = 0;
@@ -215,7 +215,7 @@ function figuresOf(setting, size, costs, rates) {
   const balance = balanceOf(loads), moves = movesOf(owners, size, setting.pes);
   const figures =
     {setting, owners, loads, sizes, maxShare, ...balance, ...moves, vector: vectorOf(setting, size), time: null};
-  // As in host/model/time_model.cpp.
+  // As in host/model/t805.cpp.
   const words = moves.rotations * 3 * maxShare, moving = moves.rotations > 0;
   figures.time = {
     compute: 1e-6 * rates.cycle_ns * rates.cycle_factor * balance.max,
@@ -239,7 +239,7 @@ function fixed(value, digits) {
 // Groups thousands with narrow no-break spaces.
 const grouped = (number) => String(number).replace(/\B(?=(\d{3})+(\.|$))(?<!\.\d*)/g, "\u202f");
 
-// Formats a time as time_text() in host/model/unit_text.cpp does.
+// Formats a time as time_text() in host/model/number_format.cpp does.
 function timeText(ms) {
   const units = [[1e4, 1, "ms"], [6e5, 1e3, "s"], [3.6e7, 6e4, "min"], [Infinity, 3.6e6, "h"]];
   const [, unit, name] = units.find(([below]) => ms < below);
