@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
-#include <utility>
 
 #include "host/accel/hit_regions.hpp"
 #include "host/error.hpp"
@@ -268,58 +266,6 @@ double longest_side(const Box& box) {
 
 std::uint32_t as_word(std::size_t number) { return static_cast<std::uint32_t>(number); }
 
-// The sections of a grid's words after its header.
-struct GridLists {
-    std::vector<std::uint32_t> voxels, rows, numbers;
-};
-
-void put_sphere(GridLists& lists, const std::vector<std::uint32_t>& words, const raya_objects& objects,
-                std::uint32_t number) {
-    const auto first = words.begin() + objects.spheres_at + static_cast<std::ptrdiff_t>(number) * RAYA_SPHERE_WORDS;
-    lists.rows.insert(lists.rows.end(), first, first + RAYA_ROW_WORDS);
-    lists.numbers.push_back(number);
-}
-
-// Appends a link row (kernels/shared/grid.h). `next`: voxel word of the remaining list; `number`: object number.
-void put_link(GridLists& lists, std::uint32_t next, std::uint32_t number) {
-    lists.rows.insert(lists.rows.end(), {next, 0, 0, 0});
-    lists.numbers.push_back(number);
-}
-
-// Returns the voxel word of a list that starts at `row`: `spheres` rows of spheres, followed by a link row if `linked`.
-std::uint32_t voxel_word(std::size_t row, std::size_t spheres, bool linked) {
-    return as_word(row) | as_word(spheres) * RAYA_ONE_ROW | (linked ? RAYA_LINKED : 0);
-}
-
-// Appends a non-empty list and returns its voxel word. Spheres come first because their numbers are the lowest.
-std::uint32_t put_list(GridLists& lists, const std::vector<std::uint32_t>& words, const raya_objects& objects,
-                       std::span<const std::uint32_t> list) {
-    const auto end_of_spheres = std::lower_bound(list.begin(), list.end(), objects.spheres);
-    const auto spheres = static_cast<std::size_t>(end_of_spheres - list.begin());
-    const auto spheres_in_word = [&](std::size_t i) { return std::min<std::size_t>(spheres - i, RAYA_MAX_ROWS); };
-    const auto word_at = [&](std::size_t i, std::size_t row) {  // voxel word of the part of `list` from object i on
-        return voxel_word(row, spheres_in_word(i), i + spheres_in_word(i) < list.size());
-    };
-    const std::uint32_t word = word_at(0, lists.numbers.size());
-    for (std::size_t i = 0; i < spheres; ++i) {
-        if (i > 0 && i % RAYA_MAX_ROWS == 0) put_link(lists, word_at(i, lists.numbers.size() + 1), RAYA_NO_OBJECT_HERE);
-        put_sphere(lists, words, objects, list[i]);
-    }
-    for (std::size_t i = spheres; i < list.size(); ++i)
-        put_link(lists, i + 1 < list.size() ? voxel_word(lists.numbers.size() + 1, 0, true) : 0, list[i]);
-    return word;
-}
-
-GridLists grid_lists(const std::vector<std::uint32_t>& words, const raya_objects& objects, const Partition& p) {
-    GridLists lists;
-    put_link(lists, 0, RAYA_NO_OBJECT_HERE);  // row 0 belongs to no list: a voxel word of 0 means an empty list
-    for (std::size_t v = 0; v + 1 < p.starts.size(); ++v) {
-        const std::span list(p.objects.data() + p.starts[v], p.starts[v + 1] - p.starts[v]);
-        lists.voxels.push_back(list.empty() ? 0 : put_list(lists, words, objects, list));
-    }
-    return lists;
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberFormat& format) {
@@ -354,30 +300,22 @@ Partition accel_partition(const PackedJob& job, const NumberFormat& format, cons
 }
 
 AccelSummary append_grid(PackedJob& job, const Partition& p) {
-    const GridLists lists = grid_lists(job.words(), job.header().objects, p);
     const std::size_t end = job.words().size(), grid_at = padded_to_rows(end);
     raya_grid_words header{};
-    std::size_t next = grid_at + kWordsOf<raya_grid_words>;
-    const auto reserve_words = [&](std::size_t count) { return as_word(std::exchange(next, next + count)); };
+    std::vector<std::uint32_t> words(grid_at - end + kWordsOf<raya_grid_words>);
+    const auto append = [&](const std::vector<std::uint32_t>& list) {
+        const std::size_t at = end + words.size();
+        words.insert(words.end(), list.begin(), list.end());
+        if (end + words.size() > kMaxWords)
+            throw UserError("--accel grid: 32-bit indices cannot address all words of the grid; use fewer voxels");
+        return as_word(at);
+    };
     header.grid = p.grid;
     header.separate = as_word(p.separate.size());
-    header.separate_at = reserve_words(p.separate.size());
-    header.voxels_at = reserve_words(lists.voxels.size());
-    next = padded_to_rows(next);  // a row of four words is one aligned memory access
-    header.rows_at = reserve_words(lists.rows.size());
-    header.numbers_at = reserve_words(lists.numbers.size());
-    if (next > kMaxWords || lists.numbers.size() > RAYA_ROW_NUMBER)
-        throw UserError(fmt::format(
-            "--accel grid: the grid needs {} words, more than 32-bit indices can address; use fewer voxels", next));
-    std::vector<std::uint32_t> words(next - end);
+    header.separate_at = append(p.separate);
+    header.starts_at = append(p.starts);
+    header.lists_at = append(p.objects);
     put_record(words, grid_at - end, header);
-    const auto put = [&](const std::vector<std::uint32_t>& list, std::uint32_t list_at) {
-        std::copy(list.begin(), list.end(), words.begin() + static_cast<std::ptrdiff_t>(list_at - end));
-    };
-    put(p.separate, header.separate_at);
-    put(lists.voxels, header.voxels_at);
-    put(lists.rows, header.rows_at);
-    put(lists.numbers, header.numbers_at);
     job.append(words);
     raya_job new_header = job.header();
     new_header.accel_at = as_word(grid_at);

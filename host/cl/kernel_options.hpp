@@ -13,7 +13,7 @@
 #include "host/cl/device.hpp"
 #include "host/cl/kernel_source.hpp"
 #include "host/model/number_format.hpp"
-#include "kernels/shared/accel.h"
+#include "kernels/shared/job.h"
 
 namespace raya {
 

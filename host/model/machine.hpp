@@ -11,7 +11,7 @@
 #include "host/error.hpp"
 #include "host/model/mapping_rule.hpp"
 #include "host/model/number_format.hpp"
-#include "kernels/shared/accel.h"
+#include "kernels/shared/job.h"
 #include "kernels/shared/events.h"
 
 namespace raya {

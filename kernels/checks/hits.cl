@@ -1,7 +1,7 @@
 // Kernels that find the nearest hits of given rays. hits_without_accel tests all objects. hits_with_accel uses the ring
 // machine's search in the job's grid or BVH; it exists unless RAYA_ACCEL is RAYA_ACCEL_NONE. The host compares the hits
 // of the two kernels. The job's words must be in global memory.
-#include "kernels/checks/rays.clh"
+#include "kernels/checks/rows.clh"
 #include "kernels/shading/search.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
@@ -17,7 +17,7 @@ void hits_without_accel(__global const uint* restrict job,
 }
 
 #if RAYA_FILTER
-// Stores the bits of the error bounds of the filters (geometry/filter_bounds.clh).
+// Stores the bits of the error bounds of the filters (number/reduced.clh).
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))
 void filter_bounds(__global uint* restrict bounds) {
     bounds[0] = as_uint(RAYA_ERROR);

@@ -20,7 +20,7 @@
 //
 // Limits: a PE's share < 2^32 pixels; modelled cycles of one pixel < 2^64; events of each kind of one pixel < 2^32.
 #include "kernels/ring/saved_trees.clh"
-#include "kernels/shading/camera.clh"
+#include "kernels/geometry/ray.clh"
 #include "kernels/shading/shade.clh"
 #include "kernels/shared/loop_canary.clh"
 

@@ -37,6 +37,11 @@ typedef struct {
 } raya_job;
 RAYA_SHARED_SIZE(raya_job, 4 * (5 + 3 + 8 + 1 + RAYA_EVENTS + 17 + 2));
 
+// Values of RAYA_ACCEL: the acceleration structure that the ring machine's kernels are built for.
+#define RAYA_ACCEL_NONE 0  // none: every ray is tested against all objects
+#define RAYA_ACCEL_GRID 1  // uniform grid of voxels (grid.h)
+#define RAYA_ACCEL_BVH 2   // bounding volume hierarchy (bvh.h)
+
 enum {  // words of a surface
     RAYA_SURFACE_COLOUR = 0,      // r, g, b; with a checker, of its even squares
     RAYA_SURFACE_DIFFUSE = 3,     // Kd

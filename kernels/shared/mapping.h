@@ -25,8 +25,22 @@
 #ifndef RAYA_SHARED_MAPPING_H
 #define RAYA_SHARED_MAPPING_H
 #include "kernels/shared/portable.h"
-#include "kernels/shared/ratios.h"
 #include "kernels/shared/scramble.h"
+
+// ceil(a b / c)
+RAYA_SHARED_FUNCTION raya_u32 raya_ceil_ratio(raya_u32 a, raya_u32 b, raya_u32 c) {
+    return (raya_u32)(((raya_u64)a * b + c - 1) / c);
+}
+
+// floor(a b / c)
+RAYA_SHARED_FUNCTION raya_u32 raya_floor_ratio(raya_u32 a, raya_u32 b, raya_u32 c) {
+    return (raya_u32)((raya_u64)a * b / c);
+}
+
+// Returns how many of first, first + step, first + 2 step, ... lie below end.
+RAYA_SHARED_FUNCTION raya_u32 raya_steps_below(raya_u32 first, raya_u32 step, raya_u32 end) {
+    return first < end ? (end - first - 1) / step + 1 : 0;
+}
 
 #define RAYA_FOLD_CYCLIC 0u
 #define RAYA_FOLD_BLOCK 1u

@@ -3,7 +3,6 @@
 // work-items save.
 #ifndef RAYA_SHARED_TRACE_PROGRESS_H
 #define RAYA_SHARED_TRACE_PROGRESS_H
-#include "kernels/shared/accel.h"
 #include "kernels/shared/events.h"
 #include "kernels/shared/portable.h"
 

@@ -3,18 +3,18 @@
 // One work-group is one node. If the root makes all primary rays, it processes all pixels and the remaining nodes do
 // nothing. If all nodes make primary rays, a ray that enters the box belongs to the node that holds the ray's first
 // voxel. A ray that misses the box belongs to node (row mod number of nodes). A node makes the rays of all pixels in
-// its window and in its rows (torus/pixel_rows.clh), and discards rays that belong to other nodes. Making a discarded
+// its window and in its rows (torus/primaries.clh), and discards rays that belong to other nodes. Making a discarded
 // ray takes time, so the kernel counts discarded rays (RAYA_DISCARDED).
 //
 //     from the node's next pixel on, L x V pixels of a row at a time:
-//         make their rays and find their first voxels                      (shading/camera.clh, grid/traversal.clh)
+//         make their rays and find their first voxels                      (geometry/ray.clh, grid/traversal.clh)
 //         append the rays that belong to the node to the queue, as many as fit
 //         the next pixel is the first whose ray did not fit
 //
 // A node makes rays until an eighth of its queue is in use, so that slots remain free for arriving packets and for
 // packets of secondary rays. It always leaves as many slots free as the tree of one ray needs. A launch also ends when
 // a node has done its `work`. The next launch (`resume` = 1) continues at the next pixel.
-#include "kernels/shared/loop_canary.clh"
+#include "kernels/torus/moves.clh"
 #include "kernels/torus/primaries.clh"
 
 #define RAYA_STEP (RAYA_GROUP * RAYA_LANES)
@@ -25,41 +25,15 @@ typedef struct {
     uint max_packets;               // the node appends rays until the queue holds this many packets
     shared_words shared;            // RAYA_COUNT_WORDS
     shared_words next;              // [1]: next pixel of the row
-    shared_words own_bits;          // RAYA_VOTE_WORDS(L V): a bit for each lane's ray, 1 if it belongs to the node
+    vote_words own_bits;            // a bit for each ray, 1 if it belongs to the node; lane l of item i: bit i V + l
     uint work, spent;               // maximum work of a node in the launch; work done so far. Unit: a batch of up to
                                     // L V pixels, or a row
 } injection;
 
-// Sets the bits of the lanes whose rays belong to the node. Lane l of work-item i has bit i V + l. A single work-item
-// needs no bits.
-static inline void vote_own_rays(const injection* to, const primaries* p) {
-#if RAYA_GROUP > 1
-    const uint bit = get_local_id(0) * RAYA_LANES;
-    atomic_or(&to->own_bits[bit / 32], mask_bits(p->own_rays) << bit % 32);
-#endif
-}
-
-// Returns how many rays in the lanes of lower-numbered work-items belong to the node.
-static inline uint own_rays_before(const injection* to) {
-    uint number = 0;
-#if RAYA_GROUP > 1
-    const uint bit = get_local_id(0) * RAYA_LANES;
-    number = popcount(to->own_bits[bit / 32] & (1u << bit % 32) - 1u);
-    for (uint i = 0; i < bit / 32; ++i) number += popcount(to->own_bits[i]);
-#endif
-    return number;
-}
-
-static inline void clear_votes(const injection* to) {
-    for (uint i = get_local_id(0); i < RAYA_VOTE_WORDS(RAYA_STEP); i += RAYA_GROUP) to->own_bits[i] = 0;
-}
-
 // Appends the lanes' rays that belong to the node to the queue, from slot `at` on, as many as fit. Lane l has pixel
 // first + l of the row. Returns the index in the row of the first pixel whose ray did not fit; `end` if all rays fit.
 static inline uint put_primaries(const primaries* p, const injection* to, uint at, uint first, uint end) {
-    lanes_index own_rays, meets;
-    own_rays.truth = p->own_rays;
-    meets.truth = p->meets;
+    const lanes_index own_rays = {.truth = p->own_rays}, meets = {.truth = p->meets};
     uint met = 0, made = 0, first_waiting = end;
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!own_rays.lane[lane]) continue;
@@ -82,8 +56,7 @@ static inline uint put_primaries(const primaries* p, const injection* to, uint a
 // Returns how many of the lanes' rays belong to other nodes. Counts only rays of pixels before `next`, because the node
 // will make the rays of later pixels again.
 static inline uint number_of_discarded(const primaries* p, uint first, uint next) {
-    lanes_index own_rays;
-    own_rays.truth = p->own_rays;
+    const lanes_index own_rays = {.truth = p->own_rays};
     uint number = 0;
     for (uint lane = 0; lane < RAYA_LANES && first + lane < next; ++lane) number += !own_rays.lane[lane];
     return number;
@@ -97,15 +70,16 @@ static inline uint make_row(const node* n, pixel_row row, uint at, uint stride, 
     for (; at < row.count && *used < to->max_packets && to->spent < to->work; ++to->spent) {
         const uint first = at + item * RAYA_LANES, end = min(row.count, at + RAYA_STEP), before = *used;
         const primaries p = make_primaries(n, row, first, stride);
-        vote_own_rays(to, &p);
+        set_bits(to->own_bits, item * RAYA_LANES, mask_bits(p.own_rays));
         if (item == 0) *next = end;
         node_barrier();
-        const uint first_waiting = put_primaries(&p, to, before + own_rays_before(to), first, end);
+        const uint slot = before + bits_before(to->own_bits, item * RAYA_LANES);
+        const uint first_waiting = put_primaries(&p, to, slot, first, end);
         if (first_waiting < end) atomic_min(next, first_waiting);
         node_barrier();
         at = *next;
         count_shared(to->shared, RAYA_COUNT_EVENTS + 2 * RAYA_DISCARDED, number_of_discarded(&p, first, at));
-        clear_votes(to);
+        clear_bits(to->own_bits, RAYA_VOTE_WORDS(RAYA_STEP));
         node_barrier();
     }
     return at;
@@ -137,7 +111,7 @@ void inject(__global const uint* restrict memories,  // for parameters without a
     status += (size_t)slot * RAYA_STATUS_WORDS;
     if (resume && !status[RAYA_STATUS_LEFT]) return;
     init_shared(to.shared, status[RAYA_STATUS_QUEUE]);
-    clear_votes(&to);
+    clear_bits(to.own_bits, RAYA_VOTE_WORDS(RAYA_STEP));
     const node n = load_node(memories, starts, slot, local_words + RAYA_INJECT_WORDS(RAYA_GROUP, RAYA_LANES));
     const uint tree_slots = raya_slots_for_ray(raya_max_new_packets(((job_words)n.memory)->lights), RAYA_BOUNCES, 0);
     to.max_packets = min(max(capacity / 8, 1u), capacity - tree_slots);

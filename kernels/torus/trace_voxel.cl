@@ -31,9 +31,8 @@
 // Reserves slots for the packets that the packets of the lanes m may turn into. Returns the lanes for which there were
 // enough free slots. Sets `reserved` to the number of slots reserved. Shadow rays need no slots.
 static inline mask reserve_slots(const node* n, const packet_batch* f, mask m, uint* reserved) {
-    lanes_index chosen, level;
-    chosen.truth = m & mask_not(is_shadow(f));
-    level.all = levels_of(f);
+    lanes_index chosen = {.truth = m & mask_not(is_shadow(f))};
+    const lanes_index level = {levels_of(f)};
     const uint packets_per_hit = raya_max_new_packets(((job_words)n->memory)->lights);
     shared_words used_slots = &f->shared[RAYA_COUNT_RESERVED];
     *reserved = 0;
@@ -67,9 +66,7 @@ static inline void count_tests(packet_batch* f, mask m, objects_words all) {
 
 // Sets the next voxel of the packets of the lanes m to `packed_voxel`.
 static inline void move_packets(packet_batch* f, mask m, index packed_voxel) {
-    lanes_index chosen, to;
-    chosen.truth = m;
-    to.all = packed_voxel;
+    const lanes_index chosen = {.truth = m}, to = {packed_voxel};
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!chosen.lane[lane]) continue;
         own_slot(f, lane)->head.voxel = to.lane[lane];
@@ -128,9 +125,8 @@ static inline void record_costs(const packet_batch* f, uint end, __global raya_p
 // to another node.
 RAYA_KERNEL_BODY void process_slots(const node* n, packet_batch* f, uint first, uint end) {
     load_batch(f, first, end);
-    lanes_index waiting;
     const index kind = kinds_of(f);
-    waiting.truth = (kind != (index)(RAYA_KIND_NONE)) & (kind != (index)(RAYA_KIND_RETURN));
+    lanes_index waiting = {.truth = (kind != (index)(RAYA_KIND_NONE)) & (kind != (index)(RAYA_KIND_RETURN))};
     for (uint lane = 0; lane < RAYA_LANES; ++lane) {
         if (!waiting.lane[lane]) continue;
         const uint packed_voxel = f->voxel.lane[lane];

@@ -1,6 +1,6 @@
-// Test kernel that tests each of the given rays (kernels/checks/rays.clh) against one object. Rays 16 i to 16 i + 15
+// Test kernel that tests each of the given rays (kernels/checks/rows.clh) against one object. Rays 16 i to 16 i + 15
 // are tested against objects[i]. The number of rays is a multiple of 16.
-#include "kernels/checks/rays.clh"
+#include "kernels/checks/rows.clh"
 #include "kernels/geometry/scene.clh"
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1)))

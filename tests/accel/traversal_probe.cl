@@ -1,5 +1,5 @@
-// Test kernels that trace given rays (kernels/checks/rays.clh) through a grid by kernels/grid/traversal.clh.
-#include "kernels/checks/rays.clh"
+// Test kernels that trace given rays (kernels/checks/rows.clh) through a grid by kernels/grid/traversal.clh.
+#include "kernels/checks/rows.clh"
 #include "kernels/grid/traversal.clh"
 
 // Records every voxel on each ray.

@@ -1,4 +1,4 @@
-// Test kernels that apply the geometry and shading headers to given rays (kernels/checks/rays.clh). The file also has
+// Test kernels that apply the geometry and shading headers to given rays (kernels/checks/rows.clh). The file also has
 // the kernels of hits.cl.
 #include "kernels/checks/hits.cl"
 #include "kernels/shading/shade.clh"

@@ -351,7 +351,7 @@ TEST_CASE("every injected fault in the BVH traversal is detected", "[ring][accel
     };
     const std::vector<Fault> faults = {
         {{"bvh/boxes.clh", "inverse < 0.0f, (index)((RAYA_BVH_HIGH", "inverse < 2.0f, (index)((RAYA_BVH_HIGH"}},
-        {{"bvh/meet_objects.clh", "p->distance.all = h.distance;", "p->distance.all = h.distance * 0.99f;"}, "spa22"},
+        {{"bvh/meet_leaves.clh", "p->distance.all = h.distance;", "p->distance.all = h.distance * 0.99f;"}, "spa22"},
         {{"bvh/leaves.clh", "return popcount(crossed) & 1u;", "return crossed & 1u;"}},
         {{"bvh/boxes.clh", "const mask enters = near <= far;", "const mask enters = near + 0.01f <= far;"}},
         {{"bvh/boxes.clh", "popcount(entered) - 1", "popcount(entered) - 2 + (popcount(entered) == 1)"}},
@@ -361,8 +361,8 @@ TEST_CASE("every injected fault in the BVH traversal is detected", "[ring][accel
         {{"bvh/leaves.clh", "number < h->object;", "number > h->object;"}},
         {{"bvh/leaves.clh", "crosses_edge(seen[2], seen[3]) ^ crosses_edge(seen[3], seen[0])",
           "crosses_edge(seen[2], seen[0])"}},
-        {{"bvh/leaves.clh", "choose(in & mask_not(out & (x.t_out <= x.t_in))", "choose(in & mask_not(out)"}},
-        {{"bvh/meet_objects.clh", "raya_link_number(p->link[lane]);", "raya_link_number(p->link[lane]) & ~1u;"},
+        {{"geometry/cone.clh", "choose(in & mask_not(out & (x.t_out <= x.t_in))", "choose(in & mask_not(out)"}},
+        {{"bvh/meet_leaves.clh", "raya_link_number(p->link[lane]);", "raya_link_number(p->link[lane]) & ~1u;"},
          "spa22"},
         {{"bvh/ray_pool.clh", "m & mask_not(done);", "m & mask_not(done) & (r->direction.x > 0.0f);"}}};
     for (const Fault& fault : quick_of(2, faults)) {

@@ -44,7 +44,7 @@ def check_lines(tool):
     check(lists == tool.make_candidates(500, 1) and lists != tool.make_candidates(500, 2), "the seed selects the mutants")
     files = {mutants[0][0] for mutants in lists}
     kernels = {str(path.relative_to(ROOT / "kernels")) for path in tool.KERNELS.rglob("*.cl*") if "example" not in path.parts}
-    check(kernels - files <= {"shading/camera.clh"}, f"files without mutant: {kernels - files}")  # camera.clh only calls functions
+    check(kernels - files <= {"geometry/ray.clh"}, f"files without mutant: {kernels - files}")
 
 
 def check_report(tool):

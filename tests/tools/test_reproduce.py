@@ -15,7 +15,7 @@ KERNEL_FAULTS = [
     ("number e5m10, 16 lanes", "number/reduced.clh", "even = ~(bits <<", "even = (bits <<"),
     ("geometry known hits of spheres, fp32, 16 lanes", "geometry/sphere.clh", "& (t < h.distance)",
      "& ((t < h.distance) | ((t == h.distance) & (h.object != RAYA_NO_OBJECT)))"),
-    ("machine mapping: cyclic, block fold", "shared/ratios.h", "(raya_u64)a * b / c", "a * b / c"),
+    ("machine mapping: cyclic, block fold", "shared/mapping.h", "(raya_u64)a * b / c", "a * b / c"),
     ("machine torus3d: exchange of few mailboxes", "torus/exchange.cl", "target[i] = source[i];", "target[i] = source[i] ^ (uint8)(1);"),
     ("image glass fp32 filter", "ring/filter.cl", "raya_has_neighbour(m, pixel, RAYA_RIGHT)", "1"),
     ("image glass fp32: tiles", "shading/tree.clh", "count_event(t, RAYA_REFLECTED, m);", ""),

@@ -1,5 +1,5 @@
-// Test kernel that finds the nearest hits of given rays (kernels/checks/rays.clh) in one voxel of a torus node.
-#include "kernels/checks/rays.clh"
+// Test kernel that finds the nearest hits of given rays (kernels/checks/rows.clh) in one voxel of a torus node.
+#include "kernels/checks/rows.clh"
 #include "kernels/shading/shade.clh"
 #include "kernels/shared/node.h"
 

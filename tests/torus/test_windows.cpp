@@ -23,7 +23,7 @@ double rounded(double value, const NumberFormat& format) {
 Vec3 vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 // Returns the direction of the ray through an image point. Each operation is rounded to the format, as in the kernels
-// (shading/camera.clh).
+// (geometry/ray.clh).
 Vec3 direction_of(const Camera& c, double row, double column) {
     const auto round = [&](double value) { return rounded(value, c.format); };
     Vec3 d;

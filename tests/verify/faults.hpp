@@ -23,7 +23,7 @@ inline const SourcePatch kTieFault{"geometry/sphere.clh", "& (t < h.distance)",
 inline const SourcePatch kGridFault{"grid/traversal.clh", "raya_voxel_plane(g, axis, g.divisions[axis])",
                                     "raya_voxel_plane(g, axis, g.divisions[axis] - 1)"};
 /// A 64-bit product is truncated to 32 bits.
-inline const SourcePatch kMappingFault{"shared/ratios.h", "(raya_u64)a * b / c", "a * b / c"};
+inline const SourcePatch kMappingFault{"shared/mapping.h", "(raya_u64)a * b / c", "a * b / c"};
 /// A barrier is missing: work-items read local memory before all have written it.
 inline const SourcePatch kBarrierFault{
     "checks/machine.cl", "words - 1 - w] + 1;\n        barrier(CLK_LOCAL_MEM_FENCE);", "words - 1 - w] + 1;"};
@@ -71,14 +71,11 @@ inline const std::vector<CountFault> kCountFaults = {
     {"cone_tests", {"shading/tree.clh", "m, all->cones)", "m, all->planes)"}, kOnCones},
     {"walks", {"grid/grid_search.clh", "count_event(t, RAYA_WALKS, w.on);", ""}, kOnGrid},
     {"polygon_tests",
-     {"grid/grid_search.clh", "t->events[RAYA_POLYGON_TESTS].all += w.polygons",
-      "t->events[RAYA_CONE_TESTS].all += w.polygons"},
+     {"shading/first_tests.clh", "t->events[RAYA_POLYGON_TESTS].all += tests",
+      "t->events[RAYA_CONE_TESTS].all += tests"},
      kOnGrid},
     {"walks", {"bvh/ray_pool.clh", "RAYA_WALKS, p->queued.truth", "RAYA_STEPS, p->queued.truth"}, kOnBvh},
-    {"steps",
-     {"bvh/ray_pool.clh", "+= p->nodes.all;\n    t->events[RAYA_SPHERE",
-      "+= 2u * p->nodes.all;\n    t->events[RAYA_SPHERE"},
-     kOnBvh},
+    {"steps", {"shading/first_tests.clh", "all += steps;", "all += 2u * steps;"}, kOnBvh},
     {"pixel_cycles", {"ring/pixel_store.clh", "= cycles.lane[lane];", "= 0;"}, kOnGlass},
     {"reflected",
      {"torus/shade_packets.clh", "kind == RAYA_KIND_REFLECTED ? RAYA_REFLECTED : RAYA_REFRACTED", "RAYA_REFRACTED"},
