@@ -305,9 +305,9 @@ AccelSummary append_grid(PackedJob& job, const Partition& p) {
     std::vector<std::uint32_t> words(grid_at - end + kWordsOf<raya_grid_words>);
     const auto append = [&](const std::vector<std::uint32_t>& list) {
         const std::size_t at = end + words.size();
-        words.insert(words.end(), list.begin(), list.end());
-        if (end + words.size() > kMaxWords)
+        if (at + list.size() > kMaxWords)
             throw UserError("--accel grid: 32-bit indices cannot address all words of the grid; use fewer voxels");
+        words.insert(words.end(), list.begin(), list.end());
         return as_word(at);
     };
     header.grid = p.grid;

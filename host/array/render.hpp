@@ -31,8 +31,8 @@ struct RenderSettings {
     NumberFormat format{};
     Sampling sampling = Sampling::kCentres;
     KernelChoice kernels{};
-    // Maximum work of a launch (LaunchLoop): on a ring, tests and traversal steps of a lane's rays; on
-    // a torus, work of a node. 0: chosen so that a launch takes about a second at most.
+    // Maximum work of a launch (LaunchLoop): on a ring, tests and traversal steps of a lane's rays; on a torus, work of
+    // a node. 0: chosen so that a launch takes about a second at most.
     std::uint32_t work_per_launch = 0;
 };
 

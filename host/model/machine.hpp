@@ -11,8 +11,8 @@
 #include "host/error.hpp"
 #include "host/model/mapping_rule.hpp"
 #include "host/model/number_format.hpp"
-#include "kernels/shared/job.h"
 #include "kernels/shared/events.h"
+#include "kernels/shared/job.h"
 
 namespace raya {
 

@@ -19,8 +19,8 @@
 // image's bits do not depend on V, group size, mapping or device.
 //
 // Limits: a PE's share < 2^32 pixels; modelled cycles of one pixel < 2^64; events of each kind of one pixel < 2^32.
-#include "kernels/ring/saved_trees.clh"
 #include "kernels/geometry/ray.clh"
+#include "kernels/ring/saved_trees.clh"
 #include "kernels/shading/shade.clh"
 #include "kernels/shared/loop_canary.clh"
 
