@@ -79,8 +79,8 @@ check_fault() {  # check_fault FILE FIND REPLACE REPORT OPTION...
 check_fault ring/trace.cl $'barrier(CLK_LOCAL_MEM_FENCE);\n    pixel_store store;' "pixel_store store;" "data race" --pes 2
 check_fault ring/pixel_store.clh "store->totals[e].all = (wide_count)(0);" ";" "Uninitialized value" --pes 2
 check_fault ring/trace.cl "pixels + (size_t)group * capacity * 3" "pixels + (size_t)group * capacity * 4" "Invalid write" --pes 2
-[[ -z $thorough ]] || check_fault ring/filter.cl "mine = sums + (size_t)group * capacity * 3;"$'\n    const uint end = min(capacity, raya_share_size(block' \
-    "mine = sums + (size_t)(group + 1) * capacity * 3;"$'\n    const uint end = min(capacity, raya_share_size(block' \
+[[ -z $thorough ]] || check_fault ring/filter.cl "own_sums = sums + (size_t)group * capacity * 3;"$'\n    const uint end = min(capacity, raya_share_size(block' \
+    "own_sums = sums + (size_t)(group + 1) * capacity * 3;"$'\n    const uint end = min(capacity, raya_share_size(block' \
     "Invalid read" --pes 2 --antialias filter
 
 for scene in "${scenes[@]}"; do
