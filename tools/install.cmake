@@ -28,12 +28,12 @@ if(TARGET raya_python)
     install(DIRECTORY tools/lab DESTINATION ${package} COMPONENT wheel PATTERN __pycache__ EXCLUDE)
 endif()
 
-# Manual pages from the help of the installed program.
-find_program(HELP2MAN help2man)
-if(HELP2MAN)
-    install(CODE "execute_process(COMMAND_ERROR_IS_FATAL ANY COMMAND ${PROJECT_SOURCE_DIR}/tools/manual_pages
-        \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/raya \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1)")
-endif()
+# Manual pages from the help of the installed program; help2man is sought when raya is installed, because it may come later than the build.
+install(CODE "find_program(HELP2MAN help2man)
+    if(HELP2MAN)
+        execute_process(COMMAND_ERROR_IS_FATAL ANY COMMAND ${PROJECT_SOURCE_DIR}/tools/manual_pages
+            \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/raya \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1)
+    endif()")
 install(FILES tools/raya.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME raya)
 
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/raya/scenes FILES_MATCHING PATTERN "*.nff" PATTERN "README.md")

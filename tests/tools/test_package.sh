@@ -4,7 +4,7 @@
 set -euo pipefail
 build=$(readlink -f "$1")
 root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
-for tool in cpack dpkg-shlibdeps dpkg-deb; do
+for tool in cpack dpkg-shlibdeps dpkg-deb help2man; do
     command -v "$tool" >/dev/null || { echo "skipped: no $tool"; exit 77; }
 done
 scratch=$(mktemp -d)
