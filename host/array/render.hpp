@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/base/log.hpp"
+#include "host/cl/capture.hpp"
 #include "host/cl/commands.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/cl/profile.hpp"
@@ -112,7 +113,8 @@ class LaunchLoop {
                 continue;
             }
             if (ended.done) return;
-            if (target_s > 0) work = next_work(work, seconds_since(start), target_s);
+            // In a captured run, launches are the same in each repetition.
+            if (target_s > 0 && Capture::active() == nullptr) work = next_work(work, seconds_since(start), target_s);
             resumes = true;
         }
     }

@@ -185,6 +185,23 @@ TEST_CASE("a launch whose loops are cut is repeated with half the work, and its 
     CHECK(launches_of(second) == launches_of(first) - (method == AntialiasMethod::kNone ? 3 : 6));
 }
 
+TEST_CASE("further launches have an amount of work for the intended time; in a captured run, that of the first",
+          "[ring]") {
+    Session session(choose_device(""));
+    auto state = session.buffer<std::uint32_t>("state", 1);
+    const auto amounts = [&] {
+        std::vector<std::uint32_t> amounts;
+        LaunchLoop<std::uint32_t> launches("");
+        launches.run(
+            session, "amounts", 8, 3600, [&](std::uint32_t work, bool) { amounts.push_back(work); },
+            [&] { return LaunchEnd{.done = amounts.size() == 3}; }, state);
+        return amounts;
+    };
+    CHECK(amounts() == std::vector<std::uint32_t>{8, 32, 128});
+    const Capture capture(0, "", [](const Json&) {});
+    CHECK(amounts() == std::vector<std::uint32_t>{8, 8, 8});
+}
+
 TEST_CASE("on a device that ends loops early, the render ends with an error", "[ring]") {
     const Scene scene = project_scene("glass");
     Session session(choose_device(""));
