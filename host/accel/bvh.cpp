@@ -358,12 +358,12 @@ double reach_for(const PackedJob& job, const NumberFormat& format) {
 std::uint32_t kind_of(const PackedJob& job, const NumberFormat& format, std::uint32_t number) {
     // In a reduced format, polygons with more corners are stored in leaves for one polygon.
     constexpr std::uint32_t kMaxObjectCorners = 16;
-    const raya_objects& objects = job.header().objects;
-    const bool is_polygon = number >= objects.spheres && number < objects.spheres + objects.planes + objects.polygons;
-    const std::uint32_t corners = is_polygon ? polygon_words(job, number)[RAYA_POLYGON_CORNERS] : 0;
+    const std::uint32_t kind = kind_of_object(job.header().objects, number);
+    const std::uint32_t corners = kind == RAYA_POLYGON ? job.object(number)[RAYA_POLYGON_CORNERS] : 0;
     if (!format.is_fp32()) return corners > kMaxObjectCorners ? RAYA_LINK_POLYGON : RAYA_LINK_OBJECT;
-    if (is_polygon) return corners <= RAYA_BVH_MAX_CORNERS ? RAYA_LINK_FACES : RAYA_LINK_POLYGON;
-    return number < objects.spheres ? RAYA_LINK_SPHERES : RAYA_LINK_CONES;
+    if (kind == RAYA_POLYGON) return corners <= RAYA_BVH_MAX_CORNERS ? RAYA_LINK_FACES : RAYA_LINK_POLYGON;
+    if (kind == RAYA_SPHERE) return RAYA_LINK_SPHERES;
+    return RAYA_LINK_POLYGON + (kind - RAYA_POLYGON);  // both lists are in the order of RAYA_SHAPE_LIST
 }
 
 // Large objects (the ground below a scene, walls around it) are listed separately. Nearly every ray reaches them, and
@@ -388,12 +388,6 @@ void separate_large_items(BvhItems& objects) {
 }
 
 }  // namespace
-
-const std::uint32_t* polygon_words(const PackedJob& job, std::uint32_t number) {
-    const raya_objects& objects = job.header().objects;
-    const std::size_t polygon = number - objects.spheres - objects.planes;
-    return job.words().data() + objects.polygons_at + polygon * RAYA_POLYGON_WORDS;
-}
 
 BvhItems bvh_items(const PackedJob& job, const NumberFormat& format, unsigned threads) {
     constexpr std::size_t kMinItems = 1 << 12;  // of a thread

@@ -77,9 +77,6 @@ AccelSummary append_bvh(PackedJob& job, const NumberFormat& format, unsigned thr
 /// The threshold was measured on a CPU with sixteen lanes.
 bool bvh_pays(const Scene& scene, const NumberFormat& format);
 
-/// Returns the first of the words of a polygon, whose object number is `number`.
-const std::uint32_t* polygon_words(const PackedJob& job, std::uint32_t number);
-
 /// The finite objects of a job.
 struct BvhItems {
     std::vector<BvhItem> items;           // empty if the hit regions are unbounded

@@ -91,23 +91,23 @@ class BvhWriter {
 
     bool are_triangles(std::span<const BvhItem> faces) const {
         return std::all_of(faces.begin(), faces.end(), [&](const BvhItem& item) {
-            return polygon_words(job_, item.number)[RAYA_POLYGON_CORNERS] < RAYA_BVH_MAX_CORNERS;
+            return job_.object(item.number)[RAYA_POLYGON_CORNERS] < RAYA_BVH_MAX_CORNERS;
         });
     }
 
     /// Returns the number of rows of a leaf; 0 for a node.
     std::uint32_t rows_of_leaf(const BvhChild& child) const {
         switch (child.kind) {
-            case RAYA_LINK_SPHERES:
-                return RAYA_BVH_SPHERES;
+            case RAYA_LINK_NODE:
+            case RAYA_LINK_OBJECT:
+                return 0;
             case RAYA_LINK_FACES:
                 return are_triangles(items_of(child)) ? RAYA_BVH_TRIANGLES : RAYA_BVH_FACES;
             case RAYA_LINK_POLYGON:
-                return 1 + 3 * raya_outline_rows(polygon_words(job_, items_of(child)[0].number)[RAYA_POLYGON_CORNERS]);
-            case RAYA_LINK_CONES:
-                return RAYA_BVH_CONES;
+                return 1 + 3 * raya_outline_rows(job_.object(items_of(child)[0].number)[RAYA_POLYGON_CORNERS]);
             default:
-                return 0;
+                return std::max<std::uint32_t>(
+                    words_of_kind(kind_of_object(job_.header().objects, items_of(child)[0].number)), RAYA_OBJECT_WORDS);
         }
     }
 
@@ -142,12 +142,9 @@ class BvhWriter {
                 return raya_link(RAYA_LINK_POLYGON, 1, row);
             case RAYA_LINK_FACES:
                 return raya_link(write_faces(items, row), count, row);
-            case RAYA_LINK_CONES:
-                write_cones(items, row);
-                return raya_link(RAYA_LINK_CONES, count, row);
             default:
-                write_spheres(items, row);
-                return raya_link(RAYA_LINK_SPHERES, count, row);
+                write_objects(items, row, rows_of_leaf(leaf));
+                return raya_link(leaf.kind, count, row);
         }
     }
 
@@ -163,10 +160,9 @@ class BvhWriter {
         for (std::uint32_t w = 0; w < count; ++w) word(row + w, column) = words[w];
     }
 
-    void write_spheres(std::span<const BvhItem> items, std::uint32_t row) {
+    void write_objects(std::span<const BvhItem> items, std::uint32_t row, std::uint32_t rows) {
         for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
-            const std::size_t sphere_at = job_.header().objects.spheres_at + std::size_t{number} * RAYA_SPHERE_WORDS;
-            put_column(row, column, job_.words().data() + sphere_at, RAYA_BVH_NUMBERS);
+            put_column(row, column, job_.object(number), rows);
             word(row + RAYA_BVH_NUMBERS, column) = number;
         });
     }
@@ -175,7 +171,7 @@ class BvhWriter {
     std::uint32_t write_faces(std::span<const BvhItem> items, std::uint32_t row) {
         const bool triangles = are_triangles(items);
         for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
-            const std::uint32_t* polygon = polygon_words(job_, number);
+            const std::uint32_t* polygon = job_.object(number);
             const std::uint32_t last = polygon[RAYA_POLYGON_CORNERS] - 1;
             for (std::uint32_t i = 0; i < 3; ++i)
                 put_column(row + RAYA_BVH_CORNERS + 3 * i, column, corner(polygon, std::min(i, last)), 3);
@@ -187,7 +183,7 @@ class BvhWriter {
     }
 
     void write_outline(std::uint32_t number, std::uint32_t row) {
-        const std::uint32_t* polygon = polygon_words(job_, number);
+        const std::uint32_t* polygon = job_.object(number);
         const std::uint32_t corners = polygon[RAYA_POLYGON_CORNERS], rows = raya_outline_rows(corners);
         word(row, RAYA_BVH_OUTLINE_NUMBER) = number;
         word(row, RAYA_BVH_OUTLINE_CORNERS) = corners;
@@ -203,22 +199,6 @@ class BvhWriter {
             word(row, RAYA_BVH_OUTLINE_LOW + axis) = std::bit_cast<std::uint32_t>(low);
             word(row, RAYA_BVH_OUTLINE_HIGH + axis) = std::bit_cast<std::uint32_t>(high);
         }
-    }
-
-    void write_cones(std::span<const BvhItem> items, std::uint32_t row) {
-        const raya_objects& objects = job_.header().objects;
-        const std::uint32_t first_cone = objects.spheres + objects.planes + objects.polygons;
-        for_columns(items, [&](std::uint32_t column, std::uint32_t number) {
-            const std::size_t cone_at = objects.cones_at + std::size_t{number - first_cone} * RAYA_CONE_WORDS;
-            const std::uint32_t* cone = job_.words().data() + cone_at;
-            put_column(row + RAYA_BVH_BASE, column, cone + RAYA_CONE_BASE, 3);
-            word(row + RAYA_BVH_RADIUS, column) = cone[RAYA_CONE_RADIUS];
-            put_column(row + RAYA_BVH_AXIS, column, cone + RAYA_CONE_AXIS, 3);
-            word(row + RAYA_BVH_HEIGHT, column) = cone[RAYA_CONE_HEIGHT];
-            word(row + RAYA_BVH_SLOPE, column) = cone[RAYA_CONE_SLOPE];
-            word(row + RAYA_BVH_INSIDE, column) = cone[RAYA_CONE_INSIDE];
-            word(row + RAYA_BVH_CONE_NUMBERS, column) = number;
-        });
     }
 
     const std::uint32_t* corner(const std::uint32_t* polygon, std::uint32_t i) const {

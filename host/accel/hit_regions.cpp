@@ -87,10 +87,10 @@ bool HitRegion::touches(const Box& other_box) const {
 HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double reach,
                        const std::vector<std::uint32_t>& separate)
     : words_(&job.words()), objects_(job.header().objects) {
-    const std::uint32_t first_polygon = objects_.spheres + objects_.planes;
-    numbers_.reserve(std::size_t{objects_.spheres} + objects_.polygons + objects_.cones);
-    for (std::uint32_t number = 0; number < first_polygon + objects_.polygons + objects_.cones; ++number)
-        if ((number < objects_.spheres || number >= first_polygon) &&
+    const std::uint32_t end = raya_first_object(objects_, RAYA_OBJECT_KINDS);
+    numbers_.reserve(end - objects_.planes);
+    for (std::uint32_t number = 0; number < end; ++number)
+        if (kind_of_object(objects_, number) != RAYA_PLANE &&
             !std::binary_search(separate.begin(), separate.end(), number))
             numbers_.push_back(number);
     const int quarter_range = 1 << (format.exponent_bits - 2);  // a quarter of the number of exponents
@@ -116,11 +116,15 @@ Vec3 HitRegions::vector(std::size_t at) const { return {real(at), real(at + 1), 
 double HitRegions::max_distance(const Vec3& point) const { return std::sqrt(3.0) * reach_ + point.length(); }
 
 HitRegion HitRegions::region(std::size_t i) const {
-    const std::size_t number = numbers_[i], first_polygon = std::size_t{objects_.spheres} + objects_.planes;
-    const std::size_t first_cone = first_polygon + objects_.polygons;
-    if (number < first_polygon) return sphere(objects_.spheres_at + number * RAYA_SPHERE_WORDS);
-    if (number < first_cone) return polygon(objects_.polygons_at + (number - first_polygon) * RAYA_POLYGON_WORDS);
-    return cone(objects_.cones_at + (number - first_cone) * RAYA_CONE_WORDS);
+    const std::size_t at = object_at(objects_, numbers_[i]);
+#define RAYA_REGION(kind, kinds, KIND) \
+    case RAYA_##KIND:                  \
+        return kind(at);
+    switch (kind_of_object(objects_, numbers_[i])) {
+        RAYA_SHAPE_LIST(RAYA_REGION)
+        default:
+            return sphere(at);
+    }
 }
 
 HitRegion HitRegions::sphere(std::size_t at) const {

@@ -65,8 +65,8 @@ class HitRegions {
     // Upper bound of the distance from `point` to a ray origin whose coordinates are at most reach_ in magnitude.
     double max_distance(const Vec3& point) const;
     HitRegion sphere(std::size_t at) const;
-    HitRegion polygon(std::size_t at) const;
-    HitRegion cone(std::size_t at) const;
+#define RAYA_REGION_OF_KIND(kind, kinds, KIND) HitRegion kind(std::size_t at) const;
+    RAYA_SHAPE_LIST(RAYA_REGION_OF_KIND)
     double cone_error(std::size_t at, double size) const;
     double cone_size(std::size_t at) const;
     bool cones_bounded() const;

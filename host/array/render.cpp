@@ -12,6 +12,7 @@ std::uint64_t RenderResult::launches(const std::string& label) const {
 }
 
 KernelOptions kernel_options(const RenderSettings& s, const PackedJob& job, bool has_local_words) {
+    const raya_objects objects = job.header().objects;
     return {.lanes = s.kernels.lanes,
             .group_size = s.kernels.group_size,
             .bounces = s.bounces,
@@ -19,11 +20,10 @@ KernelOptions kernel_options(const RenderSettings& s, const PackedJob& job, bool
             .exact_divide = s.kernels.exact_arithmetic,
             .exact_fma = s.kernels.exact_arithmetic,
             .words_local = s.kernels.local_words && has_local_words,
-            .filter = s.kernels.filter && (job.header().objects.spheres > 0 || job.has_polygons()) &&
+            .filter = s.kernels.filter && (objects.spheres > 0 || objects.polygons > 0) &&
                       filters_are_valid(s.format, job.header().extent),
-            .polygons = job.has_polygons(),
-            .patches = job.has_patches(),
-            .cones = job.has_cones(),
+#define RAYA_KIND_OPTION(kind, kinds, KIND) .kinds = objects.kinds > 0,
+            RAYA_SHAPE_LIST(RAYA_KIND_OPTION).patches = job.has_patches(),
             .sphere_batch = s.kernels.sphere_batch};
 }
 

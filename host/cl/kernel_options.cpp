@@ -78,9 +78,9 @@ std::vector<std::string> build_options(const KernelOptions& options, const Devic
     define("GROUP", options.group_size);
     define("BOUNCES", options.bounces);
     define("WORDS_LOCAL", options.words_local);
-    define("POLYGONS", options.polygons);
+#define RAYA_DEFINE_KIND(kind, kinds, KIND) define(#KIND "S", options.kinds);
+    RAYA_SHAPE_LIST(RAYA_DEFINE_KIND)
     define("PATCHES", options.patches);
-    define("CONES", options.cones);
     if (options.accel != RAYA_ACCEL_NONE) define("ACCEL", options.accel);
     if (options.accel == RAYA_ACCEL_BVH) define("BVH_STACK", options.stack);
     if (options.filter) define("FILTER", 1);

@@ -29,8 +29,10 @@ struct KernelOptions {
     std::uint32_t accel = RAYA_ACCEL_NONE;  // accelerator of the job
     std::uint32_t stack = 0;                // RAYA_BVH_STACK: number of entries of the traversal stack
     bool filter = false;  // filter spheres and polygons in fp32 before the exact test, see filters_are_valid()
-    // Each is true if the scene has such objects; patches are polygons with vertex normals.
-    bool polygons = true, patches = true, cones = true;
+    // `polygons`, `cones`: true if the scene has such objects; patches are polygons with vertex normals.
+#define RAYA_HAS_KIND(kind, kinds, KIND) bool kinds = true;
+    RAYA_SHAPE_LIST(RAYA_HAS_KIND)
+    bool patches = true;
     bool costs = false;              // torus nodes record the cost of each packet
     bool packets = false;            // ring: RingSettings::packets
     std::uint32_t sphere_batch = 0;  // RAYA_SPHERE_BATCH: spheres tested before their hits are examined; 0: default

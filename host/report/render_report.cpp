@@ -245,7 +245,8 @@ std::uint64_t ray_count(const EventCounts& e) {
 }
 
 std::uint64_t test_count(const EventCounts& e) {
-    return e[RAYA_SPHERE_TESTS] + e[RAYA_PLANE_TESTS] + e[RAYA_POLYGON_TESTS] + e[RAYA_CONE_TESTS];
+#define RAYA_TESTS(kind, kinds, KIND) +e[RAYA_##KIND##_TESTS]
+    return 0 RAYA_OBJECT_LIST(RAYA_TESTS);
 }
 
 Json to_json(const RenderReport& r) {

@@ -27,9 +27,10 @@ std::uint64_t count_checkers(const Scene& scene) {
 }
 
 Json objects_json(const Scene& s) {
-    return {{"all", s.object_count()},       {"spheres", s.spheres.size()}, {"planes", s.planes.size()},
-            {"polygons", s.polygons.size()}, {"patches", count_patches(s)}, {"vertices", count_vertices(s)},
-            {"cones", s.cones.size()}};
+#define RAYA_KIND_MEMBER(kind, kinds, KIND) {#kinds, s.kinds.size()},
+    return {{"all", s.object_count()},
+            RAYA_OBJECT_LIST(RAYA_KIND_MEMBER){"patches", count_patches(s)},
+            {"vertices", count_vertices(s)}};
 }
 
 Json vector_json(const Vec3& v) { return std::array{v.x, v.y, v.z}; }
@@ -83,12 +84,11 @@ std::string objects_text(const Scene& s) {
     const auto add = [&](std::uint64_t count, const std::string& singular, const std::string& plural) {
         if (count > 0) kinds.push_back(counted(count, singular, plural));
     };
-    add(s.spheres.size(), "sphere", "spheres");
-    add(s.planes.size(), "plane", "planes");
     const std::uint64_t patches = count_patches(s);
-    add(s.polygons.size() - patches, "polygon", "polygons");
+#define RAYA_ADD_KIND(kind, kinds, KIND) \
+    add(s.kinds.size() - (RAYA_##KIND == RAYA_POLYGON ? patches : 0), #kind, #kinds);
+    RAYA_OBJECT_LIST(RAYA_ADD_KIND)
     add(patches, "patch", "patches");
-    add(s.cones.size(), "cone", "cones");
     std::string text = fmt::format("{}: {}", counted(s.object_count(), "object"), fmt::join(kinds, ", "));
     if (!s.polygons.empty()) text += fmt::format(" ({} vertices)", count_vertices(s));
     text += "; " + counted(s.surfaces.size(), "surface");

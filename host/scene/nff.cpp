@@ -66,12 +66,10 @@ class NffWriter {
     }
 
     void write_object(std::size_t number) {
-        if (number < scene_.spheres.size()) return write(scene_.spheres[number]);
-        number -= scene_.spheres.size();
-        if (number < scene_.planes.size()) return write(scene_.planes[number]);
-        number -= scene_.planes.size();
-        if (number < scene_.polygons.size()) return write(scene_.polygons[number]);
-        write(scene_.cones[number - scene_.polygons.size()]);
+#define RAYA_WRITE(kind, kinds, KIND)                                     \
+    if (number < scene_.kinds.size()) return write(scene_.kinds[number]); \
+    number -= scene_.kinds.size();
+        RAYA_OBJECT_LIST(RAYA_WRITE)
     }
 
     void write(const Sphere& s) {

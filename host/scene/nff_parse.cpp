@@ -387,10 +387,8 @@ bool NffReader::adopt(NffReader& piece, const std::vector<SceneRemark>& piece_re
     tokens_.continue_after(piece.tokens_);
     scene_.lights.insert(scene_.lights.end(), added.lights.begin(), added.lights.end());
     const double pieces = static_cast<double>(tokens_.text().size()) / static_cast<double>(tokens_.next_at());
-    append_objects(scene_.spheres, added.spheres, surface_of, pieces);
-    append_objects(scene_.planes, added.planes, surface_of, pieces);
-    append_objects(scene_.polygons, added.polygons, surface_of, pieces);
-    append_objects(scene_.cones, added.cones, surface_of, pieces);
+#define RAYA_APPEND(kind, kinds, KIND) append_objects(scene_.kinds, added.kinds, surface_of, pieces);
+    RAYA_OBJECT_LIST(RAYA_APPEND)
     return true;
 }
 

@@ -184,7 +184,7 @@ std::size_t pack_polygons(JobWords& words, std::span<const Polygon> polygons,
     return starts[parts].records / RAYA_POLYGON_WORDS;
 }
 
-void pack_cone(JobWords& words, const Cone& c, const std::vector<std::uint32_t>& surface_at) {
+void pack(JobWords& words, const Cone& c, const std::vector<std::uint32_t>& surface_at) {
     const Vec3 along = c.apex - c.base;
     const double height = along.length(), r0 = std::abs(c.base_radius), r1 = std::abs(c.apex_radius);
     put_length(words, c.base);
@@ -212,12 +212,12 @@ raya_job header_of(const Scene& scene, const JobSettings& settings) {
 std::size_t words_of_objects(const Scene& scene) {
     const FaceWords faces = face_words(scene.polygons);
     return scene.spheres.size() * (RAYA_SPHERE_WORDS + 1) + scene.lights.size() * RAYA_LIGHT_WORDS +
-           scene.planes.size() * RAYA_PLANE_WORDS + scene.cones.size() * RAYA_CONE_WORDS + faces.records +
-           faces.details;
+#define RAYA_ADD_WORDS(kind, kinds, KIND) scene.kinds.size() * RAYA_##KIND##_WORDS +
+           scene.planes.size() * RAYA_PLANE_WORDS + RAYA_FIXED_LIST(RAYA_ADD_WORDS) faces.records + faces.details;
 }
 
-// Appends spheres, lights, planes, cones and polygons. Writes the number of each kind and the offset of its list into
-// the job's header.
+// Appends spheres, lights, planes, other objects of fixed size, and polygons. Writes the number of each kind and the
+// offset of its list into the job's header.
 void pack_objects(JobWords& words, raya_job& job, const Scene& scene, const std::vector<std::uint32_t>& surface_at) {
     const auto start_list = [&](const auto& list, std::uint32_t& count, std::uint32_t& at) {
         count = static_cast<std::uint32_t>(list.size());
@@ -240,13 +240,34 @@ void pack_objects(JobWords& words, raya_job& job, const Scene& scene, const std:
         put_length(words, p.distance);
         words.push_back(surface_at[p.surface]);
     }
-    start_list(scene.cones, job.objects.cones, job.objects.cones_at);
-    for (const Cone& c : scene.cones) pack_cone(words, c, surface_at);
+#define RAYA_PACK(kind, kinds, KIND)                                    \
+    start_list(scene.kinds, job.objects.kinds, job.objects.kinds##_at); \
+    for (const auto& object : scene.kinds) pack(words, object, surface_at);
+    RAYA_FIXED_LIST(RAYA_PACK)
     job.objects.polygons_at = static_cast<std::uint32_t>(words.size());
     job.objects.polygons = static_cast<std::uint32_t>(pack_polygons(words, scene.polygons, surface_at));
 }
 
 }  // namespace
+
+std::uint32_t kind_of_object(const raya_objects& all, std::uint32_t number) {
+    std::uint32_t kind = RAYA_SPHERE;
+    while (number >= raya_first_object(all, kind + 1)) ++kind;
+    return kind;
+}
+
+std::size_t object_at(const raya_objects& all, std::uint32_t number) {
+    const std::uint32_t kind = kind_of_object(all, number);
+#define RAYA_KIND_AT(kind, kinds, KIND) all.kinds##_at,
+    const std::uint32_t at[] = {RAYA_OBJECT_LIST(RAYA_KIND_AT)};
+    return at[kind] + std::size_t{number - raya_first_object(all, kind)} * words_of_kind(kind);
+}
+
+std::uint32_t words_of_kind(std::uint32_t kind) {
+#define RAYA_WORDS_OF_KIND(kind, kinds, KIND) RAYA_##KIND##_WORDS,
+    constexpr std::uint32_t words[] = {RAYA_OBJECT_LIST(RAYA_WORDS_OF_KIND)};
+    return words[kind];
+}
 
 PackedJob::PackedJob(const raya_job& header, std::vector<std::uint32_t> words, bool has_patches)
     : header_(header), words_(std::move(words)), has_patches_(has_patches) {

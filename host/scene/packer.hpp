@@ -58,6 +58,13 @@ struct JobSettings {
     std::size_t spare_words = 0;                      // for which memory is reserved after the job's words
 };
 
+/// Returns the kind (RAYA_SPHERE, ...) of an object.
+std::uint32_t kind_of_object(const raya_objects& all, std::uint32_t number);
+/// Returns the offset of an object's words in the job.
+std::size_t object_at(const raya_objects& all, std::uint32_t number);
+/// Returns the number of words of an object, without the corners of a polygon.
+std::uint32_t words_of_kind(std::uint32_t kind);
+
 /// The words of a job, which begin with its header.
 class PackedJob {
   public:
@@ -66,9 +73,11 @@ class PackedJob {
 
     const raya_job& header() const { return header_; }
     const std::vector<std::uint32_t>& words() const { return words_; }
-    bool has_polygons() const { return header_.objects.polygons > 0; }
     bool has_patches() const { return has_patches_; }
-    bool has_cones() const { return header_.objects.cones > 0; }
+    /// Returns the first of the words of an object.
+    const std::uint32_t* object(std::uint32_t number) const {
+        return words_.data() + object_at(header_.objects, number);
+    }
 
     void set_header(const raya_job& header);
     void append(const std::vector<std::uint32_t>& words);

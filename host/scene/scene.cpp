@@ -50,18 +50,14 @@ void merge_equal_surfaces(Scene& scene) {
     const auto renumber = [&](auto& objects) {
         for (auto& object : objects) object.surface = index_of(static_cast<std::size_t>(object.surface));
     };
-    renumber(scene.spheres);
-    renumber(scene.planes);
-    renumber(scene.polygons);
-    renumber(scene.cones);
+#define RAYA_RENUMBER(kind, kinds, KIND) renumber(scene.kinds);
+    RAYA_OBJECT_LIST(RAYA_RENUMBER)
 }
 
 void drop_objects(Scene& scene) {
     // `= {}` would keep the vectors' memory.
-    scene.spheres = std::vector<Sphere>();
-    scene.planes = std::vector<Plane>();
-    scene.polygons = std::vector<Polygon>();
-    scene.cones = std::vector<Cone>();
+#define RAYA_DROP(kind, kinds, KIND) scene.kinds = decltype(scene.kinds)();
+    RAYA_OBJECT_LIST(RAYA_DROP)
 #ifdef __GLIBC__
     malloc_trim(0);  // glibc keeps freed blocks of small size, which the vertices of polygons are
 #endif

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host/model/number_format.hpp"
+#include "kernels/shared/job.h"
 
 namespace raya {
 
@@ -104,7 +105,10 @@ struct Scene {
     std::vector<Polygon> polygons;
     std::vector<Cone> cones;
 
-    std::size_t object_count() const { return spheres.size() + planes.size() + polygons.size() + cones.size(); }
+    std::size_t object_count() const {
+#define RAYA_ADD_COUNT(kind, kinds, KIND) +kinds.size()
+        return 0 RAYA_OBJECT_LIST(RAYA_ADD_COUNT);
+    }
     bool operator==(const Scene&) const = default;
 };
 

@@ -22,25 +22,17 @@ using ObjectNumbers = std::span<const std::uint32_t>;  // object numbers in the 
 // Access to the parts of a packed job.
 class JobParts {
   public:
-    explicit JobParts(const PackedJob& job) : header(job.header()), words_(job.words()) {}
+    explicit JobParts(const PackedJob& job) : header(job.header()), job_(job) {}
 
     const raya_job header;
 
-    const std::uint32_t* at(std::uint32_t word) const { return words_.data() + word; }
-    std::uint32_t first_polygon() const { return header.objects.spheres + header.objects.planes; }
-    std::uint32_t first_cone() const { return first_polygon() + header.objects.polygons; }
+    const std::uint32_t* at(std::uint32_t word) const { return job_.words().data() + word; }
     std::size_t surfaces() const { return surface(header.objects.spheres_at); }  // number of surfaces; spheres follow
     // Returns the number of the surface that starts at word `word` of the job.
     std::size_t surface(std::uint32_t word) const { return (word - kWordsOf<raya_job>) / RAYA_SURFACE_WORDS; }
 
-    const std::uint32_t* plane(std::uint32_t i) const { return at(header.objects.planes_at + i * RAYA_PLANE_WORDS); }
-    const std::uint32_t* object(std::uint32_t number) const {
-        const raya_objects& o = header.objects;
-        if (number < o.spheres) return at(o.spheres_at + number * RAYA_SPHERE_WORDS);
-        if (number < first_polygon()) return plane(number - o.spheres);
-        if (number < first_cone()) return at(o.polygons_at + (number - first_polygon()) * RAYA_POLYGON_WORDS);
-        return at(o.cones_at + (number - first_cone()) * RAYA_CONE_WORDS);
-    }
+    const std::uint32_t* plane(std::uint32_t i) const { return object(header.objects.spheres + i); }
+    const std::uint32_t* object(std::uint32_t number) const { return job_.object(number); }
 
     // Returns the index of the first word of an object's surface.
     std::uint32_t surface_of(std::uint32_t number) const {
@@ -50,7 +42,7 @@ class JobParts {
     }
 
   private:
-    const std::vector<std::uint32_t>& words_;
+    const PackedJob& job_;
 };
 
 std::size_t outline_words(const std::uint32_t* polygon) {
@@ -60,15 +52,19 @@ std::size_t outline_words(const std::uint32_t* polygon) {
 
 // Object numbers of a voxel's list: of all objects, and of the objects of each kind.
 struct VoxelLists {
-    ObjectNumbers all, spheres, polygons, cones;
+    ObjectNumbers all;
+#define RAYA_NUMBERS_OF_KIND(kind, kinds, KIND) ObjectNumbers kinds;
+    RAYA_OBJECT_LIST(RAYA_NUMBERS_OF_KIND)
 };
 
 VoxelLists lists_of(const JobParts& job, const Partition& partition, std::uint32_t voxel) {
     const auto first = partition.objects.begin() + partition.starts[voxel];
     const auto last = partition.objects.begin() + partition.starts[voxel + 1];
-    const auto polygons = std::lower_bound(first, last, job.first_polygon());
-    const auto cones = std::lower_bound(polygons, last, job.first_cone());
-    return {{first, last}, {first, polygons}, {polygons, cones}, {cones, last}};
+    const auto begin = [&](std::uint32_t kind) {
+        return std::lower_bound(first, last, raya_first_object(job.header.objects, kind));
+    };
+#define RAYA_PART_OF_LIST(kind, kinds, KIND) {begin(RAYA_##KIND), begin(RAYA_##KIND + 1)},
+    return {{first, last}, RAYA_OBJECT_LIST(RAYA_PART_OF_LIST)};
 }
 
 // Packs the words of the nodes, one node after another.
@@ -95,7 +91,8 @@ class NodePacker {
         for (std::uint32_t local = 0; local < voxels; ++local) {
             const VoxelLists lists = voxel_lists(node, local);
             words = padded_to_rows(words) + lists.all.size() + lists.spheres.size() * (RAYA_SPHERE_WORDS + 1) +
-                    lists.polygons.size() * RAYA_POLYGON_WORDS + lists.cones.size() * RAYA_CONE_WORDS;
+#define RAYA_ADD_WORDS(kind, kinds, KIND) +lists.kinds.size() * RAYA_##KIND##_WORDS
+                    0 RAYA_SHAPE_LIST(RAYA_ADD_WORDS);
             for (const std::uint32_t number : lists.polygons) words += outline_words(job_.object(number));
         }
         return padded_to_rows(words);
@@ -198,9 +195,11 @@ class NodePacker {
         for (const std::uint32_t number : lists.spheres) append_words(job_.object(number), RAYA_SPHERE_WORDS);
         for (const std::uint32_t number : lists.spheres)
             words_->push_back(surface_at_[job_.surface(job_.surface_of(number))]);
-        voxel.objects.cones = static_cast<std::uint32_t>(lists.cones.size());
-        voxel.objects.cones_at = current_offset();
-        for (const std::uint32_t number : lists.cones) append_object(job_.object(number), RAYA_CONE_WORDS);
+#define RAYA_APPEND_KIND(kind, kinds, KIND)                               \
+    voxel.objects.kinds = static_cast<std::uint32_t>(lists.kinds.size()); \
+    voxel.objects.kinds##_at = current_offset();                          \
+    for (const std::uint32_t number : lists.kinds) append_object(job_.object(number), RAYA_##KIND##_WORDS);
+        RAYA_FIXED_LIST(RAYA_APPEND_KIND)
         voxel.objects.polygons = static_cast<std::uint32_t>(lists.polygons.size());
         voxel.objects.polygons_at = current_offset();
         append_polygons(lists.polygons);

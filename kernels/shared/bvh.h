@@ -5,7 +5,7 @@
 // rows. Column c of these rows describes child c: its bounding box and a link to it. In fp32 a child is another node or
 // a leaf. All objects of a leaf are of one kind:
 //
-//     spheres, cones     one object in each column, RAYA_BVH_SPHERES or RAYA_BVH_CONES rows
+//     spheres, cones     one object in each column: its words (job.h); row RAYA_BVH_NUMBERS has its object number
 //     faces              polygons of three or four corners, one in each column: RAYA_BVH_FACES rows, or
 //                        RAYA_BVH_TRIANGLES rows if all are triangles
 //     one polygon        of more than four corners: one row of its data, then its corners, one in each column
@@ -17,7 +17,7 @@
 // Unused columns of a node hold a box that no ray meets. Unused columns of a leaf repeat its first object.
 #ifndef RAYA_SHARED_BVH_H
 #define RAYA_SHARED_BVH_H
-#include "kernels/shared/portable.h"
+#include "kernels/shared/job.h"
 
 typedef struct {
     // If no coordinate of a ray's origin exceeds `reach` in absolute value, each hit of the ray lies in all boxes that
@@ -39,12 +39,7 @@ enum {                  // first row of each field of a node
     RAYA_BVH_LINKS = 6,
     RAYA_BVH_NODE = 7
 };
-enum {  // first row of each field of a leaf of spheres: the words of a sphere (job.h), then its object number
-    RAYA_BVH_CENTRE = 0,
-    RAYA_BVH_SQUARE = 3,
-    RAYA_BVH_NUMBERS = 4,
-    RAYA_BVH_SPHERES = 5
-};
+#define RAYA_BVH_NUMBERS RAYA_OBJECT_SURFACE_AT  // a leaf has no offsets of surfaces
 enum {  // first row of each field of a leaf of faces: x, y, z of corners 1 to 3; plane; object number; and, unless all
         // are triangles, x, y, z of corner 4 (of a triangle: corner 3 again)
     RAYA_BVH_CORNERS = 0,
@@ -61,16 +56,6 @@ enum {  // first word of each field in the first row of a polygon's leaf
     RAYA_BVH_OUTLINE_PLANE = 2,
     RAYA_BVH_OUTLINE_LOW = 6,  // lowest x, y, z of the corners; RAYA_BVH_OUTLINE_HIGH: highest
     RAYA_BVH_OUTLINE_HIGH = 9
-};
-enum {  // first row of each field of a leaf of cones: the words of a cone (job.h), then its object number
-    RAYA_BVH_BASE = 0,
-    RAYA_BVH_RADIUS = 3,
-    RAYA_BVH_AXIS = 4,
-    RAYA_BVH_HEIGHT = 7,
-    RAYA_BVH_SLOPE = 8,
-    RAYA_BVH_INSIDE = 9,
-    RAYA_BVH_CONE_NUMBERS = 10,
-    RAYA_BVH_CONES = 11
 };
 
 // Returns the number of rows that hold one coordinate of a polygon's corners. After the first row of the leaf come the
@@ -90,14 +75,14 @@ RAYA_SHARED_FUNCTION raya_u32 raya_outline_rows(raya_u32 corners) {
 #define RAYA_LINK_OBJECTS_SHIFT 25u
 #define RAYA_LINK_KIND_SHIFT 29u
 #define RAYA_LINK_NUMBER 0x1fffffffu
+#define RAYA_LINK_ENUMERATOR(kind, kinds, KIND) RAYA_LINK_##KIND##S,
 enum {
     RAYA_LINK_NODE,
     RAYA_LINK_SPHERES,
     RAYA_LINK_TRIANGLES,
     RAYA_LINK_FACES,
     RAYA_LINK_POLYGON,
-    RAYA_LINK_CONES,
-    RAYA_LINK_OBJECT
+    RAYA_FIXED_LIST(RAYA_LINK_ENUMERATOR) RAYA_LINK_OBJECT
 };
 #define RAYA_NO_TREE 0xffffffffu  // raya_bvh.root of a BVH without objects
 

@@ -3,22 +3,38 @@
 //   raya_job | surfaces | spheres | for each sphere, the offset of its surface | lights | planes | cones | polygons |
 //   for each polygon, its corners and, of a patch, its normals
 //
-// Every word holds the bits of a float or an unsigned integer. Objects are numbered from 0: first all spheres, then
-// planes, polygons and cones. Members named *_at are offsets in words from the job's first word.
+// Every word holds the bits of a float or an unsigned integer. Objects are numbered from 0, kind after kind, in the
+// order of RAYA_OBJECT_LIST. Members named *_at are offsets in words from the job's first word.
 #ifndef RAYA_SHARED_JOB_H
 #define RAYA_SHARED_JOB_H
 #include "kernels/shared/events.h"
 #include "kernels/shared/mapping.h"
 #include "kernels/shared/portable.h"
 
+// KIND(singular, plural, SINGULAR) for each kind of objects. RAYA_FIXED_LIST: finite objects that are described by the
+// same number of words; RAYA_SHAPE_LIST: these and polygons, which have corners.
+#define RAYA_FIXED_LIST(KIND) KIND(cone, cones, CONE)
+#define RAYA_SHAPE_LIST(KIND) KIND(polygon, polygons, POLYGON) RAYA_FIXED_LIST(KIND)
+#define RAYA_OBJECT_LIST(KIND) KIND(sphere, spheres, SPHERE) KIND(plane, planes, PLANE) RAYA_SHAPE_LIST(KIND)
+
+#define RAYA_KIND_ENUMERATOR(kind, kinds, KIND) RAYA_##KIND,
+enum { RAYA_OBJECT_LIST(RAYA_KIND_ENUMERATOR) RAYA_OBJECT_KINDS };
+
 // The objects of a scene or of a voxel: the number of objects of each kind, and the offset of the first object of each
 // kind.
 typedef struct {
-    raya_u32 spheres, planes, polygons, cones;
-    raya_u32 spheres_at, planes_at, polygons_at, cones_at;
+#define RAYA_KIND_MEMBERS(kind, kinds, KIND) raya_u32 kinds, kinds##_at;
+    RAYA_OBJECT_LIST(RAYA_KIND_MEMBERS)
 } raya_objects;
-RAYA_SHARED_SIZE(raya_objects, 4 * 8);
+RAYA_SHARED_SIZE(raya_objects, 4 * 2 * RAYA_OBJECT_KINDS);
 
+// Returns the object number of the first object of a kind; for RAYA_OBJECT_KINDS, the number of objects.
+RAYA_SHARED_FUNCTION raya_u32 raya_first_object(raya_objects all, raya_u32 kind) {
+#define RAYA_EARLIER_KIND(other, others, OTHER) +(RAYA_##OTHER < kind ? all.others : 0)
+    return 0 RAYA_OBJECT_LIST(RAYA_EARLIER_KIND);
+}
+
+#define RAYA_JOB_WORDS (5 + 3 + 2 * RAYA_OBJECT_KINDS + 1 + RAYA_EVENTS + 17)  // of the header, without padding
 typedef struct {
     raya_mapping mapping;
     raya_u32 bounces;  // maximum number of reflections and refractions from a primary ray to a ray of its tree
@@ -26,23 +42,23 @@ typedef struct {
     raya_u32 lights_at;
     raya_objects objects;
     raya_u32 accel_at;  // offset of the grid or BVH; 0: there is none, so every ray is tested against all objects
-    raya_u32 cycles[RAYA_EVENTS];    // modelled cycles of one event of each kind (events.h)
-    float eye[3];                    // origin of the primary rays
-    float corner[3];                 // direction of the primary ray of row 0, column 0, not normalised
-    float column_step[3], row_step[3];  // added to `corner` for each column, for each row
-    float background[3];             // radiance of rays that hit nothing
-    float ambient;                   // ambient intensity A
-    float extent;                    // largest absolute coordinate of eye and finite objects, in scene units
-    raya_u32 unused[2];              // pads the header, so that the spheres start at a multiple of four words
+    raya_u32 cycles[RAYA_EVENTS];             // modelled cycles of one event of each kind (events.h)
+    float eye[3];                             // origin of the primary rays
+    float corner[3];                          // direction of the primary ray of row 0, column 0, not normalised
+    float column_step[3], row_step[3];        // added to `corner` for each column, for each row
+    float background[3];                      // radiance of rays that hit nothing
+    float ambient;                            // ambient intensity A
+    float extent;                             // largest absolute coordinate of eye and finite objects, in scene units
+    raya_u32 unused[4 - RAYA_JOB_WORDS % 4];  // pads the header, so that the spheres start at a multiple of four words
 } raya_job;
-RAYA_SHARED_SIZE(raya_job, 4 * (5 + 3 + 8 + 1 + RAYA_EVENTS + 17 + 2));
+RAYA_SHARED_SIZE(raya_job, 4 * (RAYA_JOB_WORDS + 4 - RAYA_JOB_WORDS % 4));
 
 // Values of RAYA_ACCEL: the acceleration structure that the ring machine's kernels are built for.
 #define RAYA_ACCEL_NONE 0  // none: every ray is tested against all objects
 #define RAYA_ACCEL_GRID 1  // uniform grid of voxels (grid.h)
 #define RAYA_ACCEL_BVH 2   // bounding volume hierarchy (bvh.h)
 
-enum {  // words of a surface
+enum {                            // words of a surface
     RAYA_SURFACE_COLOUR = 0,      // r, g, b; with a checker, of its even squares
     RAYA_SURFACE_DIFFUSE = 3,     // Kd
     RAYA_SURFACE_SPECULAR = 4,    // Ks
@@ -71,13 +87,13 @@ RAYA_SHARED_FUNCTION raya_u32 raya_sphere_surfaces_at(raya_u32 spheres_at, raya_
     return spheres_at + spheres * RAYA_SPHERE_WORDS;
 }
 
-enum {  // words of a plane n.x = d
+enum {                                       // words of a plane n.x = d
     RAYA_PLANE_NORMAL = RAYA_OBJECT_PLACE,   // unit vector
     RAYA_PLANE_DISTANCE = RAYA_OBJECT_SIZE,  // d
     RAYA_PLANE_WORDS = RAYA_OBJECT_WORDS
 };
 
-enum {  // words of a polygon after those of its plane
+enum {                                      // words of a polygon after those of its plane
     RAYA_POLYGON_AXIS = RAYA_OBJECT_WORDS,  // 0..2: axis along which a patch's points are projected to (u, v)
     RAYA_POLYGON_CORNERS,                   // number of corners
     RAYA_POLYGON_CORNERS_AT,                // offset of the first corner

@@ -26,12 +26,12 @@ typedef struct {
 RAYA_SHARED_SIZE(raya_node, sizeof(raya_job) + 4 * (7 + 10 + 7));
 
 // The objects of a voxel. Their scene-wide object numbers are stored at numbers_at: those of the spheres, then
-// polygons, then cones. Plane i has the scene-wide number first_plane + i.
+// those of the shapes (RAYA_SHAPE_LIST). Plane i has the scene-wide number first_plane + i.
 typedef struct {
     raya_objects objects;
     raya_u32 numbers_at;
     raya_u32 first_plane;  // scene-wide number of the first plane: the number of spheres in the scene
 } raya_voxel_memory;
-RAYA_SHARED_SIZE(raya_voxel_memory, 4 * 10);
+RAYA_SHARED_SIZE(raya_voxel_memory, sizeof(raya_objects) + 4 * 2);
 
 #endif

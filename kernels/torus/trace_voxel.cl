@@ -58,10 +58,8 @@ static inline void count_tests_of(packet_batch* f, uint event, mask m, uint obje
 }
 
 static inline void count_tests(packet_batch* f, mask m, objects_words all) {
-    count_tests_of(f, RAYA_SPHERE_TESTS, m, all->spheres);
-    count_tests_of(f, RAYA_PLANE_TESTS, m, all->planes);
-    count_tests_of(f, RAYA_POLYGON_TESTS, m, all->polygons);
-    count_tests_of(f, RAYA_CONE_TESTS, m, all->cones);
+#define RAYA_COUNT_TESTS(kind, kinds, KIND) count_tests_of(f, RAYA_##KIND##_TESTS, m, all->kinds);
+    RAYA_OBJECT_LIST(RAYA_COUNT_TESTS)
 }
 
 // Sets the next voxel of the packets of the lanes m to `packed_voxel`.
@@ -91,8 +89,8 @@ static inline void process_packets(const node* n, packet_batch* f, mask m, uint 
                    choose(m, choose(is_shadow(f), f->limit.all, num_const(RAYA_FAR)), num_all(0.0f))};
     const hit h = closest_hit(n->memory, all, r, 0);
     count_tests(f, m, all);
-    count_shared(f->shared, RAYA_COUNT_WORK, all->spheres + all->planes + all->polygons + all->cones +
-                                                 RAYA_WORK_OF_PROCESSING(((job_words)n->memory)->lights));
+    count_shared(f->shared, RAYA_COUNT_WORK,
+                 raya_first_object(*all, RAYA_OBJECT_KINDS) + RAYA_WORK_OF_PROCESSING(((job_words)n->memory)->lights));
     count_shared(f->shared, RAYA_COUNT_PROGRESS, mask_count(m));
     if (!outside) count_event(f, RAYA_STEPS, m & mask_not(has_flag(f, RAYA_STATE_FOUND)));
     const mask wide = m & has_flag(f, RAYA_STATE_WIDE);

@@ -13,14 +13,15 @@ void single_object_hits(__global const uint* restrict job,
     const ray r = load_ray(rays, first);
     const objects_words all = &((job_words)job)->objects;
     const uint object = objects[first / 16];
-    const uint first_polygon = all->spheres + all->planes, first_cone = first_polygon + all->polygons;
+    const ray_frame f = frame_of(r);
     hit h = {r.limit, (index)(RAYA_NO_OBJECT)};
     if (object < all->spheres)
         h = hit_spheres(h, r, job + all->spheres_at + object * RAYA_SPHERE_WORDS, 1, object);
-    else if (object >= first_cone)
-        h = hit_cones(h, r, job + all->cones_at + (object - first_cone) * RAYA_CONE_WORDS, 1, object, 0);
-    else
-        h = hit_polygons(h, r, job, job + all->polygons_at + (object - first_polygon) * RAYA_POLYGON_WORDS, 1, object,
-                         0);
+#define RAYA_HIT_ONE(kind, kinds, KIND)                                                                             \
+    if (RAYA_ARE_OF_KIND(all, object, kinds, KIND)) {                                                               \
+        const uint i = object - raya_first_object(*all, RAYA_##KIND);                                               \
+        h = hit_##kind(h, &r, &f, job, job + all->kinds##_at + i * RAYA_##KIND##_WORDS, object);                    \
+    }
+    RAYA_SHAPE_LIST(RAYA_HIT_ONE)
     store_lanes(distances + first, 1, h.distance);
 }

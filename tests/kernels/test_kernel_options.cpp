@@ -29,8 +29,8 @@ TEST_CASE("every kernel option becomes a -D option", "[ring]") {
     using Options = std::vector<std::string>;
     CHECK(build_options({}, kCpu) == Options{"-cl-std=CL1.2", "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0",
                                              "-DRAYA_LANES=1", "-DRAYA_GROUP=1", "-DRAYA_BOUNCES=8",
-                                             "-DRAYA_WORDS_LOCAL=1", "-DRAYA_POLYGONS=1", "-DRAYA_PATCHES=1",
-                                             "-DRAYA_CONES=1"});
+                                             "-DRAYA_WORDS_LOCAL=1", "-DRAYA_POLYGONS=1", "-DRAYA_CONES=1",
+                                             "-DRAYA_PATCHES=1"});
     const KernelOptions all_changed{.lanes = 16,
                                     .group_size = 64,
                                     .bounces = 31,
@@ -38,13 +38,13 @@ TEST_CASE("every kernel option becomes a -D option", "[ring]") {
                                     .words_local = false,
                                     .filter = true,
                                     .polygons = false,
-                                    .patches = false,
-                                    .cones = false};
+                                    .cones = false,
+                                    .patches = false};
     CHECK(build_options(all_changed, kCpu) ==
           Options{"-cl-std=CL1.2", "-DRAYA_EXPONENT_BITS=6", "-DRAYA_FRACTION_BITS=15", "-DRAYA_TRUNCATE=1",
                   "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0", "-DRAYA_LANES=16", "-DRAYA_GROUP=64",
-                  "-DRAYA_BOUNCES=31", "-DRAYA_WORDS_LOCAL=0", "-DRAYA_POLYGONS=0", "-DRAYA_PATCHES=0",
-                  "-DRAYA_CONES=0", "-DRAYA_FILTER=1"});
+                  "-DRAYA_BOUNCES=31", "-DRAYA_WORDS_LOCAL=0", "-DRAYA_POLYGONS=0", "-DRAYA_CONES=0",
+                  "-DRAYA_PATCHES=0", "-DRAYA_FILTER=1"});
     DeviceInfo exact = kCpu;
     exact.correctly_rounded_divide_sqrt = exact.fused_multiply_add = true;
     const auto arithmetic_options = [&](const KernelOptions& options) {

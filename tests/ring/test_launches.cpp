@@ -190,12 +190,12 @@ TEST_CASE("further launches have an amount of work for the intended time; in a c
     Session session(choose_device(""));
     auto state = session.buffer<std::uint32_t>("state", 1);
     const auto amounts = [&] {
-        std::vector<std::uint32_t> amounts;
+        std::vector<std::uint32_t> works;
         LaunchLoop<std::uint32_t> launches("");
         launches.run(
-            session, "amounts", 8, 3600, [&](std::uint32_t work, bool) { amounts.push_back(work); },
-            [&] { return LaunchEnd{.done = amounts.size() == 3}; }, state);
-        return amounts;
+            session, "amounts", 8, 3600, [&](std::uint32_t work, bool) { works.push_back(work); },
+            [&] { return LaunchEnd{.done = works.size() == 3}; }, state);
+        return works;
     };
     CHECK(amounts() == std::vector<std::uint32_t>{8, 32, 128});
     const Capture capture(0, "", [](const Json&) {});

@@ -208,9 +208,7 @@ TEST_CASE("the jobs of all scenes decode to the scenes, and every word belongs t
         const PackedJob packed = pack_job(scene, settings_for(64, 48));
         JobCheck(scene, packed.words()).run();
         const auto is_patch = [](const Polygon& p) { return !p.normals.empty(); };
-        CHECK(packed.has_polygons() == !scene.polygons.empty());
         CHECK(packed.has_patches() == std::any_of(scene.polygons.begin(), scene.polygons.end(), is_patch));
-        CHECK(packed.has_cones() == !scene.cones.empty());
     }
     CHECK(scenes >= 6);
 }
@@ -220,7 +218,7 @@ TEST_CASE("patches are packed as triangles, polygons as outlines", "[packer]") {
     const PackedJob packed = pack_job(scene, settings_for(8, 8));
     JobCheck(scene, packed.words()).run();
     CHECK(PackedScene(packed.words()).job().objects.polygons == 2 + 1 + 1);
-    CHECK((packed.has_polygons() && packed.has_patches() && !packed.has_cones()));
+    CHECK(packed.has_patches());
     const std::size_t words = sizeof(raya_job) / 4 + 2 * RAYA_SURFACE_WORDS + 4 * RAYA_POLYGON_WORDS +
                               (3 + 3 + 3 + 4) * RAYA_CORNER_WORDS + 3 * RAYA_PATCH_WORDS;
     CHECK(packed.words().size() == words);
