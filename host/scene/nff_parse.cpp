@@ -138,15 +138,10 @@ void NffReader::read_entity() {
         std::string_view keyword;
         void (NffReader::*read)();
     };
-    static constexpr std::array<Entity, 9> kEntities{{{"v", &NffReader::read_view},
-                                                      {"b", &NffReader::read_background},
-                                                      {"l", &NffReader::read_light},
-                                                      {"f", &NffReader::read_surface},
-                                                      {"s", &NffReader::read_sphere},
-                                                      {"p", &NffReader::read_flat_polygon},
-                                                      {"pp", &NffReader::read_patch},
-                                                      {"c", &NffReader::read_cone},
-                                                      {"#raya", &NffReader::read_directive}}};
+    static constexpr Entity kEntities[] = {
+        {"v", &NffReader::read_view},    {"b", &NffReader::read_background}, {"l", &NffReader::read_light},
+        {"f", &NffReader::read_surface}, {"s", &NffReader::read_sphere},     {"p", &NffReader::read_flat_polygon},
+        {"pp", &NffReader::read_patch},  {"c", &NffReader::read_cone},       {"#raya", &NffReader::read_directive}};
     const bool is_number = tokens_.number_follows();
     const std::string_view keyword = tokens_.take_keyword();
     for (const Entity& entity : kEntities)
