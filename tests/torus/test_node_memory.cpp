@@ -99,7 +99,9 @@ class NodeCheck {
 void check_header(const raya_node& node, const raya_job& job, const Partition& partition, const raya_torus& torus) {
     raya_job expected = job;
     expected.lights_at = node.job.lights_at;
-    expected.objects = {0, job.objects.planes, 0, 0, 0, node.job.objects.planes_at, 0, 0};
+    expected.objects = {};
+    expected.objects.planes = job.objects.planes;
+    expected.objects.planes_at = node.job.objects.planes_at;
     CHECK(std::memcmp(&node.job, &expected, sizeof expected) == 0);
     CHECK(std::memcmp(&node.torus, &torus, sizeof torus) == 0);
     CHECK(std::memcmp(&node.grid, &partition.grid, sizeof node.grid) == 0);
