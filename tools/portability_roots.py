@@ -12,7 +12,7 @@ PACKAGES = "cd /raya && tools/setup --gpu --package && apt-get install -qq -y --
 SYSROOT_PACKAGES = "base-files,pocl-opencl-icd,libopenimageio-dev,libassimp-dev,ocl-icd-opencl-dev,opencl-clhpp-headers,libfmt-dev,libcli11-dev," \
                    "nlohmann-json3-dev,zlib1g-dev,libxxhash-dev,libimath-dev,libc6-dev,libmpfr-dev,catch2"
 # With --variant=extract no program of the packages runs, so that the Debian of another architecture needs no emulator.
-SYSROOT = """cd /raya && tools/setup && apt-get install -qq -y --no-install-recommends g++-{compiler} qemu-user mmdebstrap
+SYSROOT = """cd /raya && tools/setup && apt-get install -qq -y --no-install-recommends git g++-{compiler} qemu-user mmdebstrap
 [[ -e /sysroots/{arch} ]] || {{
     rm -rf --one-file-system /sysroots/{arch}.part && mkdir -p /sysroots
     mmdebstrap --variant=extract --architectures={arch} --aptopt=/etc/apt/apt.conf.d/raya --include={packages} forky /sysroots/{arch}.part /etc/apt/sources.list
@@ -27,11 +27,6 @@ fi
 for folder in proc sys dev tmp raya; do mkdir -p /sysroots/{arch}/$folder && mount --rbind /$folder /sysroots/{arch}/$folder; done
 """
 TARGETS = {"vectors": "test_number", "defects": "portability_defects"}  # {check: the program that it needs besides raya}
-
-
-def saved_results(build):
-    """Returns {release: results that `tools/portability --root` saved}, for the build folder of this checkout."""
-    return {file.parent.name: json.loads(file.read_text()) for file in sorted(build.glob("roots/*/portability.json"))}
 
 
 def preset_of(architecture):
