@@ -14,12 +14,12 @@ inline constexpr const char* kImportProgram = "raya_import";
 /// Kind of a record. The first record is kStart, the last kEnd or kError.
 enum class ImportRecord : std::uint32_t {
     kStart = 0x5241594D,
-    kFile,     // text: path of a file that is read, such as an .mtl
     kSurface,  // text: name; ImportedSurface
     kIgnored,  // text: what has no counterpart in raya; text: its place
     kMesh,     // text: name; ImportedMesh; vertices and normals as floats, sizes and corners as 32-bit numbers
     kError,    // text: message
-    kEnd       // nothing
+    kEnd,      // nothing
+    kFile      // text: path of a file that is read, such as an .mtl
 };
 
 /// A text is its number of bytes, a 32-bit number of at most kMaxImportedText, and its bytes.

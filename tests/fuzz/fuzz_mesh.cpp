@@ -35,18 +35,23 @@ void check_scene(const Scene& scene) {
     if (!(parse_nff(nff, kFile) == scene)) report_finding("the scene is not valid in NFF", nff);
 }
 
+/// Reads the records with remarks, or if `remarks` is null strictly.
+void read_and_check(std::string_view text, std::vector<SceneRemark>* remarks, UpAxis up) try {
+    MeshScene mesh(kFile, remarks);
+    Input input(text);
+    read_records(input, mesh);
+    check_scene(mesh.finish(up));
+    if (remarks == nullptr) return;
+    for (const SceneRemark& remark : *remarks) check_refusal(remark_text(kFile, remark), kFile);
+} catch (const UserError& error) {
+    check_refusal(error.what(), kFile);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    try {
-        std::vector<SceneRemark> remarks;
-        MeshScene mesh(kFile, &remarks);
-        Input input(text_of(data, size));
-        read_records(input, mesh);
-        for (const SceneRemark& remark : remarks) check_refusal(remark_text(kFile, remark), kFile);
-        check_scene(mesh.finish(UpAxis::kY));
-    } catch (const UserError& error) {
-        check_refusal(error.what(), kFile);
-    }
+    std::vector<SceneRemark> remarks;
+    read_and_check(text_of(data, size), &remarks, UpAxis::kY);
+    read_and_check(text_of(data, size), nullptr, UpAxis::kZ);
     return 0;
 }

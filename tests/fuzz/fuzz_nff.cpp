@@ -41,6 +41,10 @@ void check_leniently(std::string_view text) {
     std::vector<SceneRemark> remarks;
     const Scene scene = parse_nff(text, kFile, &remarks);
     check_round_trip(scene);
+    std::vector<SceneRemark> remarks_of_pieces;
+    if (!(parse_nff(text, kFile, &remarks_of_pieces, {.bytes = 1, .threads = 1}) == scene) ||
+        remarks_of_pieces.size() != remarks.size())
+        report_finding("the scene or its remarks depend on the pieces in which the text is read", text);
     for (const SceneRemark& remark : remarks) {
         if (remark.count == 0 || remark.line < 1) report_finding("a remark without count or line", remark.what);
         check_refusal_with_line(remark_text(kFile, remark), kFile);

@@ -1,5 +1,8 @@
 // Fuzz target for reports as `raya page` and `raya bench --compare` read them: the commands must either read a report
 // or reject it with an error.
+#include <cmath>
+#include <utility>
+
 #include "host/cli/page.hpp"
 #include "host/error.hpp"
 #include "host/report/bench_report.hpp"
@@ -15,6 +18,35 @@ void check_page(std::string_view text) try {
     if (!page.ends_with("</html>\n")) report_finding("an incomplete page", page.substr(0, 200));
 } catch (const UserError& error) {
     check_refusal(error.what(), "report.json");
+}
+
+/// Checks that a comparison reports another device, another image and lower rates.
+void check_other_run(const BenchReport& report, BenchReport now) {
+    BenchMeasurement& row = now.rows.front();
+    now.device += "x";
+    row.hash += "x";
+    BenchComparison comparison = compare_bench(report, now, 1e-6);
+    if (comparison.remarks.size() != 1 || comparison.other_images != 1)
+        report_finding("another device or image is not reported", comparison.text);
+    row.hash = report.rows.front().hash;
+    row.best_s *= 2, row.median_s *= 2;
+    comparison = compare_bench(report, now, 1e-6);
+    if (std::isnormal(row.best_rate()) && std::isnormal(row.median_rate()) && comparison.slower != 1)
+        report_finding("lower rates are not reported", comparison.text);
+    using Runs = std::pair<const BenchReport*, const BenchReport*>;
+    row.best_s /= 4, row.median_s /= 4;
+    now.rows.push_back(row);
+    now.rows.back().kernel += "x";
+    for (const auto& [before, after] : {Runs{&report, &now}, Runs{&now, &report}}) {
+        comparison = compare_bench(*before, *after, 1e-6);
+        if (comparison.compared != static_cast<int>(report.rows.size()))
+            report_finding("a new row or a missing one is compared", comparison.text);
+        for (const ComparedRow& compared : comparison.rows)
+            if (to_json(compared)["verdict"] != compared.verdict)
+                report_finding("a row has no verdict", comparison.text);
+    }
+    if (rows_in_common(report, now) != static_cast<int>(report.rows.size()))
+        report_finding("a row is not found in its own report", comparison.text);
 }
 
 void check_bench(const ScratchFolder& folder, std::string_view text) {
@@ -36,6 +68,7 @@ void check_bench(const ScratchFolder& folder, std::string_view text) {
         const BenchComparison comparison = compare_bench(report, reread, 1e-6);
         if (comparison.slower != 0 || comparison.other_images != 0)
             report_finding("a bench report differs from its own copy", comparison.text);
+        check_other_run(report, reread);
     } catch (const UserError& error) {
         check_refusal(error.what(), file);
     }
