@@ -123,9 +123,10 @@ std::string note_of(CLI::Option& option, const char* name) {
 }
 
 void refuse_choice(const std::string& option, const std::string& text, const std::vector<std::string>& names) {
-    if (text.empty()) throw UserError(option + " must not be empty");
-    throw UserError(fmt::format("{} {}: must be {} or {}", option, text,
-                                fmt::join(names.begin(), names.end() - 1, ", "), names.back()));
+    const std::string legal =
+        fmt::format("must be {} or {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
+    throw UserError(text.empty() ? fmt::format("{} must not be empty: it {}", option, legal)
+                                 : fmt::format("{} {}: {}", option, text, legal));
 }
 
 constexpr const char* kChoices = "choices";

@@ -13,6 +13,7 @@
 
 #include "host/base/encoding.hpp"
 #include "host/cli/help.hpp"
+#include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/scene/nff_tokens.hpp"
 #include "host/scene/polygon.hpp"
@@ -403,7 +404,8 @@ void check_arguments(const CLI::App& program, const std::vector<std::string>& ar
             throw UserError(option + ": the option takes no value");
         if (named != nullptr && !option.starts_with("--"))
             throw UserError(option + ": write a blank before the value, not =");
-        if (named != nullptr && equals + 1 == argument.size()) throw UserError(option + " must not be empty");
+        if (named != nullptr && equals + 1 == argument.size())
+            refuse_value(option, "", "must not be empty", named->get_description());
     }
 }
 

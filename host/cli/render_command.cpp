@@ -125,8 +125,7 @@ void add_trace_options(CLI::App& command, TraceOptions& trace) {
     CLI::Option* const file = add_file(
         command, FileUse::kWritten, "--trace", trace.file, "FILE.json[.gz]",
         "Write a trace for ui.perfetto.dev: the host's steps, the device's commands, and the modelled machine in "
-        "modelled time; -: stdout",
-        "Write a trace for ui.perfetto.dev");
+        "modelled time; -: stdout");
     in_range(
         add_value(command, "--trace-events", trace.events,
                   "Maximum number of events in the trace, 1 or more; a warning gives the number of omitted events"),

@@ -92,7 +92,7 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
         "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
         "cap (256 PEs), pixel-machine (64), links (256): the published arrays of these names, but with spa's PEs and "
         "no memory limit; for comparing loads",
-        "spa (256 PEs of 32 KB), grande (a PE per image column), torus (nodes hold voxels), and others")
+        "spa (256 PEs of 32 KB), grande, torus and others; raya machines")
         ->type_name("NAME")
         ->capture_default_str();
     attach_note(add_value(command, "--pes", o.pes,
@@ -342,8 +342,7 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
     add_file(command, FileUse::kWritten, "--packets", t.packets, "FILE.csv.gz",
              "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), "
              "compressed; -: "
-             "stdout; see docs/packets.md",
-             "Write every packet between nodes of the torus");
+             "stdout; see docs/packets.md");
     command.add_flag("--async", t.async,
                      "Also simulate the machine without supersteps, whose nodes compute while links transfer: raya "
                      "reports this modelled time, the lower bound and the time with supersteps");

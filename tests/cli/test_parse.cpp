@@ -36,7 +36,7 @@ TEST_CASE("parse_choice: accepts only the names of values", "[parse]") {
     for (const auto& [name, value] : choices) CHECK(parse_choice("--x", name, choices) == value);
     for (const std::string text : {"bu", "Ring", "ring ", "bus-"})
         CHECK_THROWS_WITH(parse_choice("--x", text, choices), "--x " + text + ": must be ring, bus or bus-broadcast");
-    CHECK_THROWS_WITH(parse_choice("--x", "", choices), "--x must not be empty");
+    CHECK_THROWS_WITH(parse_choice("--x", "", choices), "--x must not be empty: it must be ring, bus or bus-broadcast");
 }
 
 TEST_CASE("parse_image_size: reads N and WxH", "[parse]") {
