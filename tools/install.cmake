@@ -26,6 +26,7 @@ if(TARGET raya_python)
     endif()
     install(DIRECTORY host/python/raya/ DESTINATION ${package} COMPONENT wheel PATTERN __pycache__ EXCLUDE)
     install(DIRECTORY tools/lab DESTINATION ${package} COMPONENT wheel PATTERN __pycache__ EXCLUDE)
+    install(FILES host/report/page/style.css DESTINATION ${package}/lab/templates COMPONENT wheel)
 endif()
 
 # Manual pages from the help of the installed program; help2man is sought when raya is installed, because it may come later than the build.

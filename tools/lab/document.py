@@ -230,7 +230,8 @@ def items(lines):
 
 
 def environment():
-    jinja_environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), trim_blocks=True,
+    templates = Path(__file__).resolve().parent / "templates"  # an installation has style.css there, too
+    jinja_environment = jinja2.Environment(loader=jinja2.FileSystemLoader([templates, templates.parents[2] / "host" / "report" / "page"]), trim_blocks=True,
                               autoescape=jinja2.select_autoescape(["html.j2"]), lstrip_blocks=True,
                               undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
     jinja_environment.filters.update(classes=classes_of, items=items, markdown_table=markdown_table, prose=prose)
