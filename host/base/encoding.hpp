@@ -1,4 +1,4 @@
-// Environment variables; encodings of text and bytes: replacement, parts, numbers, base64, hexadecimal, XXH3, gzip.
+// Environment variables; similar names; encodings of text and bytes: replacement, parts, numbers, base64, hexadecimal, XXH3, gzip.
 #pragma once
 #include <charconv>
 #include <cstddef>
@@ -67,5 +67,15 @@ class GzipText {
     std::unique_ptr<Stream> stream_;
     std::string bytes_;
 };
+
+// Suggestions for misspelt names.
+
+/// Returns the name in `names` that begins with `misspelling`, if `misspelling` has 3 or more characters. Otherwise
+/// returns the name with the smallest edit distance (insertions, deletions, substitutions, transpositions of
+/// neighbours; F. J. Damerau 1964), or "" if this distance exceeds a third of the length of `misspelling`.
+std::string nearest_name(const std::string& misspelling, const std::vector<std::string>& names);
+
+/// Returns " (did you mean NAME?)" with the name that nearest_name() returns; "" if no name is similar.
+std::string did_you_mean(const std::string& misspelling, const std::vector<std::string>& names);
 
 }  // namespace raya

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "host/base/child_process.hpp"
+#include "host/base/encoding.hpp"
 #include "host/base/interruption.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"

@@ -1,7 +1,7 @@
 // Suggestions for misspelt names.
 #include <catch2/catch.hpp>
 
-#include "host/cli/parse.hpp"
+#include "host/base/encoding.hpp"
 
 namespace raya {
 namespace {
