@@ -63,7 +63,7 @@ class DeviceOutput {
 /// Prints the counts of several devices.
 void print_device_totals(const std::vector<DeviceChecks>& device_checks);
 
-/// Returns the report of --report (docs/report.md).
+/// Returns the report of --report (docs/schema).
 Json verify_report(const std::vector<DeviceChecks>& device_checks, const VerifySettings& settings);
 
 // The option --as of `raya verify`: a render command, parsed like that of `raya render`.

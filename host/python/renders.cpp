@@ -302,7 +302,7 @@ void add_result(py::module_& module) {
             "speedup", [](const Result& r) { return load_of(*r).speedup; }, "Sum / max of the loads.")
         .def_property_readonly(
             "efficiency", [](const Result& r) { return load_of(*r).efficiency; }, "Speed-up / P.")
-        .def_property_readonly("report", report_of, "dict: the JSON of raya render --report (docs/report.md).")
+        .def_property_readonly("report", report_of, "dict: the JSON of raya render --report (docs/schema).")
         .def_property_readonly(
             "job_words", [](const Result& r) { return ring_of(*r, "job_words").pe_memory.job_words; },
             "Number of 32-bit words that the scene takes in each PE.")

@@ -150,7 +150,7 @@ inline constexpr const char* kRenderReportKind = "raya render";
 std::uint64_t ray_count(const EventCounts& events);
 std::uint64_t test_count(const EventCounts& events);
 
-/// Returns the report as JSON. docs/report.md documents the members. Later versions may add members, but do not remove
+/// Returns the report as JSON. docs/schema describes the members. Later versions may add members, but do not remove
 /// or change them.
 Json to_json(const RenderReport& report);
 

@@ -54,7 +54,7 @@ struct SceneReport {
     std::vector<MachineNeeds> machines;
 };
 
-/// Returns the report as JSON. docs/report.md documents the members. Later versions may add members, but do not remove
+/// Returns the report as JSON. docs/schema describes the members. Later versions may add members, but do not remove
 /// or change them.
 Json to_json(const SceneReport& report);
 

@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-GENERATED = {"report.md", "gpu_resources.md", "portability.md", "performance.md", "sweep.md", "verdicts.md", "artifact.md"}  # tools write these
+GENERATED = {"gpu_resources.md", "portability.md", "performance.md", "sweep.md", "verdicts.md", "artifact.md"}  # tools write these
 PAPER = "paper.md"  # its paragraphs are those of a paper; comments behind its numbers name their data
 MAX_WORDS, MAX_CELL_WORDS, MAX_COLUMNS = 80, 30, 120
 # Lines with measured figures, and the parts of these lines that differ between machines and runs: times, rates, lanes, sizes of binaries, the name
