@@ -4,7 +4,7 @@
     tests/tools/test_ci_workflows.py BUILD CL_FAULTS           BUILD: the build folder, with the target `bundled` built; CL_FAULTS: the library of
                                                                tests/cli/cl_faults.cpp
     tests/tools/test_ci_workflows.py BUILD CL_FAULTS --all     also raya-portability.yml: build, fast tests, all implementations; about an hour
-Exit codes: 0 as expected; 1 not; 77 Python has no yaml, or there is no curl (Debian: python3-yaml, curl)
+Exit codes: 0 as expected; 1 not; 77 Python has no yaml, or there is no curl, or no ccache for --all (Debian: python3-yaml, curl, ccache)
 """
 import os, shutil, subprocess, sys, tempfile
 import xml.etree.ElementTree as xml
@@ -66,7 +66,7 @@ def main():
         import yaml  # noqa: F401
     except ImportError:
         return 77
-    if not shutil.which("curl"):
+    if not shutil.which("curl") or "--all" in sys.argv and not shutil.which("ccache"):
         return 77
     build = Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as scratch:
