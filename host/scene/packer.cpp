@@ -265,8 +265,8 @@ std::size_t object_at(const raya_objects& all, std::uint32_t number) {
 
 std::uint32_t words_of_kind(std::uint32_t kind) {
 #define RAYA_WORDS_OF_KIND(kind, kinds, KIND) RAYA_##KIND##_WORDS,
-    constexpr std::uint32_t words[] = {RAYA_OBJECT_LIST(RAYA_WORDS_OF_KIND)};
-    return words[kind];
+    constexpr std::uint32_t kWords[] = {RAYA_OBJECT_LIST(RAYA_WORDS_OF_KIND)};
+    return kWords[kind];
 }
 
 PackedJob::PackedJob(const raya_job& header, std::vector<std::uint32_t> words, bool has_patches)
