@@ -243,7 +243,8 @@ CommandText command_text(const CLI::App& command) {
     for (CLI::Option* option : const_cast<CLI::App&>(command).get_options())
         if (!option->get_group().empty())
             (option->get_positional() ? text.arguments : text.options).push_back(option_text(*option));
-    std::ranges::stable_partition(text.options, [](const OptionText& o) { return o.group != kGeneralOptions; });
+    std::stable_partition(text.options.begin(), text.options.end(),
+                          [](const OptionText& o) { return o.group != kGeneralOptions; });
     for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
         if (!subcommand->get_group().empty()) text.commands.push_back(command_text(*subcommand));
     return text;

@@ -11,6 +11,7 @@
 #include <set>
 #include <sstream>
 
+#include "host/base/encoding.hpp"
 #include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cl/kernel_source.hpp"

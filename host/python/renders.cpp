@@ -251,7 +251,7 @@ double events_ms(const std::map<std::string, std::uint64_t>& events) {
     const auto cycles = t805_cycles();
     std::uint64_t sum = 0;
     for (const auto& [name, count] : events) {
-        const auto found = std::ranges::find_if(kEvents, [&](const EventNames& names) { return names.name == name; });
+        const auto found = std::ranges::find(kEvents, name, &EventNames::name);
         if (found == kEvents.end()) throw py::value_error(fmt::format("t805_ms: unknown event {}", name));
         sum += count * cycles[static_cast<std::size_t>(found - kEvents.begin())];
     }

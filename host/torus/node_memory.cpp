@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -281,8 +280,14 @@ constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t)
 // `memory` bytes. The queue `min_queue` must fit.
 std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t min_queue,
                             std::uint32_t max_queue) {
-    const auto fits = [&](std::uint32_t queue) { return node_bytes(words, buffers_for(queue), links) <= memory; };
-    return *std::ranges::partition_point(std::views::iota(min_queue + 1, max_queue + 1), fits) - 1;
+    while (min_queue < max_queue) {
+        const std::uint32_t middle = max_queue - (max_queue - min_queue) / 2;
+        if (node_bytes(words, buffers_for(middle), links) <= memory)
+            min_queue = middle;
+        else
+            max_queue = middle - 1;
+    }
+    return min_queue;
 }
 
 // Memory that the nodes need for a scene and their buffers, and memory that a node has.
