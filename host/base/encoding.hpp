@@ -1,4 +1,5 @@
-// Environment variables; similar names; encodings of text and bytes: replacement, parts, numbers, base64, hexadecimal, XXH3, gzip.
+// Environment variables; similar names; encodings of text and bytes: replacement, parts, numbers, base64, hexadecimal,
+// XXH3, gzip.
 #pragma once
 #include <charconv>
 #include <cstddef>

@@ -251,9 +251,11 @@ void pack_objects(JobWords& words, raya_job& job, const Scene& scene, const std:
 }  // namespace
 
 std::uint32_t kind_of_object(const raya_objects& all, std::uint32_t number) {
-    std::uint32_t kind = RAYA_SPHERE;
-    while (number >= raya_first_object(all, kind + 1)) ++kind;
-    return kind;
+    std::uint32_t end = 0;
+#define RAYA_KIND_OF_OBJECT(kind, kinds, KIND) \
+    if (number < (end += all.kinds)) return RAYA_##KIND;
+    RAYA_OBJECT_LIST(RAYA_KIND_OF_OBJECT)
+    return RAYA_OBJECT_KINDS;
 }
 
 std::size_t object_at(const raya_objects& all, std::uint32_t number) {
