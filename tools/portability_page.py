@@ -1,4 +1,4 @@
-"""The matrix of tools/portability as text: kinds of cells, rows that --root and --arch saved, and docs/portability.md."""
+"""The matrix of tools/portability as text: kinds of cells, rows that --root and --arch saved, and their table in docs/verify.md."""
 import datetime, re
 from pathlib import Path
 
@@ -9,7 +9,7 @@ ROOT = Path(__file__).resolve().parent.parent
 LAYERS = ["number", "geometry", "machine", "image"]
 CHECKS = LAYERS + ["vectors", "renders", "defects", "build"]
 ROOT_CHECKS = ["tests", "package"]  # only with --root, with PoCL
-PAGE = ROOT / "docs" / "portability.md"
+PAGE = ROOT / "docs" / "verify.md"
 
 
 def judge(name, check, seconds, verdict, details, expected):
@@ -82,18 +82,23 @@ def origin_of(name):
     return (re.match(r"(\w+): ", name) or ["", "here"])[1]
 
 
-def write_page(origin, version, rows, notes, unavailable):
-    """Replaces the rows and details of this origin in docs/portability.md, and unless `unavailable` is None the line of what is not available."""
-    head, _, matrix = PAGE.read_text().partition("| implementation |")
-    old = matrix.splitlines()
-    rows += [row for row in (line[2:-2].split(" | ") for line in old[2:] if line.startswith("| ")) if origin_of(row[0]) != origin]
-    notes += [line for line in old if line.startswith("- ") and origin_of(line[2:]) != origin]
-    if unavailable is None:
-        unavailable = "".join(line for line in old if line.startswith("Not available: "))
-    versions = dict(part.split(": ", 1) for part in re.search(r"Rows of (.+)\.\n", head)[1].split("; "))
-    versions[origin] = f"{version}, {datetime.date.today()}"
-    order = ["here", *sorted(versions, key=lambda name: (preset_of(name) is not None, name))].index
-    head = re.sub(r"Rows of .+", f"Rows of {'; '.join(f'{name}: {versions[name]}' for name in sorted(versions, key=order))}.", head)
-    matrix = markdown(sorted(rows, key=lambda row: order(origin_of(row[0]))), sorted(notes, key=lambda line: order(origin_of(line[2:]))), unavailable,
-                      CHECKS + ROOT_CHECKS)
-    PAGE.write_text(head + matrix)
+def page_row(row, notes):
+    """Returns the row of docs/verify.md for a row of the matrix: name, driver, right cells, other cells with their reasons, processor seconds."""
+    name, _, version, *cells, seconds = row
+    driver = (re.search(r"driver ([^,|]+)", version) or ["", version])[1]
+    kinds = kinds_of(row)
+    others = [f"{check}: {cell_kind(cell)}" for check, cell in zip(CHECKS + ROOT_CHECKS, cells) if cell and cell_kind(cell) != "right"]
+    reasons = {found[1] for note in notes if re.match(f"- {re.escape(name)}, \\w+: ", note) and (found := re.search(r"\(expected: (.*)\)", note))}
+    return [name, driver.strip(), f"{kinds.count('right')} of {len(kinds)}", "; ".join(others + sorted(reasons)), seconds]
+
+
+def write_page(origin, version, rows, notes):
+    """Replaces the rows of this origin at the end of docs/verify.md."""
+    text, _, table = PAGE.read_text().partition("| implementation |")
+    old = [line[2:-2].split(" | ") for line in table.splitlines()[2:]]
+    program = f"{re.search('commit (.{8})', version)[1]}, {datetime.date.today()}"
+    rows = [[*page_row(row, notes), program] for row in rows] + [row for row in old if origin_of(row[0]) != origin]
+    head = ["implementation", "driver", "right", "other cells", "CPU s", "program"]
+    names = sorted({origin_of(row[0]) for row in rows} - {"here"}, key=lambda name: (preset_of(name) is not None, name))
+    rows.sort(key=lambda row: ["here", *names].index(origin_of(row[0])))
+    PAGE.write_text(text + "".join(f"| {' | '.join(row)} |\n" for row in [head, ["---"] * len(head), *rows]))
