@@ -7,7 +7,6 @@
 #include <random>
 #include <string>
 #include <string_view>
-#include <vector>
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
@@ -42,10 +41,6 @@ inline std::size_t store(const std::string& text, std::uint8_t* data, std::size_
     if (size > 0) std::memcpy(data, text.data(), size);
     return size;
 }
-
-/// Mutates tokens or lines of a text: removes, inserts, copies, cuts or replaces them. `keywords`: keywords of the
-/// text's format, used as replacements.
-void damage_tokens(std::string& text, const std::vector<std::string>& keywords, Random& random);
 
 /// Mutates values of a JSON text: removes, repeats or renames them, or changes their value or type. Returns false if
 /// the text is not JSON.
