@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/verify/numbers.hpp"
+#include "tests/kernels/unoptimised.hpp"
 
 namespace raya {
 
@@ -35,6 +36,16 @@ inline NumberBuild number_build(const NumberFormat& format, std::uint32_t lanes 
 /// Returns a build that refines divisions and square roots whose bits have errors of up to 3.
 inline NumberBuild refined_build(const NumberFormat& format, std::uint32_t lanes = widest_lanes()) {
     return {.format = format, .lanes = lanes, .trusted = false, .imprecise = true};
+}
+
+/// Returns builds in fp32 with each number of lanes, with and without optimisation.
+inline std::vector<NumberBuild> fp32_builds() {
+    std::vector<NumberBuild> builds;
+    for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
+        for (const bool optimised : {true, false})
+            if (lanes <= widest_lanes() && (optimised || tests_unoptimised(lanes)))
+                builds.push_back({.format = {}, .lanes = lanes, .optimised = optimised});
+    return builds;
 }
 
 /// Returns the results of NumberRunner::run() on the default device.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/number/number_runs.hpp"
 #include "tests/number/oracle_results.hpp"
 #include "tests/number/random_operands.hpp"
 
@@ -13,20 +14,14 @@ namespace {
 constexpr std::size_t kDefaultRows = 40'000;
 constexpr std::uint64_t kOracleSeed = 1993;
 
-struct FormatBits {
-    int exponent_bits, fraction_bits;
-};
-
 /// Returns formats eXmY with X = 5 .. 8 and Y = 4 .. 21, in both roundings. They include the smallest and the largest
 /// format and the SPA's format. The layer has separate code for X = 8 and for Y > 15. The formats include each of these
 /// cases alone, and both together.
 std::vector<NumberFormat> tested_formats() {
-    std::vector<FormatBits> sizes = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
-    if (is_long_run(kDefaultRows)) sizes.insert(sizes.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
-    std::vector<NumberFormat> formats;
-    for (const FormatBits& size : sizes)
-        for (const bool truncates : {false, true})
-            formats.push_back({size.exponent_bits, size.fraction_bits, truncates});
+    std::vector<NumberFormat> formats = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
+    if (is_long_run(kDefaultRows)) formats.insert(formats.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
+    for (std::size_t i = formats.size(); i-- > 0;)
+        formats.push_back({formats[i].exponent_bits, formats[i].fraction_bits, true});
     return formats;
 }
 

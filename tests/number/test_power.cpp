@@ -1,5 +1,5 @@
 // The errors of x^n, log2(x) and 2^y are within the bounds of kernels/number/README.md, and results have the same bits
-// for all numbers of lanes.
+// in all builds.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "host/scene/split_mix.hpp"
-#include "tests/kernels/unoptimised.hpp"
 #include "tests/number/mpfr_oracle.hpp"
 #include "tests/number/number_runs.hpp"
 
@@ -24,8 +23,8 @@ double result_of(const NumberResults& results, std::size_t operation, std::size_
     return std::bit_cast<float>(results[operation][row]);
 }
 
-/// Returns rows x, n, y. x is in (0, 4), and a third of the x are just below 1. n is in [0, 1024), and many n are
-/// small. y is in [-126, 0].
+/// Returns rows x, n, y. x is in (0, 4), and a third of the x are just below 1. n is in [0, 1024) or, in fp32, up to
+/// 131,072, and many n are small. y is in [-126, 0].
 NumberRows power_rows(const NumberFormat& format) {
     SplitMix random(kPowerSeed);
     const double smallest = std::ldexp(1, range_of(format).lowest);
@@ -36,28 +35,10 @@ NumberRows power_rows(const NumberFormat& format) {
     while (rows.count() < kPowerRows) {
         const double below_one = 1 - std::exp2(random.uniform(-format.fraction_bits - 1, 0));
         const double x = rows.count() % 3 == 0 ? below_one : std::exp2(random.uniform(range_of(format).lowest, 2));
-        const double n = std::exp2(random.uniform(-3, 10));
+        const double n = std::exp2(random.uniform(-3, format.is_fp32() ? 17 : 10));
         const double y = random.uniform(rows.count() % 2 == 0 ? -30 : -126, 0);
         rows.add(in_format(std::max(x, smallest)), in_format(n), in_format(y));
     }
-    rows.pad();
-    return rows;
-}
-
-/// Returns rows x, n, y. x is from 0x1p-126 to 2, and many x are near 1. n is from 0 to 100 000, with exponents of real
-/// highlights. y is from 0 to -126.
-NumberRows fp32_rows() {
-    std::vector<float> xs = {1, 2, std::nextafter(1.0F, 0.0F), std::sqrt(0.5F), 0x1p-126F, 1e-30F};
-    for (int i = 1; i <= 500; ++i) xs.push_back(static_cast<float>(i) / 500);
-    for (int i = 0; i <= 400; ++i) xs.push_back(static_cast<float>(1 - std::exp2(-24 + 0.06 * i)));  // many near 1
-    for (int i = 0; i <= 400; ++i) xs.push_back(static_cast<float>(std::exp2(-0.3 * i)));
-    const std::vector<float> exponents = {0, 0.5F, 1, 3.08F, 11, 101.148F, 1000, 100'000};
-    NumberRows rows;
-    for (const float x : xs)
-        for (const float n : exponents)
-            rows.add(x, n,
-                     static_cast<float>(-126.0 * static_cast<double>(rows.count()) /
-                                        static_cast<double>(xs.size() * exponents.size())));
     rows.pad();
     return rows;
 }
@@ -85,12 +66,6 @@ class PowerBounds {
     double unit_, flush_;
 };
 
-const std::vector<NumberFormat>& power_formats() {
-    static const std::vector<NumberFormat> formats = {
-        {5, 4, true}, {8, 5, true}, {6, 15, false}, {6, 15, true}, {8, 21, false}};
-    return formats;
-}
-
 void check_row(const PowerBounds& bounds, double x, double n, double y, const NumberResults& results, std::size_t i) {
     // value(0), value(1), value(2): x^n, log2(x), 2^y
     const auto value = [&](std::size_t k) { return result_of(results, kFunctions[k], i); };
@@ -110,44 +85,20 @@ void check_row(const PowerBounds& bounds, double x, double n, double y, const Nu
 
 }  // namespace
 
-TEST_CASE("powers stay within their error bounds, with the same bits for all numbers of lanes", "[number][power]") {
-    for (const NumberFormat& format : power_formats()) {
+TEST_CASE("powers stay within their error bounds, with the same bits in all builds", "[number][power]") {
+    const NumberFormat formats[] = {{}, {5, 4, true}, {8, 5, true}, {6, 15, false}, {6, 15, true}, {8, 21, false}};
+    for (const NumberFormat& format : formats) {
+        const std::vector<NumberBuild> builds =
+            format.is_fp32() ? fp32_builds() : std::vector{number_build(format), number_build(format, 1)};
         const NumberRows rows = power_rows(format);
-        CAPTURE(format_name(format), kPowerSeed);
-        const NumberResults results = run_numbers(number_build(format), rows);
-        const NumberResults single = run_numbers(number_build(format, 1), rows);
-        for (const std::size_t function : kFunctions) CHECK(single[function] == results[function]);
-        const PowerBounds bounds(format);
-        for (std::size_t i = 0; i < rows.count(); ++i) check_row(bounds, rows.a[i], rows.b[i], rows.c[i], results, i);
-    }
-}
-
-TEST_CASE("fp32 powers stay within their error bounds in all builds", "[number][power]") {
-    // Relative errors. num_log2: 8e-8 by the truncated series and 1.7e-7 by rounding. num_exp2: 1.7e-7 by the truncated
-    // Taylor series, which is (ln 2 / 2)^7 / 7! relative to the result at f = -1/2, and 7e-8 by the last additions.
-    constexpr double kLogError = 2.5e-7, kExpError = 2.4e-7;
-    // The product n log2(x) is rounded too, so the relative error of the argument y of 2^y is 3.1e-7. The maximum of
-    // |y| ln 2 2^y is 1 / e. Results below 2^-30 are 0, an error of at most 2^-30.
-    const double kPowerError = (kLogError + 0x1p-24) / std::exp(1.0) + kExpError + 0x1p-30;
-    const NumberRows rows = fp32_rows();
-    const NumberResults first = run_numbers(number_build({}, 1), rows);
-    for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
-        for (const bool optimised : {true, false}) {
-            if (lanes > widest_lanes() || (!optimised && !tests_unoptimised(lanes))) continue;
-            const NumberBuild build{.format = {}, .lanes = lanes, .optimised = optimised};
-            CAPTURE(build.name());
+        const NumberResults first = run_numbers(builds[0], rows);
+        for (const NumberBuild& build : builds) {
+            CAPTURE(build.name(), kPowerSeed);
             const NumberResults results = run_numbers(build, rows);
             for (const std::size_t function : kFunctions) CHECK(results[function] == first[function]);
         }
-    for (std::size_t i = 0; i < rows.count(); ++i) {
-        const double x = rows.a[i], n = rows.b[i], y = rows.c[i];
-        const double power = result_of(first, kPower, i), log = result_of(first, kLog2, i),
-                     exp = result_of(first, kExp2, i);
-        CAPTURE(x, n, y, power, log, exp);
-        CHECK(std::abs(power - std::pow(std::min(x, 1.0), n)) <= kPowerError);
-        CHECK(std::abs(log - std::log2(x)) <= kLogError * std::abs(std::log2(x)));
-        CHECK(std::abs(exp - std::exp2(y)) <= kExpError * std::exp2(y));
-        if (n == 0 || x >= 1) CHECK(power == 1);
+        const PowerBounds bounds(format);
+        for (std::size_t i = 0; i < rows.count(); ++i) check_row(bounds, rows.a[i], rows.b[i], rows.c[i], first, i);
     }
 }
 

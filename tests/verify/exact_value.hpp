@@ -1,11 +1,9 @@
-// MPFR numbers for the exact results of operations, and features of the rounding of a result, such as ties and
-// overflow. The known answers are selected so that they cover all features.
+// Features of the rounding of a result, such as ties and overflow. The known answers are selected so that they cover
+// all features.
 #pragma once
 #include <mpfr.h>
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <set>
 #include <string>
 
@@ -14,67 +12,9 @@
 
 namespace raya {
 
-/// An MPFR number with a given precision in bits.
-class Mpfr {
-  public:
-    explicit Mpfr(mpfr_prec_t bits) { mpfr_init2(value_, bits); }
-    Mpfr(const Mpfr&) = delete;
-    Mpfr& operator=(const Mpfr&) = delete;
-    ~Mpfr() { mpfr_clear(value_); }
-    operator mpfr_ptr() { return value_; }  // NOLINT: MPFR's functions take an mpfr_ptr
-
-  private:
-    mpfr_t value_;
-};
-
 /// Precision in bits at which sums, products and a * b + c of fp32 numbers are exact. Quotients and square roots are
 /// truncated to this precision.
 inline constexpr mpfr_prec_t kExactBits = 700;
-
-/// fp32 operations computed with MPFR, with the infinities, NaNs and denormal numbers of IEEE 754.
-class IeeeOracle {
-  public:
-    float add(float a, float b) {
-        return rounded([&](mpfr_ptr z) { return mpfr_add(z, assign(a_, a), assign(b_, b), MPFR_RNDN); });
-    }
-    float sub(float a, float b) {
-        return rounded([&](mpfr_ptr z) { return mpfr_sub(z, assign(a_, a), assign(b_, b), MPFR_RNDN); });
-    }
-    float mul(float a, float b) {
-        return rounded([&](mpfr_ptr z) { return mpfr_mul(z, assign(a_, a), assign(b_, b), MPFR_RNDN); });
-    }
-    float div(float a, float b) {
-        return rounded([&](mpfr_ptr z) { return mpfr_div(z, assign(a_, a), assign(b_, b), MPFR_RNDN); });
-    }
-    float sqrt(float a) {
-        return rounded([&](mpfr_ptr z) { return mpfr_sqrt(z, assign(a_, a), MPFR_RNDN); });
-    }
-    float mad(float a, float b, float c) {
-        return rounded([&](mpfr_ptr z) { return mpfr_fma(z, assign(a_, a), assign(b_, b), assign(c_, c), MPFR_RNDN); });
-    }
-    float round(double value) { return static_cast<float>(value); }
-
-  private:
-    // Assigns `value` to `number`, and returns `number`.
-    static mpfr_ptr assign(Mpfr& number, float value) {
-        mpfr_set_flt(number, value, MPFR_RNDN);
-        return number;
-    }
-    template <class Operation>
-    float rounded(const Operation& operation) {
-        const mpfr_exp_t min_exponent = mpfr_get_emin(), max_exponent = mpfr_get_emax();
-        int inexact = operation(z_);
-        mpfr_set_emin(-148);  // exponent range of binary32 (MPFR manual)
-        mpfr_set_emax(128);
-        inexact = mpfr_check_range(z_, inexact, MPFR_RNDN);
-        mpfr_subnormalize(z_, inexact, MPFR_RNDN);
-        mpfr_set_emin(min_exponent);
-        mpfr_set_emax(max_exponent);
-        return mpfr_get_flt(z_, MPFR_RNDN);
-    }
-
-    Mpfr a_{24}, b_{24}, c_{24}, z_{24};
-};
 
 /// Feature of a result: rounding the exact value first to fp32 and then to the format gives another result.
 inline constexpr const char* kDoubleRounding = "double rounding is wrong";

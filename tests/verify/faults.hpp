@@ -1,12 +1,9 @@
 // Injected faults: patches of kernels that simulate faults of a device or compiler. All except kBarrierFault
 // change the code under test; kBarrierFault changes a check.
 #pragma once
-#include <fmt/core.h>
-
 #include <vector>
 
 #include "host/cl/kernel_source.hpp"
-#include "kernels/shared/events.h"
 
 namespace raya {
 
@@ -85,22 +82,5 @@ inline const std::vector<CountFault> kCountFaults = {
      {"torus/trace_voxel.cl", "RAYA_STEPS, m & mask_not(has_flag(f, RAYA_STATE_FOUND))", "RAYA_WALKS, m"},
      kOnTorus},
     {"shadow_hits", {"torus/shade_packets.clh", "RAYA_SHADOW_HITS, stopped", "RAYA_LIT, stopped"}, kOnTorus}};
-
-/// ring_count_fault() returns a fault in the code that sums the counts of a pixel, torus_count_fault() in the code that
-/// sums the counts of a node. `event`: RAYA_*. `how`: 0: the event is counted as another event; 1: not counted; 2:
-/// counted twice.
-inline SourcePatch ring_count_fault(int event, int how) {
-    if (how == 0)
-        return {"ring/pixel_store.clh", "store->totals[e].all += events;",
-                fmt::format("store->totals[e == {} ? {} : e].all += events;", event, (event + 1) % RAYA_EVENTS)};
-    return {"ring/pixel_store.clh", "choose_index(done, t->events[e].all, (index)(0)));",
-            fmt::format("choose_index(done, t->events[e].all * (e == {} ? {}u : 1u), (index)(0)));", event,
-                        how == 1 ? 0 : 2)};
-}
-inline SourcePatch torus_count_fault(int event, int how) {
-    return {"torus/shared_counts.clh", "events[e] += number;",
-            how == 0 ? fmt::format("events[e == {} ? {} : e] += number;", event, (event + 1) % RAYA_EVENTS)
-                     : fmt::format("events[e] += e == {} ? {}u * number : number;", event, how == 1 ? 0 : 2)};
-}
 
 }  // namespace raya

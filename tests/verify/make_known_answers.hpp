@@ -22,11 +22,11 @@ namespace raya {
 /// fused, or the reverse; for a division it is the multiplication by the reciprocal.
 inline constexpr const char* kOtherMethod = "another method is wrong";
 
-/// Computes operations, and the rounding features of the results. `Oracle`: MpfrOracle, or IeeeOracle for fp32.
-template <class Oracle>
+/// Computes operations, and the rounding features of the results. `flushes`: as for MpfrOracle.
 class AnswerMaker {
   public:
-    AnswerMaker(Oracle& oracle, const NumberFormat& format) : oracle_(oracle), format_(format) {}
+    explicit AnswerMaker(const NumberFormat& format, bool flushes = false)
+        : oracle_(format, flushes), format_(format) {}
 
     float result(std::size_t operation, float a, float b, float c) {
         switch (operation) {
@@ -120,7 +120,7 @@ class AnswerMaker {
         return y > -30 ? exp2(y) : constant(0);
     }
 
-    Oracle& oracle_;
+    MpfrOracle oracle_;
     NumberFormat format_;
     Mpfr exact_{kExactBits};
 };
@@ -200,11 +200,8 @@ inline std::vector<std::array<float, 3>> candidates(std::size_t operation, const
 
 /// Returns the rows of one operation: goes through the candidates in order, and keeps a candidate if one of its
 /// features is in fewer than two rows so far (six for kOtherMethod and kDoubleRounding).
-template <class Oracle>
-std::vector<KnownAnswer> choose_answers(Oracle& oracle, std::size_t operation, const NumberFormat& format) {
-    AnswerMaker<Oracle> maker(oracle, format);
-    FlushingOracle<Oracle> flushing{oracle};
-    AnswerMaker<FlushingOracle<Oracle>> flushing_maker(flushing, format);
+inline std::vector<KnownAnswer> choose_answers(std::size_t operation, const NumberFormat& format) {
+    AnswerMaker maker(format), flushing_maker(format, true);
     const auto wanted_rows = [](const std::string& feature) {
         return feature == kOtherMethod || feature == kDoubleRounding ? 6 : 2;
     };
@@ -229,29 +226,16 @@ std::vector<KnownAnswer> choose_answers(Oracle& oracle, std::size_t operation, c
             return std::isnan(result) ? 0x7fc00000u
                                       : std::bit_cast<std::uint32_t>(result);  // the same bits for every NaN
         };
-        const bool is_number = format.is_fp32() && operation != kFromIndex;
-        const float flushed_result = is_number
-                                         ? flushed(flushing_maker.result(operation, flushed(a), flushed(b), flushed(c)))
-                                         : maker.result(operation, a, b, c);
-        answers.push_back({bits, word(maker.result(operation, a, b, c)), word(flushed_result)});
+        answers.push_back(
+            {bits, word(maker.result(operation, a, b, c)), word(flushing_maker.result(operation, a, b, c))});
     }
     return answers;
 }
 
-template <class Oracle>
-FormatAnswers oracle_answers(Oracle& oracle, const NumberFormat& format) {
-    FormatAnswers all{format, {}};
-    for (std::size_t k = 0; k < kNumberOperations.size(); ++k) all.operations[k] = choose_answers(oracle, k, format);
-    return all;
-}
-
 inline FormatAnswers answers_in(const NumberFormat& format) {
-    if (format.is_fp32()) {
-        IeeeOracle oracle;
-        return oracle_answers(oracle, format);
-    }
-    MpfrOracle oracle(format);
-    return oracle_answers(oracle, format);
+    FormatAnswers all{format, {}};
+    for (std::size_t k = 0; k < kNumberOperations.size(); ++k) all.operations[k] = choose_answers(k, format);
+    return all;
 }
 
 /// Inverse of parse_known_answers().

@@ -10,18 +10,14 @@
 namespace raya {
 namespace {
 
-std::string text_of(const std::vector<std::string>& lines) {
-    std::string text;
-    for (const std::string& line : lines) text += line + '\n';
-    return text;
-}
-
-// Returns the remedies of a check that throws an exception of type `Error` with this message.
+// Returns the remedies of a check that throws an exception of type `Error` with this message, one line for each.
 template <class Error>
-std::string remedies_after(const std::string& message) {
+std::string remedies_after(const std::string& message, const VerifySettings& settings = {}) {
     const Check check = run_check("layer", "name", [&]() -> Verdict { throw Error(message); });
     CHECK(check.verdict.outcome == Outcome::kFail);
-    return text_of(check.verdict.fault.remedies);
+    std::string text;
+    for (const std::string& remedy : remedies_of(check, settings)) text += remedy + '\n';
+    return text;
 }
 
 }  // namespace
@@ -30,32 +26,16 @@ TEST_CASE("run_check: a check that throws an exception fails, with remedies for 
     using Catch::Contains;
     CHECK_THAT(remedies_after<DeviceError>("building program 'x.cl': clBuildProgram failed with "
                                            "CL_BUILD_PROGRAM_FAILURE (-11)\n  options: -w"),
-               Contains("build log") && Contains("-cl-opt-disable"));
+               Contains("build log") && Contains("-cl-opt-disable") && Contains("--lanes 1"));
     CHECK_THAT(remedies_after<DeviceError>("allocating buffer 'x' (8 bytes): CL_MEM_OBJECT_ALLOCATION_FAILURE (-4)"),
                Contains("out of memory") && !Contains("build log"));
     CHECK_THAT(remedies_after<DeviceError>("'x': clFinish failed with CL_DEVICE_NOT_AVAILABLE (-2)"),
                Contains("the device was lost") && !Contains("memory"));
-    CHECK_THAT(remedies_after<DeviceError>("another reason"), Contains("raya devices") && Contains("driver"));
-    CHECK_THAT(remedies_after<std::logic_error>("400 packets of kind 1 were made, 399 ended"),
-               Contains("report it") && !Contains("driver"));
-}
-
-TEST_CASE("remedies do not name options that are already set", "[verify]") {
-    using Catch::Contains;
-    ::unsetenv("RAYA_BUILD_OPTIONS");
-    CHECK_THAT(text_of(compiler_remedies()), Contains("-cl-opt-disable"));
+    CHECK_THAT(remedies_after<std::logic_error>("400 packets of kind 1 were made, 399 ended"), Contains("report it"));
     ::setenv("RAYA_BUILD_OPTIONS", "-cl-opt-disable", 1);
-    CHECK_THAT(text_of(compiler_remedies()), !Contains("-cl-opt-disable"));
+    const std::string remedies = remedies_after<DeviceError>("another reason", {.lanes = 1});
     ::unsetenv("RAYA_BUILD_OPTIONS");
-    const auto remedies = [](Depth depth, std::uint32_t given_lanes, std::uint32_t lanes) {
-        const VerifySettings settings{.depth = depth, .lanes = given_lanes};
-        return text_of(Verification(choose_device(""), settings, {}).lanes_remedies(lanes));
-    };
-    CHECK_THAT(remedies(Depth::kQuick, 0, 8), Contains("raya verify --lanes 1"));
-    CHECK_THAT(remedies(Depth::kFull, 0, 8), !Contains("--full") && Contains("use --lanes"));
-    CHECK_THAT(remedies(Depth::kFull, 8, 8), Contains("--lanes 1"));
-    CHECK(remedies(Depth::kQuick, 1, 1).empty());
-    CHECK(remedies(Depth::kFull, 0, 1).empty());
+    CHECK_THAT(remedies, Contains("raya devices") && !Contains("-cl-opt-disable") && !Contains("--lanes"));
 }
 
 TEST_CASE("check_names: a greater depth has all checks of the smaller depths, and more", "[verify]") {
