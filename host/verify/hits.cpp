@@ -1,7 +1,7 @@
 #include "host/verify/hits.hpp"
 
-#include <fmt/ranges.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <bit>
 #include <cmath>
@@ -176,13 +176,6 @@ Verdict check_filter_bounds(HitRunner& runner) {
                                                         .got = fmt::format("0x{:08x}", fmt::join(got, " 0x"))});
 }
 
-std::vector<std::string> hit_remedies(const std::vector<std::string>& lanes_remedies) {
-    std::vector<std::string> remedies = {"if checks of \"number\" fail too, start with those"};
-    remedies.insert(remedies.end(), lanes_remedies.begin(), lanes_remedies.end());
-    remedies.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
-    return remedies;
-}
-
 }  // namespace
 
 void Rays::add(const std::array<float, 3>& origin, const std::array<float, 3>& direction, float limit) {
@@ -228,7 +221,7 @@ void verify_hits(Verification& v, const HitBuild& build) {
     const auto check = [&](const std::string& subject, const std::function<Verdict(HitRunner&)>& body) {
         v.check("geometry", fmt::format("{}, {}", subject, build.name()), [&](Session& session) {
             HitRunner runner(session, build);
-            return with_remedies(body(runner), runner.options(), hit_remedies(v.lanes_remedies(build.lanes)));
+            return with_options(body(runner), runner.options());
         });
     };
     for (const KnownScene& known : known_scenes())
@@ -248,7 +241,7 @@ void verify_hits(Verification& v, const HitBuild& build) {
             if (verdict.outcome == Outcome::kPass)
                 verdict = compare_finders({reference, "hits_without_accel"}, {filtered, "hits_without_accel"},
                                           "filters", {"polygons", "spheres"}, rays_per_scene, true);
-            return with_remedies(verdict, filtered.options(), hit_remedies(v.lanes_remedies(build.lanes)));
+            return with_options(verdict, filtered.options());
         });
 }
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -313,45 +312,17 @@ Rendered render(const KernelChoice& kernels, Session& session, const Rendering& 
     return r.torus ? render_on_torus(kernels, session, r) : render_on_ring(kernels, session, r);
 }
 
-// Renders the image with reference_settings() and without compiler optimisation. Returns nullopt if that fails.
-std::optional<Image> unoptimised_image(const Verification& v, Session& session, const ReferenceImage& image) {
-    RingSettings settings = reference_settings(image);
-    settings.kernels.sources = v.kernels(1, 1).sources;
-    settings.kernels.sources.more_options = {"-cl-opt-disable"};
-    try {
-        return RingRenderer(session, scene_of(image), settings).render().image;
-    } catch (const std::exception&) {
-        return {};
-    }
-}
-
-// Returns remedies for a wrong image. The remedies depend on whether unoptimised_image() is correct on this device.
-std::vector<std::string> image_remedies(const Verification& v, Session& session, const ReferenceImage& image) {
-    const std::optional<Image> unoptimised = unoptimised_image(v, session, image);
-    if (unoptimised && pixel_hash(*unoptimised) == stored_image(image).hash)
-        return {
-            "with one lane, groups of one and -cl-opt-disable the image is right: render with\n"
-            "RAYA_BUILD_OPTIONS=-cl-opt-disable --lanes 1 --group 1, and report the error to the driver's vendor",
-            "a newer driver"};
-    return {"if checks of \"number\" or \"geometry\" fail too, start with those",
-            "the image is also wrong with one lane and -cl-opt-disable: try another driver, or another OpenCL\n"
-            "implementation for this device (raya devices)"};
-}
-
 Verdict check_rendering(const Verification& v, Session& session, const Rendering& r) {
     if (r.group_size > v.device().max_group_size)
         return skipped(fmt::format("needs groups of {} work-items, the device allows {}", r.group_size,
                                    v.device().max_group_size));
-    const ReferenceImage& image = reference_image_named(r.image);
-    const StoredImage& stored = stored_image(image);
+    const StoredImage& stored = stored_image(reference_image_named(r.image));
     const Rendered got = render(v.kernels(r.lanes, r.group_size), session, r);
-    const Verdict pixels = compare_images(stored.image, got.image);
-    if (pixels.outcome == Outcome::kPass) {
-        const Verdict counts = check_counts(stored.counts.at(r.check_kind()), got.counts, pixels.result, got.options);
-        return counts.outcome == Outcome::kPass && !got.fault.empty() ? failed(got.fault, {.options = got.options})
-                                                                      : counts;
-    }
-    return with_remedies(pixels, got.options, image_remedies(v, session, image));
+    Verdict verdict = compare_images(stored.image, got.image);
+    if (verdict.outcome == Outcome::kPass)
+        verdict = check_counts(stored.counts.at(r.check_kind()), got.counts, verdict.result);
+    if (verdict.outcome == Outcome::kPass && !got.fault.empty()) verdict = failed(got.fault, {});
+    return with_options(verdict, got.options);
 }
 
 // Asks the driver for the binaries of a rendering's kernels, as programs that store kernels do. PoCL compiles all of

@@ -34,34 +34,26 @@ namespace {
 using Words = std::vector<std::uint32_t>;
 
 // Returns `count` distinct words, so that a word at a wrong place is detected. Read as fp32 numbers, they are normal.
-Words distinct_words(std::size_t count, std::uint32_t first = 0) {
-    Words words(count);
-    std::iota(words.begin(), words.end(), 0x3f000000u + first);
-    return words;
-}
-std::vector<float> as_floats(const Words& words) {
-    std::vector<float> floats;
-    for (const std::uint32_t word : words) floats.push_back(std::bit_cast<float>(word));
-    return floats;
-}
-Words as_words(const std::vector<float>& floats) {
-    Words words;
-    for (const float number : floats) words.push_back(std::bit_cast<std::uint32_t>(number));
+template <class Word = std::uint32_t>
+std::vector<Word> distinct_words(std::size_t count, std::size_t first = 0) {
+    std::vector<Word> words(count);
+    for (std::size_t i = 0; i < count; ++i)
+        words[i] = std::bit_cast<Word>(0x3f000000u + static_cast<std::uint32_t>(first + i));
     return words;
 }
 
 // Compares `expected` with `got`. Returns nullopt if they are equal, else a failure with the first difference. `unit`:
 // name of a group of `words_per_unit` words, such as "PE".
-std::optional<Verdict> difference(const Words& expected, const Words& got, const std::string& transfer,
-                                  std::size_t words_per_unit, const char* unit) {
+template <class Word>
+std::optional<Verdict> difference(const std::vector<Word>& expected, const std::vector<Word>& got,
+                                  const std::string& transfer, std::size_t words_per_unit, const char* unit) {
     const auto differ = std::mismatch(expected.begin(), expected.end(), got.begin());
     if (differ.first == expected.end()) return {};
-    const auto first_wrong = static_cast<std::size_t>(differ.first - expected.begin());
+    const auto at = static_cast<std::size_t>(differ.first - expected.begin());
     return failed(transfer + ": words at wrong places",
-                  {.where = fmt::format("{}, {} {}, word {}", transfer, unit, first_wrong / words_per_unit,
-                                        first_wrong % words_per_unit),
-                   .expected = fmt::format("0x{:08x}", expected[first_wrong]),
-                   .got = fmt::format("0x{:08x}", got[first_wrong])});
+                  {.where = fmt::format("{}, {} {}, word {}", transfer, unit, at / words_per_unit, at % words_per_unit),
+                   .expected = fmt::format("0x{:08x}", std::bit_cast<std::uint32_t>(expected[at])),
+                   .got = fmt::format("0x{:08x}", std::bit_cast<std::uint32_t>(got[at]))});
 }
 
 // Packets for check_links(). Every `stride`-th outbox has 1 to kCapacity packets, the others none. Each word of a
@@ -97,99 +89,100 @@ struct LinkTraffic {
     }
 };
 
-std::vector<std::string> copy_remedies() {
-    return {"a newer driver: copies between buffers on the device are wrong, or do not run in order",
-            "another OpenCL implementation for this device (raya devices)"};
-}
-
 /// Checks one broadcast and one gather over the bus.
 Verdict check_bus(Session& session) {
+    constexpr std::size_t kWords = 100'003;
     Communication counted;
     Bus bus(session, counted, Distribution(1));
-    const Words words = distinct_words(100'003);
-    auto received = session.buffer<std::uint32_t>("broadcast words", words.size());
+    const Words words = distinct_words(kWords);
+    auto received = session.buffer<std::uint32_t>("broadcast words", kWords);
     session.fill("broadcast words", received, kPoison);
     bus.broadcast(received, words);
-    Words got(words.size());
+    Words got(kWords);
     session.read("read back", received, got);
-    if (auto verdict = difference(words, got, "broadcast", words.size(), "broadcast")) return *verdict;
-    auto blocks = session.buffer<float>("pixel blocks", words.size());
-    session.write("blocks", blocks, as_floats(words));
-    std::vector<float> gathered(words.size());
-    bus.gather(blocks, gathered, words.size());
-    if (auto verdict = difference(words, as_words(gathered), "gather", words.size(), "gather")) return *verdict;
-    return passed(fmt::format("{} words in each direction", words.size()));
+    if (auto verdict = difference(words, got, "broadcast", kWords, "broadcast")) return *verdict;
+    const std::vector<float> pixels = distinct_words<float>(kWords);
+    auto blocks = session.buffer<float>("pixel blocks", kWords);
+    session.write("blocks", blocks, pixels);
+    std::vector<float> gathered(kWords);
+    bus.gather(blocks, gathered, kWords);
+    if (auto verdict = difference(pixels, gathered, "gather", kWords, "gather")) return *verdict;
+    return passed(fmt::format("{} words in each direction", kWords));
 }
+
+// Calls `transfer(round, distance, memory, layout)` `rounds` times with new words in the PEs' memory,
+// [PE][kRows][pitch], and checks the returned blocks, [PE][kRows][words]: PE i must have received the block of PE (i +
+// distance(round)) mod P. A PE's block consists of `words` words of each row, from word kOffset of the row on. Each
+// round has new words, so that the check detects words of an earlier round, and a transfer that does nothing.
+constexpr std::size_t kRows = 3, kOffset = 2;
+struct Rounds {
+    std::size_t pes, words, rounds, pitch = words + 3;
+
+    template <class Distance, class Transfer>
+    std::optional<Verdict> check(Session& session, const Distance& distance_of, const Transfer& transfer) const {
+        auto memory = session.buffer<float>("memory words", pes * kRows * pitch);
+        for (std::size_t round = 0; round < rounds; ++round) {
+            const std::size_t distance = distance_of(round);
+            const std::vector<float> source = distinct_words<float>(memory.size(), round * memory.size());
+            session.write("memory words", memory, source);
+            const Buffer<float>& blocks = transfer(round, distance, memory);
+            std::vector<float> expected(pes * kRows * words), got(expected.size());
+            for (std::size_t w = 0; w < expected.size(); ++w) {
+                const std::size_t pe = (w / words / kRows + distance) % pes, row = w / words % kRows;
+                expected[w] = source[(pe * kRows + row) * pitch + kOffset + w % words];
+            }
+            session.read("blocks", blocks, got);
+            const std::string name = fmt::format("transfer {} of {} PEs, distance {}", round + 1, pes, distance);
+            if (auto verdict = difference(expected, got, name, kRows * words, "PE")) return verdict;
+        }
+        return {};
+    }
+};
 
 }  // namespace
 
-// Layout of the PEs' memory, [PE][kRows][pitch]. A PE's block consists of `words` words of each row, from word `offset`
-// of the row on.
-constexpr std::size_t kRows = 3;
-struct SourceLayout {
-    std::size_t pes, words, pitch, offset;
-
-    // PE i receives the block of PE (i + distance) mod P. Returns the index in the memory of the word that becomes word
-    // w of the received blocks, [PE][kRows][words].
-    std::size_t source_index(std::size_t w, std::size_t distance) const {
-        const std::size_t pe = w / words / kRows, row = w / words % kRows;
-        return ((pe + distance) % pes * kRows + row) * pitch + offset + w % words;
-    }
-    std::size_t size() const { return pes * kRows * pitch; }
-};
-
-// Each round transfers new words, so that the check detects words of an earlier round.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Bus bus(session, counted, Distribution(static_cast<std::uint32_t>(pes)));
-    const SourceLayout layout{pes, words, words + 3, 2};
-    auto memory = session.buffer<float>("memory words", layout.size()),
-         blocks = session.buffer<float>("blocks", pes * kRows * words);
-    for (std::uint32_t round = 0; round < 6; ++round) {
-        const bool to_all = round == 5;  // every PE broadcasts; the expected words are those of distance 0
-        const std::size_t distance = to_all ? 0 : 1 + round * (pes - 1) / 5;
-        const Words memory_words = distinct_words(layout.size(), round * static_cast<std::uint32_t>(layout.size()));
-        session.write("memory words", memory, as_floats(memory_words));
+    const Rounds rounds{pes, words, 6};
+    auto blocks = session.buffer<float>("blocks", pes * kRows * words);
+    const auto is_broadcast = [](std::size_t round) { return round == 5; };  // every PE sends its block to all
+    const auto distance_of = [&](std::size_t round) { return is_broadcast(round) ? 0 : 1 + round * (pes - 1) / 5; };
+    const auto transfer = [&](std::size_t round, std::size_t distance, Buffer<float>& memory) -> Buffer<float>& {
         for (std::size_t pe = 0; pe < pes; ++pe) {
-            const PeWords from{(pe + distance) % pes, layout.pitch, layout.offset, kRows}, to{pe, words, 0, kRows};
-            to_all ? bus.broadcast_from(memory, from, blocks, to, words) : bus.send(memory, from, blocks, to, words);
+            const PeWords from{(pe + distance) % pes, rounds.pitch, kOffset, kRows}, to{pe, words, 0, kRows};
+            if (is_broadcast(round))
+                bus.broadcast_from(memory, from, blocks, to, words);
+            else
+                bus.send(memory, from, blocks, to, words);
         }
-        Words expected(blocks.size());
-        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = memory_words[layout.source_index(w, distance)];
-        std::vector<float> got(expected.size());
-        session.read("blocks", blocks, got);
-        const std::string transfer = to_all ? "broadcast" : fmt::format("distance {}", distance);
-        if (auto verdict = difference(expected, as_words(got), transfer, kRows * words, "PE")) return *verdict;
-    }
+        return blocks;
+    };
+    if (auto verdict = rounds.check(session, distance_of, transfer)) return *verdict;
     return passed(fmt::format("{} transfers and {} broadcasts of {} words", counted.transfers, counted.pe_broadcasts,
                               kRows * words));
 }
 
-// After a rotation PE i has the block of PE (i + distance) mod P. Each rotation transfers new words. If all rotations
-// transferred the same words, two PEs would have the same blocks after every second rotation, and a rotation that does
-// nothing could pass.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Ring ring(session, counted, Distribution(static_cast<std::uint32_t>(pes)), kRows, words);
-    const SourceLayout layout{pes, words, words + 3, 2};
-    auto memory = session.buffer<float>("memory words", layout.size());
-    for (std::uint32_t i = 0; i < 12; ++i) {
-        const Words memory_words = distinct_words(layout.size(), i * static_cast<std::uint32_t>(layout.size()));
-        session.write("memory words", memory, as_floats(memory_words));
-        ring.load(memory, layout.pitch, layout.offset);
-        const RingDirection direction = i % 4 == 3 ? RingDirection::kUp : RingDirection::kDown;
-        const std::size_t distance = direction == RingDirection::kDown ? 1 : pes - 1;
-        ring.rotate(direction);
-        Words expected(pes * kRows * words);
-        for (std::size_t w = 0; w < expected.size(); ++w) expected[w] = memory_words[layout.source_index(w, distance)];
-        std::vector<float> got(expected.size());
-        session.read("ring blocks", ring.blocks(), got);
-        const std::string transfer = fmt::format("rotation {} of {} PEs", i + 1, pes);
-        if (auto verdict = difference(expected, as_words(got), transfer, kRows * words, "PE")) return *verdict;
-    }
-    return passed(fmt::format("12 rotations of {} blocks of {} words", pes, kRows * words));
+    const Rounds rounds{pes, words, 12};
+    const auto is_up = [](std::size_t round) { return round % 4 == 3; };
+    const auto transfer = [&](std::size_t round, std::size_t, Buffer<float>& memory) -> const Buffer<float>& {
+        ring.load(memory, rounds.pitch, kOffset);
+        ring.rotate(is_up(round) ? RingDirection::kUp : RingDirection::kDown);
+        return ring.blocks();
+    };
+    if (auto verdict = rounds.check(
+            session, [&](std::size_t round) { return is_up(round) ? pes - 1 : 1; }, transfer))
+        return *verdict;
+    return passed(fmt::format("{} rotations of {} blocks of {} words", rounds.rounds, pes, kRows * words));
 }
 
+namespace {
+
+// Fills every `stride`-th outbox with packets, exchanges packets over all links once, and checks all inboxes and the
+// flags that mark the outboxes whose packets have been transferred.
 Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t stride, Kernels& kernels) {
     constexpr std::uint32_t kPacketWords = LinkTraffic::kPacketWords, kMailboxWords = LinkTraffic::kMailboxWords;
     const std::uint32_t nodes = raya_nodes(torus);
@@ -220,6 +213,8 @@ Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t str
     return passed(fmt::format("{} packets over {} links", traffic.packets_sent, RAYA_LINKS * nodes));
 }
 
+}  // namespace
+
 Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies) {
     const Words source = distinct_words(kCopiedWords);
     std::size_t copied = 0;
@@ -243,45 +238,32 @@ Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies) {
     return passed(fmt::format("{} words in {} layouts", copied, copies.size()));
 }
 
-std::vector<std::string> integer_remedies() {
-    return {
-        "the compiler makes errors with integers or barriers, not with fp32: look for an option of the driver that\n"
-        "disables its optimiser, and report the error to its vendor",
-        "a newer driver, or another OpenCL implementation for this device (raya devices)"};
-}
+namespace {
 
 void verify_transfers(Verification& v) {
-    const auto check = [&](const std::string& name, const std::function<Verdict(Session&)>& body) {
-        v.check("machine", name, [&](Session& session) { return with_remedies(body(session), "", copy_remedies()); });
-    };
     const std::vector<BlockCopy> copies = {{{3, 17, 0}, {0, 5, 2}, 5, 40},
                                            {{0, 8, 1}, {4, 31, 0}, 8, 33},
                                            {{2, 9, 5}, {1, 7, 3}, 4, 300},
                                            {{0, 64, 0}, {0, 64, 64}, 64, 63}};
-    check("copies of blocks", [&](Session& s) { return check_copies(s, copies); });
-    check("bus: broadcast and gather", [](Session& s) { return check_bus(s); });
-    check("bus: transfers between 31 PEs", [](Session& s) { return check_transfers(s, 31, 100); });
+    v.check("machine", "copies of blocks", [&](Session& s) { return check_copies(s, copies); });
+    v.check("machine", "bus: broadcast and gather", check_bus);
+    v.check("machine", "bus: transfers between 31 PEs", [](Session& s) { return check_transfers(s, 31, 100); });
     using Sizes = std::pair<std::size_t, std::size_t>;
     for (const auto& [pes, words] : {Sizes{2, 1}, {7, 100}, {256, 768}})
-        check(fmt::format("ring: rotations of {} PEs", pes),
-              [p = pes, w = words](Session& s) { return check_rotations(s, p, w); });
+        v.check("machine", fmt::format("ring: rotations of {} PEs", pes),
+                [p = pes, w = words](Session& s) { return check_rotations(s, p, w); });
     for (const Links links : {Links::kTorus3d, Links::kTorus2d})
         for (const std::uint32_t stride : {1u, 50u}) {
             const std::string name =
                 fmt::format("{}: exchange of {}", links_name(links), stride == 1 ? "all mailboxes" : "few mailboxes");
-            const raya_torus torus = make_torus({3, 2, 4}, links);
             v.check("machine", name, [&](Session& s) {
                 // A mailbox takes 4 to 12 units of 8 words. So some of the 8 work-items copy two units, some one unit,
                 // and some none.
                 Kernels kernels(s, {.group_size = std::min(8u, max_group_size_of(v.device()))}, v.sources());
-                return with_remedies(check_links(s, torus, stride, kernels), "", integer_remedies());
+                return check_links(s, make_torus({3, 2, 4}, links), stride, kernels);
             });
         }
 }
-
-namespace {
-
-using Words = std::vector<std::uint32_t>;
 
 // Returns a pseudo-random number in 0..end - 1.
 std::uint32_t random_below(SplitMix& random, std::uint32_t end) {
@@ -349,7 +331,7 @@ std::pair<std::vector<raya_torus>, std::vector<std::uint32_t>> torus_cases(std::
 }
 
 // Compares the buffer `results`, which has several words per case, with `expected`. `names`: names of the words of a
-// case. `describe(i)` returns the description of case i.
+// case; `describe(i)`: description of case i.
 template <class Describe>
 Verdict compare_cases(const Words& expected, CheckRunner& runner, const Buffer<std::uint32_t>& results,
                       const std::vector<std::string>& names, const Describe& describe, const std::string& pass_text) {
@@ -368,6 +350,20 @@ Verdict compare_cases(const Words& expected, CheckRunner& runner, const Buffer<s
                    .got = fmt::format("{0} = 0x{0:08x}", got[first_wrong])});
 }
 
+// Runs a kernel that computes several words for each of its cases, one work-item per case, from buffers with the
+// inputs, and compares the words with `expected`. `names`: names of the words of a case; `describe(i)`: description of
+// case i; `subject`: plural of a case.
+template <class Describe, class... Inputs>
+Verdict check_cases(CheckRunner& runner, const std::string& kernel, const Words& expected,
+                    const std::vector<std::string>& names, const std::string& subject, const Describe& describe,
+                    const std::vector<Inputs>&... inputs) {
+    const std::size_t cases = expected.size() / names.size();
+    auto results = runner.poisoned("results", expected.size());
+    runner.run<const Buffer<Inputs>&..., cl_uint, Buffer<std::uint32_t>&>(
+        kernel, cases, 1, runner.filled("inputs", inputs)..., static_cast<cl_uint>(cases), results);
+    return compare_cases(expected, runner, results, names, describe, fmt::format("{} {}", cases, subject));
+}
+
 // Appends the expected results of kernel find_owners (kernels/checks/machine.cl) for a pixel. `other_pe`: a PE, whose
 // share may be empty.
 void add_owner(Words& results, const raya_mapping& m, const raya_pixel& pixel, std::uint32_t other_pe) {
@@ -382,30 +378,20 @@ void add_owner(Words& results, const raya_mapping& m, const raya_pixel& pixel, s
                                    raya_share_size(raya_share_of(m, other_pe))});
 }
 
-// `group_size`: work-group size of kernel reverse_words, 1..1024.
-CheckRunner machine_runner(Session& session, const KernelSources& sources, std::uint32_t group_size = 1) {
-    return {session, Kernels(session, {.group_size = group_size}, sources).program("checks/machine.cl")};
-}
-
 // Checks mappings of `kind` (RAYA_FOLD_CYCLIC..RAYA_RANDOM): the owner of a pixel, the pixel's number in the owner's
 // share, and flags of the neighbours that are in the image.
 Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases) {
     const auto [mappings, pixels] = mapping_cases(kind, cases);
     Words expected;
     for (std::uint32_t i = 0; i < cases; ++i) add_owner(expected, mappings[i], pixels[i], i % mappings[i].pes);
-    const auto mapping_buffer = runner.filled("mappings", mappings);
-    const auto pixel_buffer = runner.filled("pixels", pixels);
-    auto owners = runner.poisoned("owners", expected.size());
-    runner.run<const Buffer<raya_mapping>&, const Buffer<raya_pixel>&, cl_uint, Buffer<std::uint32_t>&>(
-        "find_owners", cases, 1, mapping_buffer, pixel_buffer, static_cast<cl_uint>(cases), owners);
     const auto describe = [&, &m = mappings, &p = pixels](std::size_t i) {
         return fmt::format("pixel (row {}, column {}) of {}x{} on {} PEs, {}", p[i].row, p[i].column, m[i].width,
                            m[i].height, m[i].pes, mapping_text(m[i]));
     };
-    return compare_cases(expected, runner, owners,
-                         {"owner", "size of the share", "number in the share", "row", "column", "neighbours",
-                          "size of another PE's share"},
-                         describe, fmt::format("{} pixels", cases));
+    return check_cases(runner, "find_owners", expected,
+                       {"owner", "size of the share", "number in the share", "row", "column", "neighbours",
+                        "size of another PE's share"},
+                       "pixels", describe, mappings, pixels);
 }
 
 // Checks, for random nodes a and b, the first link on the route of a ray from a to b, the return link of a, and the
@@ -421,19 +407,14 @@ Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
             expected.push_back(raya_link_end(toruses[i], nodes[2 * i], link));
     }
-    const auto torus_buffer = runner.filled("toruses", toruses);
-    const auto node_buffer = runner.filled("nodes", nodes);
-    auto routes = runner.poisoned("routes", expected.size());
-    runner.run<const Buffer<raya_torus>&, const Buffer<std::uint32_t>&, cl_uint, Buffer<std::uint32_t>&>(
-        "find_routes", cases, 1, torus_buffer, node_buffer, static_cast<cl_uint>(cases), routes);
     const auto describe = [&, &t = toruses, &n = nodes](std::size_t i) {
         return fmt::format("node {} to {} on {}", n[2 * i], n[2 * i + 1],
                            sides_text({t[i].sides[0], t[i].sides[1], t[i].sides[2]}));
     };
-    return compare_cases(expected, runner, routes,
-                         {"next link", "return link", "number of nodes", "node at the place", "end of +x", "end of -x",
-                          "end of +y", "end of -y", "end of +z", "end of -z"},
-                         describe, fmt::format("{} pairs of nodes", cases));
+    return check_cases(runner, "find_routes", expected,
+                       {"next link", "return link", "number of nodes", "node at the place", "end of +x", "end of -x",
+                        "end of +y", "end of -y", "end of +z", "end of -z"},
+                       "pairs of nodes", describe, toruses, nodes);
 }
 
 // Checks functions of packets, and sizes of queues and local memory, for random places, states, lights and bounces.
@@ -453,19 +434,15 @@ Verdict check_packet_words(CheckRunner& runner, std::size_t cases) {
             {raya_pack_place(x, y, z), level, lights, lights + 2, raya_slots_for_packet(new_packets, bounces, state),
              RAYA_WORK_OF_PROCESSING(lights), RAYA_INJECT_WORDS(1 + x, 1 + y % 16), RAYA_ROUTE_WORDS(1 + x)});
     }
-    const auto input_buffer = runner.filled("inputs", inputs);
-    auto words = runner.poisoned("words", expected.size());
-    runner.run<const Buffer<std::uint32_t>&, cl_uint, Buffer<std::uint32_t>&>(
-        "find_packet_words", cases, 1, input_buffer, static_cast<cl_uint>(cases), words);
     const auto describe = [&](std::size_t i) {
         return fmt::format("place ({}, {}, {}), state 0x{:08x}, {}, {} bounces", inputs[6 * i], inputs[6 * i + 1],
                            inputs[6 * i + 2], inputs[6 * i + 3], counted(inputs[6 * i + 4], "light"),
                            inputs[6 * i + 5]);
     };
-    return compare_cases(expected, runner, words,
-                         {"packed place", "level", "light", "maximum number of new packets", "queue slots",
-                          "work of processing", "local memory of inject", "local memory of route"},
-                         describe, fmt::format("{} packets", cases));
+    return check_cases(runner, "find_packet_words", expected,
+                       {"packed place", "level", "light", "maximum number of new packets", "queue slots",
+                        "work of processing", "local memory of inject", "local memory of route"},
+                       "packets", describe, inputs);
 }
 
 // Checks barriers and atomics. Each work-group reverses the order of words in local memory kReversals times and adds 1
@@ -506,8 +483,9 @@ void verify_kernels(Verification& v) {
             if (group > v.device().max_group_size)
                 return skipped(fmt::format("needs groups of {} work-items, the device allows {}", group,
                                            v.device().max_group_size));
-            CheckRunner runner = machine_runner(session, v.sources(), group);
-            return with_remedies(body(runner), runner.options(), integer_remedies());
+            CheckRunner runner(session,
+                               Kernels(session, {.group_size = group}, v.sources()).program("checks/machine.cl"));
+            return with_options(body(runner), runner.options());
         });
     };
     for (std::uint32_t kind = 0; kind <= RAYA_RANDOM; ++kind)

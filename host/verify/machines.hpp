@@ -13,19 +13,12 @@
 
 namespace raya {
 
-class Verification;
-
 /// Checks transfers of blocks over the bus; a block has 3 rows of `words` words. For each of five distances d, PE i
 /// receives the block of PE (i + d) mod `pes`. Then each PE in turn broadcasts its block to all PEs.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words);
 
 /// Checks 12 rotations (circular shifts over the ring) of `pes` blocks of 3 rows of `words` words, in both directions.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words);
-
-/// Fills every `stride`-th outbox with packets and exchanges packets over all links once. Checks all inboxes and the
-/// flags that mark the outboxes whose packets have been transferred. `kernels`: its exchange kernel transfers the
-/// packets; null: buffer copies transfer them.
-Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t stride, Kernels* kernels = nullptr);
 
 /// A copy of blocks between two buffers in which the blocks have different layouts.
 struct BlockCopy {
@@ -38,11 +31,5 @@ inline constexpr std::size_t kCopiedWords = 4096;
 
 /// Checks that each copy is correct and does not change the other words of the destination.
 Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies);
-
-/// Runs all checks of this file.
-void verify_transfers(Verification& verification);
-
-/// Returns remedies for a failed check of integers, local memory or barriers.
-std::vector<std::string> integer_remedies();
 
 }  // namespace raya

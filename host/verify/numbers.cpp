@@ -136,26 +136,9 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
 // --- Checks of layer "number": compare all operations in all formats with the known answers
 namespace {
 
-std::vector<std::string> number_remedies(const NumberBuild& build, const DeviceInfo& device,
-                                         const std::vector<std::string>& lanes_remedies) {
-    std::vector<std::string> all;
-    if (build.format.is_fp32() && build.trusted && device.correctly_rounded_divide_sqrt)
-        all.emplace_back(
-            "if only div, sqrt or power is wrong: the device promises correctly rounded division but does not round "
-            "correctly");
-    if (build.format.is_fp32())
-        all.emplace_back(
-            "if only mul_add is wrong: the compiler contracts a b + c in spite of FP_CONTRACT OFF; look for an option "
-            "of the driver that disables contraction");
-    all.insert(all.end(), lanes_remedies.begin(), lanes_remedies.end());
-    all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
-    return all;
-}
-
 // Launches the kernel once with the rows of all operations. The kernel computes every operation for every row; each
 // operation is compared only in its own rows.
-Verdict check_answers(Session& session, const NumberBuild& build, const FormatAnswers& answers,
-                      const std::vector<std::string>& remedies) {
+Verdict check_answers(Session& session, const NumberBuild& build, const FormatAnswers& answers) {
     NumberRows rows;
     std::vector<ExpectedNumbers> expected;
     for (std::size_t k = 0; k < answers.operations.size(); ++k) {
@@ -169,7 +152,7 @@ Verdict check_answers(Session& session, const NumberBuild& build, const FormatAn
     }
     rows.pad();
     NumberRunner runner(session, build);
-    return with_remedies(runner.check(rows, expected), runner.options(), remedies);
+    return with_options(runner.check(rows, expected), runner.options());
 }
 
 void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t lanes, bool trusted,
@@ -180,9 +163,7 @@ void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t 
                             .imprecise = !trusted && v.device().correctly_rounded_divide_sqrt,
                             .optimised = optimised,
                             .sources = v.sources()};
-    v.check("number", build.name(), [&](Session& session) {
-        return check_answers(session, build, answers, number_remedies(build, v.device(), v.lanes_remedies(lanes)));
-    });
+    v.check("number", build.name(), [&](Session& session) { return check_answers(session, build, answers); });
 }
 
 // Returns the result of one work-item and lane of kernels/number/operations.cl in fp32.

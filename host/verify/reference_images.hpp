@@ -66,9 +66,8 @@ std::string counts_text(const EventCounts& events,
                         const std::vector<std::pair<const char*, std::uint64_t>>& other_counts);
 
 /// Compares two texts of counts_text(). If they are equal, the verdict is a pass with the text `pass_text`; else it is
-/// a failure that lists the counters that differ. `options`: build options of the kernels.
-Verdict check_counts(const std::string& expected, const std::string& got, const std::string& pass_text,
-                     const std::string& options);
+/// a failure that lists the counters that differ.
+Verdict check_counts(const std::string& expected, const std::string& got, const std::string& pass_text);
 
 /// Compares two images of the same size bit by bit. If they are equal, the verdict is a pass with the first digits of
 /// the hash; else a failure with the first wrong pixel.

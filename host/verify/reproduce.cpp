@@ -4,14 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
-#include <list>
-#include <optional>
-#include <regex>
 #include <sstream>
 #include <tuple>
 #include <utility>
@@ -29,22 +22,6 @@
 namespace raya {
 namespace {
 
-// Sets an environment variable of this process, and so of its children, as long as the object exists.
-class EnvironmentVariable {
-  public:
-    EnvironmentVariable(std::string name, const std::string& value) : name_(std::move(name)) {
-        if (const char* const old = std::getenv(name_.c_str())) old_ = old;
-        ::setenv(name_.c_str(), value.c_str(), 1);
-    }
-    ~EnvironmentVariable() { old_ ? ::setenv(name_.c_str(), old_->c_str(), 1) : ::unsetenv(name_.c_str()); }
-    EnvironmentVariable(const EnvironmentVariable&) = delete;
-    EnvironmentVariable& operator=(const EnvironmentVariable&) = delete;
-
-  private:
-    std::string name_;
-    std::optional<std::string> old_;
-};
-
 void take_line(Observation& seen, const Json& line) {
     if (find_member(line, "step")) seen.steps.push_back({json_text(line.at("name"))});
     if (find_member(line, "expected")) seen.expected = json_integer(line.at("expected"));
@@ -59,9 +36,8 @@ void take_line(Observation& seen, const Json& line) {
 }  // namespace
 
 Observation observe(const CheckRun& v, std::size_t step, const std::filesystem::path& folder, bool ends_at_step) {
-    std::list<EnvironmentVariable> environment;
-    for (const auto& [name, value] : v.environment) environment.emplace_back(name, value);
     Json request = settings_json(v.settings, v.selector, 0);
+    request["environment"] = v.environment;
     request["capture"] = {{"step", step}, {"folder", folder.string()}};
     ChildProcess process(kVerifyTask, request);
     Observation seen;
@@ -78,16 +54,7 @@ Observation observe(const CheckRun& v, std::size_t step, const std::filesystem::
 
 namespace {
 
-struct Change {
-    std::string text, variable{}, value{};  // an environment variable, or, if `variable` is empty:
-    std::uint32_t lanes = 0, group = 0;     // numbers for VerifySettings; 0: unchanged
-};
-
-// Returns the name of the same check with one lane: "fp32, 1 lane" for "fp32, 16 lanes".
-std::string name_with_one_lane(const std::string& name) {
-    const std::string once = std::regex_replace(name, std::regex(R"(\b\d+ lanes)"), "1 lane");
-    return std::regex_replace(once, std::regex(R"(, \d+x(\d+)$)"), ", 1x$1");
-}
+constexpr const char* kBuildOptions = "RAYA_BUILD_OPTIONS";
 
 /// Returns the settings to run only the check of this name, "LAYER NAME", once.
 VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name) {
@@ -100,47 +67,26 @@ VerifySettings settings_of_one(VerifySettings settings, const std::string& full_
     return settings;
 }
 
-bool exists(const VerifySettings& settings, const std::string& selector, const std::string& name) {
-    return !check_names(choose_device(selector), settings_of_one(settings, name)).empty();
-}
-
-/// Returns the value of RAYA_BUILD_OPTIONS with one more option.
-std::string with_build_option(const std::string& option) {
-    const std::string options = user_build_options();
-    return options.empty() ? option : options + " " + option;
-}
-
+// Repeats a failing check with changes of the environment: variables and their values.
 class Bisector {
   public:
-    Bisector(CheckRun failing, const std::string& name, bool is_pocl, std::function<void(const std::string&)> print)
-        : failing_(std::move(failing)), name_(name), print_(std::move(print)) {
-        for (const char* const option : {"-cl-opt-disable", kNoBuiltins, "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0"})
-            changes_.push_back({std::string("RAYA_BUILD_OPTIONS=") + option, "RAYA_BUILD_OPTIONS", option});
-        changes_.push_back({.text = "groups of 1 work-item (--group 1)", .group = 1});
-        VerifySettings one_lane = failing_.settings;
-        one_lane.lanes = 1;
-        if (failing_.settings.as.empty() && failing_.settings.lanes != 1 &&
-            exists(one_lane, failing_.selector, name_with_one_lane(name_)))
-            changes_.push_back({.text = "--lanes 1", .lanes = 1});
-        if (!is_pocl) return;
-        for (const auto& [variable, value] : {std::pair{"POCL_WORK_GROUP_METHOD", "loops"},
-                                              {"POCL_MAX_PTHREAD_COUNT", "1"},
-                                              {"POCL_CPU_MAX_CU_COUNT", "1"},
-                                              {"POCL_WORK_GROUP_SPECIALIZATION", "0"}})
-            changes_.push_back({std::string(variable) + "=" + value, variable, value});
-    }
+    using Changes = std::vector<std::pair<std::string, std::string>>;
 
-    void run() {
-        if (!passes(changes_)) return print_(name_ + ": fails also with all of these changes");
-        print_(fmt::format("{}: passes with {}", name_, text_of(minimal({}, changes_, false))));
+    Bisector(CheckRun failing, std::function<void(const std::string&)> print)
+        : failing_(std::move(failing)), print_(std::move(print)) {}
+
+    /// Prints the smallest part of `changes` with which the check passes.
+    void run(const Changes& changes) {
+        const std::string& name = failing_.settings.only;
+        if (!passes(changes)) return print_(name + ": fails also with all of these changes");
+        print_(fmt::format("{}: passes with {}", name, text_of(minimal({}, changes, false))));
     }
 
   private:
-    using Changes = std::vector<Change>;
-
     static std::string text_of(const Changes& changes) {
         std::string text;
-        for (const Change& change : changes) text += (text.empty() ? "" : ", ") + change.text;
+        for (const auto& [variable, value] : changes)
+            text += fmt::format("{}{}={}", text.empty() ? "" : ", ", variable, value);
         return text;
     }
 
@@ -164,36 +110,34 @@ class Bisector {
     bool passes(const Changes& changes) {
         const TemporaryFolder cache("raya-bisect");
         CheckRun variant = failing_;
-        std::string name = name_, options;
-        for (const Change& change : changes) {
-            if (change.variable == "RAYA_BUILD_OPTIONS")
-                options += (options.empty() ? "" : " ") + change.value;
-            else if (!change.variable.empty())
-                variant.environment[change.variable] = change.value;
-            if (change.lanes != 0) name = name_with_one_lane(name);
-            if (change.lanes != 0) variant.settings.lanes = change.lanes;
-            if (change.group != 0) variant.settings.group_size = change.group;
+        variant.environment = {{"POCL_CACHE_DIR", cache.path().string()}, {kBuildOptions, user_build_options()}};
+        for (const auto& [variable, value] : changes) {
+            std::string& all = variant.environment[variable];
+            all += (all.empty() ? "" : " ") + value;
         }
-        if (!options.empty()) variant.environment["RAYA_BUILD_OPTIONS"] = with_build_option(options);
-        variant.environment["POCL_CACHE_DIR"] = cache.path().string();
-        variant.settings = settings_of_one(variant.settings, name);
         const bool passed = observe(variant).passed;
         print_(fmt::format("{}  {}", passed ? "PASS" : "FAIL", text_of(changes)));
         return passed;
     }
 
     CheckRun failing_;
-    std::string name_;
     std::function<void(const std::string&)> print_;
-    Changes changes_;
 };
 
 }  // namespace
 
 void bisect(const std::string& selector, const DeviceChecks& device, const VerifySettings& settings,
             const std::string& full_name, const std::function<void(const std::string& line)>& print) {
-    const bool is_pocl = device.platform == "Portable Computing Language";
-    Bisector({"", selector, settings, {}}, full_name, is_pocl, print).run();
+    Bisector::Changes changes;
+    for (const char* const option : {"-cl-opt-disable", kNoBuiltins, "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0"})
+        changes.emplace_back(kBuildOptions, option);
+    if (device.platform == "Portable Computing Language")
+        for (const auto& change : Bisector::Changes{{"POCL_WORK_GROUP_METHOD", "loops"},
+                                                    {"POCL_MAX_PTHREAD_COUNT", "1"},
+                                                    {"POCL_CPU_MAX_CU_COUNT", "1"},
+                                                    {"POCL_WORK_GROUP_SPECIALIZATION", "0"}})
+            changes.push_back(change);
+    Bisector({"", selector, settings_of_one(settings, full_name)}, print).run(changes);
 }
 
 namespace {
@@ -236,29 +180,6 @@ std::string case_header(const Json& launch, const std::string& options, const st
         is_build ? 1 : json_integer(launch.at("groups")), is_build ? 1 : json_integer(launch.at("group_size")), rows);
 }
 
-std::vector<std::uint32_t> words_of(const fs::path& file) {
-    const std::string bytes = read_file(file);
-    std::vector<std::uint32_t> words(bytes.size() / 4);
-    std::memcpy(words.data(), bytes.data(), 4 * words.size());
-    return words;
-}
-
-// Returns the first words of NAME.out that differ from NAME.expected, one line for each, at most `kShown`.
-std::string differing_words(const fs::path& folder, const std::string& name) {
-    constexpr std::size_t kShown = 10;
-    const auto file = [&](const char* extension) { return folder / (name + extension); };
-    const std::vector<std::uint32_t> got = words_of(file(".out")), expected = words_of(file(".expected"));
-    const std::vector<std::uint32_t> mask =
-        fs::exists(file(".mask")) ? words_of(file(".mask")) : std::vector<std::uint32_t>(expected.size(), 1);
-    std::string lines;
-    std::size_t wrong = 0;
-    for (std::size_t i = 0; i < expected.size(); ++i)
-        if (mask[i] != 0 && got[i] != expected[i] && !(mask[i] == 2 && std::isnan(std::bit_cast<float>(got[i]))) &&
-            wrong++ < kShown)
-            lines += fmt::format("    {}:{} is 0x{:08x}, expected 0x{:08x}\n", name, i, got[i], expected[i]);
-    return lines + fmt::format("    {}: {} of {} words wrong\n", name, wrong, expected.size());
-}
-
 constexpr const char* kReadme = R"(# {check}: a case for a bug report
 
 {what}
@@ -272,7 +193,6 @@ constexpr const char* kReadme = R"(# {check}: a case for a bug report
 | source of the expected words | {reference} |
 | made by | {program} |
 
-{words}
     make && ./repro          exit code 0: right; 1: wrong; 125: cannot tell (no such device, the build fails, ...)
     git bisect run sh -c 'BUILD-THE-DRIVER && CASE/repro'       finds the commit of a driver that broke it
     make reduce              reduced.cl: a smaller kernel that still fails; needs cvise and oclgrind
@@ -280,12 +200,6 @@ constexpr const char* kReadme = R"(# {check}: a case for a bug report
 kernel.cl: the kernel with its included files. NAME.in: inputs; NAME.expected: correct outputs, compared
 where NAME.mask, if there is one, is not 0 (2: every NaN is correct); NAME.out: outputs of the failing device. NAME is argN_BUFFER for argument N. case.h: work-groups and sizes.{right}
 )";
-
-}  // namespace
-
-namespace {
-
-namespace fs = std::filesystem;
 
 // Returns the number of the first step whose outputs differ from those of the reference; 0: none. Ignores outputs that
 // differ between two runs of the reference.
@@ -309,7 +223,7 @@ std::vector<CheckRun> references(const CheckRun& failing) {
     }
     all.push_back(failing);
     all.back().name = "-cl-opt-disable";
-    all.back().environment["RAYA_BUILD_OPTIONS"] = with_build_option("-cl-opt-disable");
+    all.back().environment[kBuildOptions] = user_build_options() + " -cl-opt-disable";
     for (std::size_t i = 0; i < all_devices().size(); ++i) {
         all.push_back(failing);
         all.back().selector = std::to_string(i);
@@ -383,9 +297,6 @@ void write_case(const fs::path& folder, const DeviceChecks& device, const Check&
     write_whole_file(folder / "case.h", case_header(launch, options, device.platform + ": " + device.name));
     for (const char* const name : {"repro.c", "Makefile", "reduce.sh"})
         write_whole_file(folder / name, embedded_files().at(std::string("host/verify/case/") + name));
-    std::string words;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-        if (entry.path().extension() == ".expected") words += differing_words(folder, entry.path().stem().string());
     const std::string right = fs::exists(folder / "right.cl")
                                   ? " right.cl: raya's own kernel; `./repro right.cl` ends with exit code 0."
                                   : "";
@@ -395,8 +306,7 @@ void write_case(const fs::path& folder, const DeviceChecks& device, const Check&
                                  fmt::arg("platform", device.platform), fmt::arg("version", device.version),
                                  fmt::arg("driver", device.driver), fmt::arg("step", step),
                                  fmt::arg("options", json_text(launch.at("options"))), fmt::arg("reference", reference),
-                                 fmt::arg("program", name_and_version()), fmt::arg("words", words.empty() ? "" : words),
-                                 fmt::arg("right", right)));
+                                 fmt::arg("program", name_and_version()), fmt::arg("right", right)));
     fs::remove(folder / "launch.json");
 }
 

@@ -12,8 +12,6 @@
 
 namespace raya {
 
-// Finds out which setting makes a failing check pass.
-
 // Repeats one check in a child process with other settings, to find the cause of its failure.
 
 /// How to run a check.
@@ -44,11 +42,11 @@ Observation observe(const CheckRun& run, std::size_t step = 0, const std::filesy
                     bool ends_at_step = false);
 
 /// Searches for a smallest set of changes with which the failed check `full_name` passes: build options, macros of the
-/// kernels, one lane, groups of one work-item, and for PoCL its environment variables. Runs the check a few times for
-/// each change of the result, by the QuickXplain algorithm (Junker 2004), which assumes that more changes never make a
-/// passing check fail. Calls `print` with a line after each run, such as "PASS  --lanes 1", and at the end with the
-/// result. Each run has an empty cache of PoCL, because PoCL's variables are not part of the cache's keys. `selector`
-/// selects the device, as in choose_device().
+/// kernels, and for PoCL its environment variables. Runs the check a few times for each change of the result, by the
+/// QuickXplain algorithm (Junker 2004), which assumes that more changes never make a passing check fail. Calls `print`
+/// with a line after each run, such as "PASS  RAYA_BUILD_OPTIONS=-cl-opt-disable", and at the end with the result. Each
+/// run has an empty cache of PoCL, because PoCL's variables are not part of the cache's keys. `selector` selects the
+/// device, as in choose_device().
 void bisect(const std::string& selector, const DeviceChecks& device, const VerifySettings& settings,
             const std::string& full_name, const std::function<void(const std::string& line)>& print);
 

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <csignal>
+#include <cstdlib>
 #include <optional>
 
 #include "host/base/child_process.hpp"
@@ -29,7 +29,6 @@ void for_each_setting(Settings& s, const Visit& visit) {
     visit("soak_s", s.soak_s);
     visit("seed", s.seed);
     visit("lanes", s.lanes);
-    visit("group_size", s.group_size);
     visit("as", s.as);
     visit("done", s.done);
 }
@@ -95,21 +94,6 @@ void refuse_empty_selection(const cl::Device& device, const VerifySettings& sett
 
 // --- In the parent process
 
-// Returns remedies for a crash. `full_name`: "LAYER NAME" of the check that was running; empty: no check was running.
-// `status`: exit status of the process.
-std::vector<std::string> crash_remedies(const std::string& full_name, int status, const VerifySettings& settings) {
-    std::vector<std::string> all;
-    const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    if (signal == SIGKILL) all.emplace_back("the system may have run out of memory and ended the process: see dmesg");
-    if (signal == SIGILL)
-        all.emplace_back("the kernels were compiled for another processor: look for an option of the driver");
-    if (!full_name.empty() && settings.only != full_name)
-        all.push_back(fmt::format("raya verify --only \"{}\": shows whether the check also crashes alone", full_name));
-    if (settings.lanes != 1) all.emplace_back("raya verify --lanes 1: compilers crash less often with one lane");
-    for (const std::string& remedy : compiler_remedies()) all.push_back(remedy);
-    return all;
-}
-
 // Runs the checks of one device, in as many processes as needed.
 class Supervision {
   public:
@@ -131,30 +115,28 @@ class Supervision {
             else if (sink_.running && running_)
                 sink_.running(running_->layer, running_->name, check_seconds());
             if (running_ && settings_.timeout_s > 0 && check_seconds() > settings_.timeout_s) {
-                finish(timed_out_check());
+                finish(
+                    stopped_check(fmt::format("no result after {:.0f} s, so the process was ended", check_seconds())));
                 return true;  // the destructor kills the process
             }
         }
         const int status = process.wait();
         if (ended_ && status == 0) return false;
-        finish(crashed_check(status));
+        refuse_without_device(status);
+        finish(stopped_check("ended by " + ending_text(status)));
         return !ended_ && settings_.done > done_before;
     }
 
     DeviceChecks take_checks() { return std::move(all_); }
 
   private:
-    struct Running {
-        std::string layer, name;
-    };
-
     double check_seconds() const { return seconds_since(start_); }
 
     void take(const Json& line) {
         if (const Json* error = find_member(line, "error")) refuse(json_text(line.at("kind")), json_text(*error));
         if (find_member(line, "devices")) take_device(line);
         if (const Json* started = find_member(line, "started")) {
-            running_ = Running{json_text(started->at("layer")), json_text(started->at("name"))};
+            running_ = Check{json_text(started->at("layer")), json_text(started->at("name")), 0, {}};
             start_ = Clock::now();
         }
         if (const Json* check = find_member(line, "check")) finish(check_of(*check));
@@ -176,9 +158,7 @@ class Supervision {
     }
 
     void finish(Check check) {
-        if (!settings_.sources.folder.empty())
-            check.verdict.fault.remedies = {
-                "run raya verify without --kernel-dir; if it passes, these kernels are wrong"};
+        if (check.verdict.outcome == Outcome::kFail) check.verdict.fault.remedies = remedies_of(check, settings_);
         settings_.done += running_.has_value();
         running_.reset();
         apply_expectations(check, settings_.expected_failures);
@@ -187,36 +167,28 @@ class Supervision {
         if (sink_.finished) sink_.finished(check);
     }
 
-    Check timed_out_check() const {
-        Check check{running_->layer, running_->name, check_seconds(), {}};
-        check.verdict = failed(fmt::format("no result after {:.0f} s, so the process was ended", check_seconds()),
-                               {.where = "in the driver or its compiler, while this check ran",
-                                .remedies = {"--timeout SECONDS, if the device or its compiler is slow",
-                                             "--lanes 1: compilers take less time for one lane"}});
-        return check;
-    }
-
-    // Returns a failed check for a process that ended too early with exit status `status`. Throws an exception if no
-    // process has found a device.
-    Check crashed_check(int status) const {
-        const std::string result = "ended by " + ending_text(status);
-        if (devices_ == 0 && WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)
+    // Throws an exception if a process has ended with the exit status `status` before it has found a device.
+    void refuse_without_device(int status) const {
+        if (devices_ != 0) return;
+        if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)
             throw std::runtime_error(
                 "cannot start a process for the checks: /proc/self/exe is not available; mount /proc");
-        if (devices_ == 0)
-            throw DeviceError(
-                fmt::format("looking for devices: a driver ended the program by {}; remedy: exclude the driver "
-                            "(OCL_ICD_VENDORS), or "
-                            "install a newer one",
-                            ending_text(status)));
+        throw DeviceError(
+            fmt::format("looking for devices: a driver ended the program by {}; remedy: exclude the driver "
+                        "(OCL_ICD_VENDORS), or install a newer one",
+                        ending_text(status)));
+    }
+
+    // Returns a failure of the check that was running when its process ended, or else of the device.
+    Check stopped_check(const std::string& result) const {
         Check check{"device", ended_ ? "the end of the program" : "between checks", 0, {}};
-        std::string where = "in the driver, with no check running", full_name;
+        std::string where = "in the driver, with no check running";
         if (running_) {
-            check = {running_->layer, running_->name, check_seconds(), {}};
-            full_name = check.layer + " " + check.name;
+            check = *running_;
+            check.seconds = check_seconds();
             where = "in the driver or its compiler, while this check ran";
         }
-        check.verdict = failed(result, {.where = where, .remedies = crash_remedies(full_name, status, settings_)});
+        check.verdict = failed(result, {.where = where});
         return check;
     }
 
@@ -224,7 +196,7 @@ class Supervision {
     const SupervisorSink& sink_;
     DeviceChecks all_;
     std::size_t devices_ = 0;  // number of selected devices
-    std::optional<Running> running_;
+    std::optional<Check> running_;
     Clock::time_point supervision_start_ = Clock::now();
     Clock::time_point start_;  // of the running check
     bool ended_ = false;       // the process has written {"ended": true}
@@ -240,6 +212,8 @@ DeviceChecks supervise(const std::string& selector, std::size_t index, const Ver
 }
 
 void run_checks(int pipe, const Json& request, const std::function<RenderCase(const std::string&)>& render_case) {
+    if (const Json* environment = find_member(request, "environment"))  // before the first use of OpenCL
+        for (const auto& [name, value] : environment->items()) ::setenv(name.c_str(), json_text(value).c_str(), 1);
     VerifySettings settings;
     for_each_setting(settings, [&](const char* name, auto& value) { request.at(name).get_to(value); });
     if (!settings.as.empty()) settings.render = std::make_shared<RenderCase>(render_case(settings.as));

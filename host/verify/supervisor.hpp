@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "host/verify/verify.hpp"
 #include "host/verify/render_case.hpp"
+#include "host/verify/verify.hpp"
 
 namespace raya {
 
@@ -39,7 +39,8 @@ DeviceChecks supervise(const std::string& selector, std::size_t index, const Ver
                        const SupervisorSink& sink);
 
 /// Returns the request of the child process's task: settings and device, see supervise(). With a member "capture",
-/// {"step": N, "folder": TEXT}, the child also captures step N and writes the lines of Capture (host/cl/capture.hpp).
+/// {"step": N, "folder": TEXT}, the child also captures step N and writes the lines of Capture (host/cl/capture.hpp); a
+/// member "environment", {VARIABLE: VALUE}, sets variables of the child.
 Json settings_json(const VerifySettings& settings, const std::string& selector, std::size_t index);
 
 /// Name and function of the child process's task (host/base/child_process.hpp). run_checks() writes the lines to the

@@ -35,7 +35,7 @@ struct Fault {
     std::string where{};                  // first wrong operation, ray, word or pixel
     std::string expected{}, got{};        // bits of the results, and their meaning
     std::string options{};                // build options of the kernel
-    std::vector<std::string> remedies{};  // remedies to try, most promising first
+    std::vector<std::string> remedies{};  // see remedies_of(); set by supervise()
 };
 
 /// Outcome of a check, and the explanation of the outcome.
@@ -49,11 +49,9 @@ inline Verdict passed(std::string result) { return {Outcome::kPass, std::move(re
 inline Verdict skipped(std::string reason) { return {Outcome::kSkip, std::move(reason)}; }
 inline Verdict failed(std::string result, Fault fault) { return {Outcome::kFail, std::move(result), std::move(fault)}; }
 
-/// Adds build options and remedies to a failure; returns any other verdict unchanged.
-inline Verdict with_remedies(Verdict verdict, const std::string& options, const std::vector<std::string>& remedies) {
-    if (verdict.outcome != Outcome::kFail) return verdict;
-    verdict.fault.options = options;
-    verdict.fault.remedies = remedies;
+/// Adds the kernel's build options to a failure; returns any other verdict unchanged.
+inline Verdict with_options(Verdict verdict, const std::string& options) {
+    if (verdict.outcome == Outcome::kFail) verdict.fault.options = options;
     return verdict;
 }
 

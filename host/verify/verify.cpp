@@ -4,7 +4,9 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <array>
 #include <sstream>
+#include <utility>
 
 #include "host/base/encoding.hpp"
 #include "host/base/log.hpp"
@@ -18,55 +20,33 @@
 namespace raya {
 namespace {
 
-constexpr const char* kWithoutIl = "run raya verify without --il; if it passes, the SPIR-V is the cause";
+// Begins the result of a check that an exception other than DeviceError has stopped.
+constexpr const char* kCheckStopped = "the check stopped with an error: ";
 
-bool contains_any(const std::string& message, const std::vector<const char*>& texts) {
-    return std::any_of(texts.begin(), texts.end(),
-                       [&](const char* text) { return message.find(text) != std::string::npos; });
-}
+constexpr const char* kOutcomeNames[] = {"PASS", "FAIL", "SKIP", "XFAIL", "XPASS"};  // by Outcome
 
-// Returns remedies for a check that threw an exception with this message. `is_device_error`: it was a DeviceError.
-std::vector<std::string> remedies_for(const std::string& message, bool is_device_error) {
-    const std::string newer_driver = "a newer driver, or another OpenCL implementation for this device (raya devices)";
-    if (contains_any(message, {"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE",
-                               "CL_OUT_OF_", "bad_alloc"}))
-        return {"out of memory: end other programs that use this device or this machine, and run verify again",
-                newer_driver};
-    if (contains_any(message, {"CL_DEVICE_NOT_AVAILABLE", "CL_CONTEXT_TERMINATED", "CL_COMMAND_TERMINATED",
-                               "CL_EXEC_STATUS_ERROR", "illegal read or write"}))
-        return {
-            "the device was lost: check whether raya devices still lists it, and look for the cause in the "
-            "system's log (dmesg)",
-            "another program, or a limit on the run time of a kernel, may have caused it", newer_driver};
-    if (contains_any(message, {"building program", "CL_INVALID_BUILD_OPTIONS"})) {
-        std::vector<std::string> remedies = {"see the build log above; report the error to the compiler's vendor"};
-        const std::vector<std::string> more = compiler_remedies();
-        remedies.insert(remedies.end(), more.begin(), more.end());
-        return remedies;
-    }
-    if (is_device_error) return {"run raya devices, and check that this is the intended device", newer_driver};
-    return {"if checks of \"number\", \"geometry\" or \"machine\" fail too, start with those",
-            "otherwise this is an internal error of raya: report it"};
-}
+constexpr std::pair<const char*, std::string Fault::*> kFaultTexts[] = {
+    {"where", &Fault::where}, {"expected", &Fault::expected}, {"got", &Fault::got}, {"build_options", &Fault::options}};
 
-Verdict verdict_of(const std::function<Verdict()>& body) {
-    const auto failure = [](const std::string& message, bool is_device_error) {
-        const std::size_t end = message.find('\n');
-        Fault fault;
-        if (end != std::string::npos) fault.where = message.substr(end + 1);
-        fault.remedies = remedies_for(message.substr(0, end), is_device_error);
-        return failed(message.substr(0, end), fault);
-    };
-    try {
-        Verdict verdict = body();
-        if (uses_il()) verdict.fault.remedies.emplace(verdict.fault.remedies.begin(), kWithoutIl);
-        return verdict;
-    } catch (const DeviceError& error) {
-        return failure(error.what(), true);
-    } catch (const std::exception& error) {
-        return failure(std::string("the check stopped with an error: ") + error.what(), false);
-    }
-}
+// A remedy for failures whose result contains one of the texts.
+struct KnownCause {
+    std::vector<const char*> texts;
+    const char* remedy;
+};
+
+const KnownCause kKnownCauses[] = {
+    {{"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE", "CL_OUT_OF_", "bad_alloc"},
+     "out of memory: end other programs that use this device or this machine, and run verify again"},
+    {{"SIGKILL"}, "the system may have run out of memory and ended the process: see dmesg"},
+    {{"CL_DEVICE_NOT_AVAILABLE", "CL_CONTEXT_TERMINATED", "CL_COMMAND_TERMINATED", "CL_EXEC_STATUS_ERROR",
+      "illegal read or write"},
+     "the device was lost: check whether raya devices still lists it, and look for the cause in the system's log "
+     "(dmesg); another program, or a limit on the run time of a kernel, may have caused it"},
+    {{"building program", "CL_INVALID_BUILD_OPTIONS"},
+     "see the build log above; report the error to the compiler's vendor"},
+    {{"no result after"}, "--timeout SECONDS, if the device or its compiler is slow"},
+    {{"SIGILL"}, "the kernels were compiled for another processor: look for an option of the driver"},
+    {{kCheckStopped}, "if no earlier check fails, this is an internal error of raya: report it"}};
 
 // Returns a line "      LABEL         TEXT" for each line of `text`; the label is only in the first line.
 std::string indented(const std::string& label, const std::string& text) {
@@ -88,21 +68,7 @@ void visit_layers(Verification& verification) {
 
 }  // namespace
 
-const char* outcome_name(Outcome outcome) {
-    switch (outcome) {
-        case Outcome::kPass:
-            return "PASS";
-        case Outcome::kFail:
-            return "FAIL";
-        case Outcome::kSkip:
-            return "SKIP";
-        case Outcome::kExpectedFail:
-            return "XFAIL";
-        case Outcome::kUnexpectedPass:
-            return "XPASS";
-    }
-    return "";
-}
+const char* outcome_name(Outcome outcome) { return kOutcomeNames[static_cast<std::size_t>(outcome)]; }
 
 bool name_matches(const std::string& full_name, const std::string& pattern) {
     std::string glob = "*";
@@ -129,9 +95,38 @@ void apply_expectations(Check& check, const std::vector<ExpectedFailure>& expect
 
 Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body) {
     const Clock::time_point start = Clock::now();
-    Check check{layer, name, 0, verdict_of(body)};
+    Check check{layer, name, 0, {}};
+    const auto fail = [&](const std::string& message) {
+        const std::size_t end = message.find('\n');
+        check.verdict = failed(message.substr(0, end), {.where = end == message.npos ? "" : message.substr(end + 1)});
+    };
+    try {
+        check.verdict = body();
+    } catch (const DeviceError& error) {
+        fail(error.what());
+    } catch (const std::exception& error) {
+        fail(std::string(kCheckStopped) + error.what());
+    }
     check.seconds = seconds_since(start);
     return check;
+}
+
+std::vector<std::string> remedies_of(const Check& check, const VerifySettings& settings) {
+    if (!settings.sources.folder.empty())
+        return {"run raya verify without --kernel-dir; if it passes, these kernels are wrong"};
+    std::vector<std::string> all;
+    if (uses_il()) all.emplace_back("run raya verify without --il; if it passes, the SPIR-V is the cause");
+    for (const KnownCause& cause : kKnownCauses)
+        if (std::ranges::any_of(cause.texts,
+                                [&](const char* text) { return check.verdict.result.find(text) != std::string::npos; }))
+            all.emplace_back(cause.remedy);
+    if (check.layer != "number")
+        all.emplace_back("start with the first check that fails: the others rely on what it checks");
+    if (settings.lanes != 1) all.emplace_back("run raya verify --lanes 1; if it passes, render with --lanes 1");
+    if (user_build_options().find("-cl-opt-disable") == std::string::npos)
+        all.emplace_back("RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify: compiles without optimisation");
+    all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
+    return all;
 }
 
 std::size_t count_of(const std::vector<Check>& checks, Outcome outcome) {
@@ -144,8 +139,7 @@ std::string check_lines(const Check& c) {
                                     c.name, c.seconds, c.verdict.result);
     if (c.verdict.outcome != Outcome::kFail) return lines;
     const Fault& f = c.verdict.fault;
-    lines += indented("where", f.where) + indented("expected", f.expected) + indented("got", f.got) +
-             indented("build options", f.options);
+    for (const auto& [name, text] : kFaultTexts) lines += indented(replaced(name, "_", " "), f.*text);
     for (const std::string& remedy : f.remedies) lines += indented(&remedy == &f.remedies.front() ? "try" : "", remedy);
     return lines;
 }
@@ -158,48 +152,24 @@ Json to_json(const Check& c) {
                  {"result", c.verdict.result}};
     if (!has_failed(c.verdict.outcome)) return json;
     const Fault& f = c.verdict.fault;
-    json["where"] = f.where;
-    json["expected"] = f.expected;
-    json["got"] = f.got;
-    json["build_options"] = f.options;
+    for (const auto& [name, text] : kFaultTexts) json[name] = f.*text;
     json["remedies"] = f.remedies;
     return json;
-}
-
-std::vector<std::string> compiler_remedies() {
-    std::vector<std::string> all;
-    if (uses_il()) all.emplace_back(kWithoutIl);
-    if (user_build_options().find("-cl-opt-disable") == std::string::npos)
-        all.emplace_back("RAYA_BUILD_OPTIONS=-cl-opt-disable raya verify: compiles without optimisation");
-    all.emplace_back("a newer driver, or another OpenCL implementation for this device (raya devices)");
-    return all;
 }
 
 Check check_of(const Json& json) {
     const auto text = [&](const char* key) { return json_text(json.at(key)); };
     Check check{text("layer"), text("name"), json_number(json.at("seconds")), {Outcome::kPass, text("result"), {}}};
-    for (const Outcome outcome : {Outcome::kFail, Outcome::kSkip, Outcome::kExpectedFail, Outcome::kUnexpectedPass})
-        if (text("status") == outcome_name(outcome)) check.verdict.outcome = outcome;
+    const auto outcome = std::ranges::find(kOutcomeNames, text("status"));
+    if (outcome == std::end(kOutcomeNames)) throw UserError("no status of a check: " + text("status"));
+    check.verdict.outcome = static_cast<Outcome>(outcome - kOutcomeNames);
     if (!has_failed(check.verdict.outcome)) return check;
-    check.verdict.fault = {.where = text("where"),
-                           .expected = text("expected"),
-                           .got = text("got"),
-                           .options = text("build_options"),
-                           .remedies = json_strings(json.at("remedies"))};
+    for (const auto& [name, member] : kFaultTexts) check.verdict.fault.*member = text(name);
+    check.verdict.fault.remedies = json_strings(json.at("remedies"));
     return check;
 }
 
-const char* depth_name(Depth depth) {
-    switch (depth) {
-        case Depth::kBrief:
-            return "brief";
-        case Depth::kQuick:
-            return "quick";
-        case Depth::kFull:
-            return "full";
-    }
-    return "";
-}
+const char* depth_name(Depth depth) { return std::array{"brief", "quick", "full"}[static_cast<std::size_t>(depth)]; }
 
 Verification::Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs)
     : device_(device), info_(device_info(device)), settings_(settings), sink_(sink), runs_(runs) {
@@ -228,21 +198,9 @@ void Verification::check(const std::string& layer, const std::string& name,
     if (sink_.finished) sink_.finished(checks_.back());
 }
 
-KernelChoice Verification::kernels(std::uint32_t lanes, std::uint32_t group_size) const {
-    return {.lanes = lanes ? lanes : settings_.lanes,
-            .group_size = settings_.group_size ? settings_.group_size : group_size,
-            .sources = settings_.sources};
-}
-
 std::vector<std::uint32_t> Verification::lanes() const {
     if (full() && settings_.lanes == 0) return {1, 4, 8, 16};
     return {lanes_or_default()};
-}
-
-std::vector<std::string> Verification::lanes_remedies(std::uint32_t lanes) const {
-    if (lanes <= 1) return {};
-    if (full() && settings_.lanes == 0) return {"if checks with fewer lanes pass, use --lanes with that number"};
-    return {"run raya verify --lanes 1; if it passes, render with --lanes 1"};
 }
 
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {

@@ -30,9 +30,6 @@ struct Check {
 /// and reports an internal error.
 Check run_check(const std::string& layer, const std::string& name, const std::function<Verdict()>& body);
 
-/// Returns remedies for errors of the compiler or driver, except those that are already in effect.
-std::vector<std::string> compiler_remedies();
-
 std::size_t count_of(const std::vector<Check>& checks, Outcome outcome);
 
 /// Returns a line such as "PASS  number    e6m15, 16 lanes  0.41 s  310 answers"; for a failure, indented lines with
@@ -84,13 +81,15 @@ struct VerifySettings {
     std::uint64_t seed = 1;  // of verify_at_random()
     bool is_whole_name = false;                        // `only` is a whole "LAYER NAME"
     std::vector<ExpectedFailure> expected_failures{};  // supervise() changes the outcome of checks that match
-    std::uint32_t lanes = 0;       // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
-                                   // Depth::kFull, all four numbers
-    std::uint32_t group_size = 0;  // of the kernels of images, in work-items; 0: as each check defines
-    std::string as{};              // if not empty: check only this render (docs/verify.md)
+    std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
+                              // Depth::kFull, all four numbers
+    std::string as{};         // if not empty: check only this render (docs/verify.md)
     std::shared_ptr<const RenderCase> render{};  // `as`, parsed
     std::size_t done = 0;  // number of checks, from the first on, that are already done; verify() skips them
 };
+
+/// Returns remedies for a failed check, the most promising first.
+std::vector<std::string> remedies_of(const Check& check, const VerifySettings& settings);
 
 /// Callbacks: `started` is called with the layer and name of every check before it runs, `finished` after it has run.
 struct CheckSink {
@@ -130,7 +129,9 @@ class Verification {
     /// Returns the only render to check; null: all layers are checked.
     const RenderCase* render() const { return settings_.render.get(); }
     /// Returns the sources and options of a renderer's kernels. If `lanes` is 0, the options have given_lanes() lanes.
-    KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const;
+    KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const {
+        return {.lanes = lanes ? lanes : settings_.lanes, .group_size = group_size, .sources = settings_.sources};
+    }
 
     /// Returns VerifySettings::lanes: the only number of lanes to check, or 0.
     std::uint32_t given_lanes() const { return settings_.lanes; }
@@ -138,9 +139,6 @@ class Verification {
     std::uint32_t lanes_or_default() const { return settings_.lanes ? settings_.lanes : default_lanes(info_); }
     /// Returns every number of lanes to check.
     std::vector<std::uint32_t> lanes() const;
-
-    /// Returns remedies for failures that may depend on the number of lanes; empty for one lane.
-    std::vector<std::string> lanes_remedies(std::uint32_t lanes) const;
 
     std::vector<Check> take_checks() { return std::move(checks_); }
     std::vector<std::string> take_names() { return std::move(names_); }
