@@ -1,4 +1,4 @@
-"""Files for continuous integration (CI) in the forms of `raya verify`: results as JUnit XML and TAP, and lists of expected failures."""
+"""Files for continuous integration (CI) results as JUnit XML, and lists of expected failures."""
 import dataclasses, re
 import xml.etree.ElementTree as xml
 
@@ -78,16 +78,3 @@ def junit_report(name, cases):
     xml.indent(root)
     return xml.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
-
-def tap_report(cases):
-    """Returns the results in the Test Anything Protocol, version 14. Expected failures are TODO tests."""
-    def escaped(text):
-        return re.sub(r"([#\\])", r"\\\1", text.replace("\n", " "))
-    lines = ["TAP version 14", f"1..{len(cases)}"]
-    for number, case in enumerate(cases, 1):
-        directive = {"SKIP": " # SKIP ", "XFAIL": " # TODO ", "XPASS": " # TODO "}.get(case.outcome)
-        lines.append(f"{'not ok' if case.outcome in ('FAIL', 'XFAIL') else 'ok'} {number} - {escaped(case.name)}"
-                     + (directive + escaped(case.result) if directive else ""))
-        if case.outcome == "FAIL":
-            lines += ["# " + line for line in [case.result, *case.details.splitlines()]]
-    return "\n".join(lines) + "\n"

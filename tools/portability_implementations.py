@@ -1,7 +1,8 @@
 """The OpenCL implementations of tools/portability: starts programs on an implementation, and explains why an implementation cannot run."""
-import copy, os, re, resource, shutil, subprocess, tempfile
+import copy, os, re, resource, shutil, tempfile
 from pathlib import Path
 
+import programs
 from gpu.clang import LLVM
 
 VENDORS = Path("/etc/OpenCL/vendors")
@@ -38,12 +39,8 @@ class Implementation:
         inherited = {k: v for k, v in os.environ.items() if not k.startswith(prefixes)}
         caches = {"POCL_CACHE_DIR": str(scratch), "MESA_SHADER_CACHE_DIR": str(scratch)}
         environment = {**inherited, **caches, **self.variables, **(variables or {})}
-        try:
-            done = subprocess.run(self.prefix + command, env=environment, capture_output=True, text=True, timeout=limit,
-                                  errors="replace", stdin=subprocess.DEVNULL)
-        except subprocess.TimeoutExpired as timeout_error:
-            return None, f"not done after {limit} s", "", self.reported_faults((timeout_error.stderr or b"").decode(errors="replace"))
-        return done.returncode, done.stdout + done.stderr, done.stdout, self.reported_faults(done.stderr)
+        done = programs.run(self.prefix + command, limit, env=environment)
+        return done.code, f"not done after {limit} s" if done.code is None else done.text, done.out, self.reported_faults(done.err)
 
     def reported_faults(self, stderr):
         """Returns the first line of stderr and the number of further lines; empty if the implementation does not report faults."""

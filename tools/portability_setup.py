@@ -4,9 +4,10 @@ Each implementation has a file in tests/portability/packages/ with packages, ver
 build/implementations/NAME; build/implementations/NAME.icd, which OpenCL loaders read, names the driver. Other folders are unchanged:
 to uninstall everything, remove build/implementations.
 """
-import os, re, shutil, subprocess, sys, tempfile, zipfile
+import os, re, shutil, sys, tempfile, zipfile
 from pathlib import Path
 
+import programs
 from portability_implementations import FETCHED
 
 DRIVERS = {"intel-cpu": "lib/libintelocl.so", "pocl-3.0": "pyopencl/.libs/libpocl-*.so"}  # path in the unpacked wheels
@@ -20,11 +21,11 @@ def fetch(packages, folder):
     """Downloads the wheels that the file `packages` lists to the folder; pip verifies versions and hashes. Returns the wheels' paths."""
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--no-cache-dir", "--only-binary", ":all:", "--require-hashes",
                "--disable-pip-version-check", "-r", str(packages), "-d", str(folder)]
-    done = subprocess.run(command, capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL)
-    if "No module named pip" in done.stderr:
+    done = programs.run(command)
+    if "No module named pip" in done.err:
         raise SetupError(f"{sys.executable} has no pip; remedy: apt-get install python3-pip")
-    if done.returncode != 0:
-        lines = [line for line in done.stderr.splitlines() if "WARNING" not in line and line.strip()]
+    if done.code != 0:
+        lines = [line for line in done.err.splitlines() if "WARNING" not in line and line.strip()]
         raise SetupError(f"{packages.name}: pip got no packages: {' / '.join(lines[-6:])}; remedy: a network, or a folder with the wheels of that "
                          "file and PIP_NO_INDEX=1 PIP_FIND_LINKS=FOLDER; Linux on x86-64")
     return sorted(folder.glob("*.whl"))

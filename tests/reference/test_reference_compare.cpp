@@ -1,14 +1,9 @@
 // Tests that compare() detects wrong pixels and excuses only edges, and that render() agrees with trace_pixel().
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 
-#include "host/scene/nff.hpp"
-#include "tests/paths.h"
 #include "tests/reference/reference.hpp"
 
 namespace raya::reference {
@@ -102,25 +97,6 @@ TEST_CASE("values are clamped to 0..1 before they are compared; wrong sizes thro
     CHECK(compare(image, rgb, scene, kOptions).above_limit == 0);
     rgb.pop_back();
     CHECK_THROWS_AS(compare(image, rgb, scene, kOptions), std::invalid_argument);
-}
-
-TEST_CASE("counts on SPD's balls are consistent") {
-    const char* folder = std::getenv("RAYA_SPD_DIR");
-    const auto file =
-        std::filesystem::path(folder ? folder : std::string(RAYA_SOURCE_DIR) + "/../shared/spd") / "balls2.nff";
-    if (!std::filesystem::exists(file)) {
-        WARN("skipped: no SPD scenes; set RAYA_SPD_DIR to the folder of balls2.nff");
-        return;
-    }
-    const Scene scene = read_nff(file);
-    const Counts counts = render(scene, {.width = 65, .height = 65, .bounces = 4, .corners = true}).counts;
-    CHECK(counts.primary == 65 * 65);
-    CHECK(counts.primary_hits == counts.primary);   // the floor fills the image
-    CHECK(counts.reflected > counts.primary / 10);  // from the spheres, whose Ks is 0.5
-    CHECK(counts.reflected < counts.primary * 4);
-    CHECK(counts.refracted == 0);
-    CHECK(counts.shadow <= 3 * (counts.primary + counts.reflected));
-    CHECK((counts.shadow_hits > 0 && counts.shadow_hits < counts.shadow));
 }
 
 }  // namespace

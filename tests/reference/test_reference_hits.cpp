@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <random>
 
 #include "host/scene/polygon.hpp"
@@ -35,72 +36,70 @@ class Random {
 
 Vec3 at(const Ray& ray, double t) { return ray.origin + t * ray.direction; }
 
-/// Returns the smallest sampled t <= end at which signed_distance(t) changes its sign; empty if there is none.
-/// signed_distance(t) is the distance of the ray's point from a surface: positive outside, NaN beyond the surface's
-/// ends. If `outward_only` is true, only changes from negative to positive count.
-template <class SignedDistance>
-std::optional<double> first_crossing(const SignedDistance& signed_distance, double end, bool outward_only) {
+/// A random ray and object, and the hit that the reference finds.
+struct SampledRay {
+    std::optional<double> t;
+    /// Returns the distance of the ray's point at t from the object's surface: positive outside, NaN beyond its ends.
+    std::function<double(double)> signed_distance;
+    bool inside_only = false;  // the object is visible only from inside
+    double tolerance = 1e-12;  // of signed_distance(hit)
+};
+
+/// Returns the smallest sampled t at which the signed distance changes its sign, to positive if the object is visible
+/// only from inside; empty if there is none.
+std::optional<double> first_crossing(const SampledRay& ray) {
     constexpr int kSteps = 500;
-    double before = signed_distance(0.0);
+    constexpr double kEnd = 12;
+    double before = ray.signed_distance(0);
     for (int i = 1; i <= kSteps; ++i) {
-        const double t = end * i / kSteps;
-        const double now = signed_distance(t);
-        if ((before < 0 && now > 0) || (!outward_only && before > 0 && now < 0)) return t;
+        const double t = kEnd * i / kSteps, now = ray.signed_distance(t);
+        if ((before < 0 && now > 0) || (!ray.inside_only && before > 0 && now < 0)) return t;
         before = now;
     }
     return {};
 }
 
-TEST_CASE("spheres: the hit is the first zero of the implicit equation") {
-    constexpr std::uint64_t kSeed = 1;
-    Random random(kSeed);
+/// Checks, for kRays rays and objects that `make(random, i)` returns, that the hit is the first zero of the signed
+/// distance.
+template <class Make>
+void check_first_zeros(std::uint64_t seed, const Make& make) {
+    Random random(seed);
     int hits = 0;
     for (int i = 0; i < kRays; ++i) {
-        CAPTURE(kSeed, i);
-        const double sign = i % 3 == 0 ? -1 : 1;
-        const Sphere sphere{random.point(1), sign * random.uniform(0.1, 1), 0};
-        const Ray ray = random.ray(3);
-        const auto signed_distance = [&](double t) {
-            return (at(ray, t) - sphere.centre).length() - std::abs(sphere.radius);
-        };
-        const std::optional<double> t = hit_sphere(sphere, ray);
-        const std::optional<double> sampled = first_crossing(signed_distance, 12, sign < 0);
-        if (sampled) REQUIRE(t);
-        if (!t) continue;
+        CAPTURE(seed, i);
+        const SampledRay ray = make(random, i);
+        const std::optional<double> sampled = first_crossing(ray);
+        if (sampled) REQUIRE(ray.t);
+        if (!ray.t) continue;
         ++hits;
-        REQUIRE(*t > 0);
-        REQUIRE(std::abs(signed_distance(*t)) < 1e-12);
-        if (sign < 0) REQUIRE((at(ray, *t) - sphere.centre).dot(ray.direction) > 0);
-        if (sampled) REQUIRE(*t <= *sampled);
+        const double t = *ray.t;
+        REQUIRE(t > 0);
+        REQUIRE(std::abs(ray.signed_distance(t)) < ray.tolerance);
+        constexpr double kBeside = 1e-7;
+        if (ray.inside_only)
+            REQUIRE_FALSE(ray.signed_distance(t + kBeside) < ray.signed_distance(t - kBeside));  // it leaves the object
+        if (sampled) REQUIRE(t <= *sampled);
     }
     CHECK(hits > kRays / 5);
 }
 
-TEST_CASE("planes: the hit is where n.x = d") {
-    constexpr std::uint64_t kSeed = 2;
-    Random random(kSeed);
-    int hits = 0;
-    for (int i = 0; i < kRays; ++i) {
-        CAPTURE(kSeed, i);
+TEST_CASE("the hit is the first zero of the implicit equation of the sphere, plane or cone") {
+    check_first_zeros(1, [](Random& random, int i) {
+        const double sign = i % 3 == 0 ? -1 : 1;
+        const Sphere sphere{random.point(1), sign * random.uniform(0.1, 1), 0};
+        const Ray ray = random.ray(3);
+        return SampledRay{hit_sphere(sphere, ray),
+                          [=](double t) { return (at(ray, t) - sphere.centre).length() - std::abs(sphere.radius); },
+                          sign < 0};
+    });
+    check_first_zeros(2, [](Random& random, int) {
         const Plane plane{random.point(1).normalized(), random.uniform(-2, 2), 0};
         const Ray ray = random.ray(3);
-        const double plane_offset = plane.distance - plane.normal.dot(ray.origin);
         const std::optional<double> t = hit_plane(plane, ray);
-        REQUIRE(t.has_value() == (plane_offset * plane.normal.dot(ray.direction) > 0));
-        if (!t) continue;
-        ++hits;
-        REQUIRE(std::abs(plane.normal.dot(at(ray, *t)) - plane.distance) < 1e-13 * (1 + *t));
-    }
-    CHECK(hits > kRays / 3);
-    CHECK_FALSE(hit_plane({{0, 0, 1}, 1, 0}, {{0, 0, 0}, {1, 0, 0}}));
-}
-
-TEST_CASE("cones: the hit is the first zero of the implicit equation") {
-    constexpr std::uint64_t kSeed = 3;
-    Random random(kSeed);
-    int hits = 0;
-    for (int i = 0; i < kRays; ++i) {
-        CAPTURE(kSeed, i);
+        return SampledRay{t, [=](double at_t) { return plane.normal.dot(at(ray, at_t)) - plane.distance; }, false,
+                          1e-13 * (1 + t.value_or(0))};
+    });
+    check_first_zeros(3, [](Random& random, int i) {
         const bool inside_only = i % 3 == 0;
         const double sign = inside_only ? -1 : 1;
         const double top = i % 4 == 0 ? 0 : random.uniform(0.1, 1);
@@ -109,24 +108,17 @@ TEST_CASE("cones: the hit is the first zero of the implicit equation") {
         const Ray ray = random.ray(3);
         const double height = (cone.apex - cone.base).length();
         const Vec3 axis = (cone.apex - cone.base) / height;
-        const auto signed_distance = [&](double t) {
+        const auto signed_distance = [=](double t) {
             const Vec3 x = at(ray, t) - cone.base;
             const double z = x.dot(axis);
             if (z < 0 || z > height) return std::nan("");
             return (x - z * axis).length() - (bottom + (top - bottom) * z / height);
         };
-        const std::optional<double> t = hit_cone(cone, ray);
-        const std::optional<double> sampled = first_crossing(signed_distance, 12, inside_only);
-        if (sampled) REQUIRE(t);
-        if (!t) continue;
-        ++hits;
-        REQUIRE(*t > 0);
         // Rounding moves the hit point off the surface. On flat cones the slope magnifies this error.
-        const double slope = std::abs(top - bottom) / height;
-        REQUIRE(std::abs(signed_distance(*t)) < 1e-11 * (1 + slope));
-        if (sampled) REQUIRE(*t <= *sampled);
-    }
-    CHECK(hits > kRays / 5);
+        return SampledRay{hit_cone(cone, ray), signed_distance, inside_only,
+                          1e-11 * (1 + std::abs(top - bottom) / height)};
+    });
+    CHECK_FALSE(hit_plane({{0, 0, 1}, 1, 0}, {{0, 0, 0}, {1, 0, 0}}));
 }
 
 TEST_CASE("a cylinder has no caps, and its normal is radial") {
