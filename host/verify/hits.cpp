@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <sstream>
+#include <utility>
 
 #include "host/accel/partition.hpp"
 #include "host/cl/kernel_options.hpp"
@@ -18,14 +19,14 @@
 namespace raya {
 namespace {
 
-Program build_hit_program(Session& session, const HitBuild& build) {
+CheckRunner hit_runner(Session& session, const HitBuild& build) {
     KernelOptions options;
     options.lanes = build.lanes;
     options.format = build.format;
     options.words_local = false;
     options.accel = build.grid ? RAYA_ACCEL_GRID : RAYA_ACCEL_NONE;
     options.filter = build.filter;
-    return Kernels(session, options, build.sources).program("checks/hits.cl");
+    return {session, Kernels(session, options, build.sources).program("checks/hits.cl"), build.lanes};
 }
 
 PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
@@ -102,48 +103,60 @@ Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, st
                    .got = got.text(first_wrong)});
 }
 
-// Checks that each kernel in the build finds the known hits.
-Verdict check_known_hits(HitRunner& runner, const KnownScene& known) {
-    const PackedJob job = job_with_grid(known.scene, runner.format());
+// Checks that each kernel in the build finds the hits of host/verify/known_NAME.nff, which are calculated by hand: from
+// outside and inside, tangents, misses and equal distances. A line "#hit ORIGIN DIRECTION OBJECT T LIMIT DESCRIPTION"
+// has a ray and its hit; OBJECT is - for a miss.
+Verdict check_known_hits(CheckRunner& runner, const HitBuild& build, const std::string& name) {
+    const std::string file = fmt::format("host/verify/known_{}.nff", name);
+    Scene scene = parse_nff(embedded_files().at(file), file);
+    // A quadrilateral that is not planar, which the reader would cut into triangles.
+    if (name == "polygons") scene.polygons.push_back({{{200, 0, 12}, {200, 8, 20}, {192, 8, 12}, {192, 0, 20}}, {}, 0});
     Rays rays;
     Hits expected;
-    for (const KnownHit& hit : known.hits) {
-        rays.add(hit.origin, hit.direction, hit.limit);
-        expected.objects.push_back(hit.object);
-        expected.distances.push_back(std::bit_cast<std::uint32_t>(hit.object == kNoObject ? hit.limit : hit.t));
+    std::vector<std::string> descriptions;
+    std::istringstream lines(embedded_files().at(file));
+    for (std::string line, object; std::getline(lines, line);) {
+        if (!line.starts_with("#hit ")) continue;
+        std::istringstream in(line.substr(5));
+        std::array<float, 3> origin{}, direction{};
+        for (auto* vector : {&origin, &direction})
+            for (float& number : *vector) in >> number;
+        float t = 0, limit = 0;
+        in >> object >> t >> limit >> std::ws;
+        rays.add(origin, direction, limit);
+        expected.objects.push_back(object == "-" ? kNoObject : static_cast<std::uint32_t>(std::stoul(object)));
+        expected.distances.push_back(std::bit_cast<std::uint32_t>(object == "-" ? limit : t));
+        std::getline(in, descriptions.emplace_back());
     }
     rays.pad();
+    const PackedJob job = job_with_grid(scene, build.format);
+    const std::size_t count = descriptions.size();
     Verdict verdict;
-    std::vector<const char*> kernels = {"hits_without_accel"};
-    if (runner.grid()) kernels.push_back("hits_with_accel");
-    for (const char* kernel : kernels) {
-        const Hits got = find_hits(runner, kernel, job.words(), rays);
-        const auto describe = [&](std::size_t i) {
-            return fmt::format("{}: {} ({})", known.name, known.hits[i].description, kernel);
-        };
-        verdict =
-            compare_hits(expected, got, rays, known.hits.size(), describe,
-                         fmt::format("{} rays, {}without grid", known.hits.size(), runner.grid() ? "with and " : ""));
-        if (verdict.outcome != Outcome::kPass) break;
+    for (const char* const kernel : {"hits_without_accel", "hits_with_accel"}) {
+        if (verdict.outcome != Outcome::kPass || (kernel == std::string("hits_with_accel") && !build.grid)) continue;
+        const auto describe = [&](std::size_t i) { return fmt::format("{}: {} ({})", name, descriptions[i], kernel); };
+        verdict = compare_hits(expected, find_hits(runner, kernel, job.words(), rays), rays, count, describe,
+                               fmt::format("{} rays, {}without grid", count, build.grid ? "with and " : ""));
     }
     return verdict;
 }
 
 // A kernel that finds hits.
 struct HitFinder {
-    HitRunner& runner;
+    CheckRunner& runner;
     std::string kernel;
 };
 
 // Checks that `tested` finds the same hits as `reference` for `rays_per_scene` random rays in each scene.
-Verdict compare_finders(const HitFinder& reference, const HitFinder& tested, const std::string& difference,
-                        const std::vector<std::string>& scenes, std::size_t rays_per_scene, bool to_outlines) {
+Verdict compare_finders(const NumberFormat& format, const HitFinder& reference, const HitFinder& tested,
+                        const std::string& difference, const std::vector<std::string>& scenes,
+                        std::size_t rays_per_scene, bool to_outlines) {
     std::size_t hits = 0;
     for (const std::string& name : scenes) {
         const std::string file = fmt::format("scenes/{}.nff", name);
         const Scene scene = parse_nff(embedded_files().at(file), file);
-        const PackedJob job = job_with_grid(scene, tested.runner.format());
-        const Rays rays = random_rays(tested.runner.format(), scene, rays_per_scene, to_outlines);
+        const PackedJob job = job_with_grid(scene, format);
+        const Rays rays = random_rays(format, scene, rays_per_scene, to_outlines);
         const Hits expected = find_hits(reference.runner, reference.kernel, job.words(), rays);
         const Hits got = find_hits(tested.runner, tested.kernel, job.words(), rays);
         const auto describe = [&](std::size_t i) {
@@ -159,8 +172,7 @@ Verdict compare_finders(const HitFinder& reference, const HitFinder& tested, con
 }
 
 // Checks the error bounds of the filters. Aimed rays rarely show that a bound is too small.
-Verdict check_filter_bounds(HitRunner& runner) {
-    const NumberFormat& format = runner.format();
+Verdict check_filter_bounds(CheckRunner& runner, const NumberFormat& format) {
     const double unit = std::ldexp(format.truncates ? 1 : 0.5, -format.fraction_bits) + 0x1p-24;
     const double room = std::ldexp(1, (1 << (format.exponent_bits - 2)) - 2);
     std::vector<std::uint32_t> expected;
@@ -214,43 +226,40 @@ std::string HitBuild::name() const {
     return fmt::format("{}{}, {}", format_name(format), filter ? " filtered" : "", counted(lanes, "lane"));
 }
 
-HitRunner::HitRunner(Session& session, const HitBuild& build)
-    : CheckRunner(session, build_hit_program(session, build), build.lanes), format_(build.format), grid_(build.grid) {}
-
 void verify_hits(Verification& v, const HitBuild& build) {
-    const auto check = [&](const std::string& subject, const std::function<Verdict(HitRunner&)>& body) {
+    const auto check = [&](const std::string& subject, const std::function<Verdict(CheckRunner&, Session&)>& body) {
         v.check("geometry", fmt::format("{}, {}", subject, build.name()), [&](Session& session) {
-            HitRunner runner(session, build);
-            return with_options(body(runner), runner.options());
+            CheckRunner runner = hit_runner(session, build);
+            return with_options(body(runner, session), runner.options());
         });
     };
-    for (const KnownScene& known : known_scenes())
-        check("known hits of " + known.name, [&](HitRunner& runner) { return check_known_hits(runner, known); });
-    const std::size_t rays_per_scene = v.depth() == Depth::kBrief ? 128 : 4096;
+    for (const char* const name : {"spheres", "planes", "polygons", "cones"})
+        check(std::string("known hits of ") + name,
+              [&](CheckRunner& runner, Session&) { return check_known_hits(runner, build, name); });
+    const std::size_t rays_per_scene = v.settings().depth == Depth::kBrief ? 128 : 4096;
     if (build.grid)
-        check("grid", [&](HitRunner& runner) {
-            return compare_finders({runner, "hits_without_accel"}, {runner, "hits_with_accel"}, "grid",
+        check("grid", [&](CheckRunner& runner, Session&) {
+            return compare_finders(build.format, {runner, "hits_without_accel"}, {runner, "hits_with_accel"}, "grid",
                                    {"polygons", "cones", "spheres"}, rays_per_scene, false);
         });
     if (build.filter)
-        v.check("geometry", "filters, " + build.name(), [&](Session& session) {
+        check("filters", [&](CheckRunner& filtered, Session& session) {
+            const Verdict bounds = check_filter_bounds(filtered, build.format);
+            if (bounds.outcome != Outcome::kPass) return bounds;
             HitBuild without = build;
             without.filter = false;
-            HitRunner reference(session, without), filtered(session, build);
-            Verdict verdict = check_filter_bounds(filtered);
-            if (verdict.outcome == Outcome::kPass)
-                verdict = compare_finders({reference, "hits_without_accel"}, {filtered, "hits_without_accel"},
-                                          "filters", {"polygons", "spheres"}, rays_per_scene, true);
-            return with_options(verdict, filtered.options());
+            CheckRunner reference = hit_runner(session, without);
+            return compare_finders(build.format, {reference, "hits_without_accel"}, {filtered, "hits_without_accel"},
+                                   "filters", {"polygons", "spheres"}, rays_per_scene, true);
         });
 }
 
 void verify_geometry(Verification& v) {
     for (const std::uint32_t lanes : v.lanes())
         for (const char* format : {"fp32", "spa22"}) {
-            HitBuild build{.format = parse_format(format), .lanes = lanes, .sources = v.sources()};
+            HitBuild build{.format = parse_format(format), .lanes = lanes, .sources = v.settings().sources};
             // The grid traversal computes in fp32 in every format, so a brief verification checks it only in fp32.
-            build.grid = v.depth() != Depth::kBrief || build.format.is_fp32();
+            build.grid = v.settings().depth != Depth::kBrief || build.format.is_fp32();
             verify_hits(v, build);
             if (!v.full() || build.format.is_fp32()) continue;
             HitBuild filtered = build;
@@ -262,33 +271,7 @@ void verify_geometry(Verification& v) {
                         .lanes = v.lanes_or_default(),
                         .filter = true,
                         .grid = false,
-                        .sources = v.sources()});
-}
-
-std::vector<KnownScene> known_scenes() {
-    std::vector<KnownScene> all;
-    for (const char* name : {"spheres", "planes", "polygons", "cones"}) {
-        const std::string file = fmt::format("host/verify/known_{}.nff", name);
-        const std::string& text = embedded_files().at(file);
-        KnownScene known{name, parse_nff(text, file), {}};
-        // A quadrilateral that is not planar, which the reader would cut into triangles.
-        if (file.ends_with("polygons.nff"))
-            known.scene.polygons.push_back({{{200, 0, 12}, {200, 8, 20}, {192, 8, 12}, {192, 0, 20}}, {}, 0});
-        std::istringstream lines(text);
-        for (std::string line, object; std::getline(lines, line);) {
-            if (!line.starts_with("#hit ")) continue;
-            std::istringstream in(line.substr(5));
-            KnownHit hit;
-            for (auto* vector : {&hit.origin, &hit.direction})
-                for (float& number : *vector) in >> number;
-            in >> object >> hit.t >> hit.limit >> std::ws;
-            if (object != "-") hit.object = static_cast<std::uint32_t>(std::stoul(object));
-            std::getline(in, hit.description);
-            known.hits.push_back(hit);
-        }
-        all.push_back(std::move(known));
-    }
-    return all;
+                        .sources = v.settings().sources});
 }
 
 }  // namespace raya

@@ -9,32 +9,12 @@
 
 #include "host/cl/kernel_source.hpp"
 #include "host/model/number_format.hpp"
-#include "host/scene/scene.hpp"
 #include "host/verify/verdict.hpp"
 
 namespace raya {
 
 inline constexpr std::uint32_t kNoObject = 0xffffffffu;  // equals RAYA_NO_OBJECT of the kernels
 inline constexpr float kDefaultRayLimit = 4096;          // maximum t of a ray, beyond all objects of the scenes
-
-/// A ray, and its hit in a KnownScene.
-struct KnownHit {
-    std::string description{};
-    std::array<float, 3> origin{}, direction{};
-    std::uint32_t object = kNoObject;  // object number in the job
-    float t = 0;                       // distance of the hit; unused for a miss
-    float limit = 0;                   // maximum distance
-};
-
-/// A scene, and rays whose hits are calculated by hand.
-struct KnownScene {
-    std::string name;
-    Scene scene;
-    std::vector<KnownHit> hits;
-};
-
-/// Returns the scenes host/verify/known_*.nff, with hits from outside and inside, tangents, misses and equal distances.
-std::vector<KnownScene> known_scenes();
 
 /// Rays in the memory layout of the kernels.
 struct Rays {
@@ -70,18 +50,6 @@ struct HitBuild {
 
     /// Returns text such as "e6m15 filtered, 16 lanes".
     std::string name() const;
-};
-
-/// Runs the kernels that one build of kernels/checks/hits.cl contains.
-class HitRunner : public CheckRunner {
-  public:
-    HitRunner(Session& session, const HitBuild& build);
-    const NumberFormat& format() const { return format_; }
-    bool grid() const { return grid_; }
-
-  private:
-    NumberFormat format_;
-    bool grid_;
 };
 
 class Verification;

@@ -259,7 +259,7 @@ void verify_transfers(Verification& v) {
             v.check("machine", name, [&](Session& s) {
                 // A mailbox takes 4 to 12 units of 8 words. So some of the 8 work-items copy two units, some one unit,
                 // and some none.
-                Kernels kernels(s, {.group_size = std::min(8u, max_group_size_of(v.device()))}, v.sources());
+                Kernels kernels(s, {.group_size = std::min(8u, max_group_size_of(v.device()))}, v.settings().sources);
                 return check_links(s, make_torus({3, 2, 4}, links), stride, kernels);
             });
         }
@@ -300,36 +300,6 @@ raya_mapping random_mapping_of_kind(SplitMix& random, std::uint32_t kind) {
     return m;
 }
 
-// Returns `count` random mappings of `kind`, and one pixel of the image of each mapping.
-std::pair<std::vector<raya_mapping>, std::vector<raya_pixel>> mapping_cases(std::uint32_t kind, std::size_t count) {
-    constexpr std::uint64_t kSeed = 1993;
-    SplitMix random(kSeed + kind);
-    std::vector<raya_mapping> mappings;
-    std::vector<raya_pixel> pixels;
-    for (std::size_t i = 0; i < count; ++i) {
-        const raya_mapping m = random_mapping_of_kind(random, kind);
-        mappings.push_back(m);
-        pixels.push_back({i % 8 ? random_below(random, m.height) : m.height - 1,
-                          i % 4 ? random_below(random, m.width) : m.width - 1});
-    }
-    return {mappings, pixels};
-}
-
-// Returns `count` random toruses, alternately 3-D and 2-D, and two nodes of each: [torus][2].
-std::pair<std::vector<raya_torus>, std::vector<std::uint32_t>> torus_cases(std::size_t count) {
-    constexpr std::uint64_t kSeed = 805;
-    SplitMix random(kSeed);
-    std::vector<raya_torus> toruses;
-    std::vector<std::uint32_t> nodes;
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto side = [&] { return 1 + random_below(random, i % 5 ? 7 : 40); };
-        const raya_torus torus = make_torus({side(), side(), side()}, i % 2 ? Links::kTorus2d : Links::kTorus3d);
-        toruses.push_back(torus);
-        for (int k = 0; k < 2; ++k) nodes.push_back(random_below(random, raya_nodes(torus)));
-    }
-    return {toruses, nodes};
-}
-
 // Compares the buffer `results`, which has several words per case, with `expected`. `names`: names of the words of a
 // case; `describe(i)`: description of case i.
 template <class Describe>
@@ -364,29 +334,31 @@ Verdict check_cases(CheckRunner& runner, const std::string& kernel, const Words&
     return compare_cases(expected, runner, results, names, describe, fmt::format("{} {}", cases, subject));
 }
 
-// Appends the expected results of kernel find_owners (kernels/checks/machine.cl) for a pixel. `other_pe`: a PE, whose
-// share may be empty.
-void add_owner(Words& results, const raya_mapping& m, const raya_pixel& pixel, std::uint32_t other_pe) {
-    const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
-    const raya_share share = raya_share_of(m, owner);
-    const std::uint32_t number = raya_index_of(m, share, pixel);
-    const raya_pixel found_pixel = raya_pixel_of(m, share, number);
-    std::uint32_t sides = 0;
-    for (std::uint32_t side = 0; side < RAYA_SIDES; ++side)
-        sides |= std::uint32_t{raya_has_neighbour(m, pixel, side) != 0} << side;
-    results.insert(results.end(), {owner, raya_share_size(share), number, found_pixel.row, found_pixel.column, sides,
-                                   raya_share_size(raya_share_of(m, other_pe))});
-}
-
-// Checks mappings of `kind` (RAYA_FOLD_CYCLIC..RAYA_RANDOM): the owner of a pixel, the pixel's number in the owner's
-// share, and flags of the neighbours that are in the image.
+// Checks random mappings of `kind` (RAYA_FOLD_CYCLIC..RAYA_RANDOM): the owner of a pixel, the pixel's number in the
+// owner's share, flags of the neighbours that are in the image, and the size of another PE's share, which may be empty.
 Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases) {
-    const auto [mappings, pixels] = mapping_cases(kind, cases);
+    constexpr std::uint64_t kSeed = 1993;
+    SplitMix random(kSeed + kind);
+    std::vector<raya_mapping> mappings;
+    std::vector<raya_pixel> pixels;
     Words expected;
-    for (std::uint32_t i = 0; i < cases; ++i) add_owner(expected, mappings[i], pixels[i], i % mappings[i].pes);
-    const auto describe = [&, &m = mappings, &p = pixels](std::size_t i) {
-        return fmt::format("pixel (row {}, column {}) of {}x{} on {} PEs, {}", p[i].row, p[i].column, m[i].width,
-                           m[i].height, m[i].pes, mapping_text(m[i]));
+    for (std::uint32_t i = 0; i < cases; ++i) {
+        const raya_mapping m = mappings.emplace_back(random_mapping_of_kind(random, kind));
+        const raya_pixel pixel = pixels.emplace_back(raya_pixel{i % 8 ? random_below(random, m.height) : m.height - 1,
+                                                                i % 4 ? random_below(random, m.width) : m.width - 1});
+        const std::uint32_t owner = raya_owner(m, pixel.row, pixel.column);
+        const raya_share share = raya_share_of(m, owner);
+        const std::uint32_t number = raya_index_of(m, share, pixel);
+        const raya_pixel found_pixel = raya_pixel_of(m, share, number);
+        std::uint32_t sides = 0;
+        for (std::uint32_t side = 0; side < RAYA_SIDES; ++side)
+            sides |= std::uint32_t{raya_has_neighbour(m, pixel, side) != 0} << side;
+        expected.insert(expected.end(), {owner, raya_share_size(share), number, found_pixel.row, found_pixel.column,
+                                         sides, raya_share_size(raya_share_of(m, i % m.pes))});
+    }
+    const auto describe = [&](std::size_t i) {
+        return fmt::format("pixel (row {}, column {}) of {}x{} on {} PEs, {}", pixels[i].row, pixels[i].column,
+                           mappings[i].width, mappings[i].height, mappings[i].pes, mapping_text(mappings[i]));
     };
     return check_cases(runner, "find_owners", expected,
                        {"owner", "size of the share", "number in the share", "row", "column", "neighbours",
@@ -394,22 +366,27 @@ Verdict check_owners(CheckRunner& runner, std::uint32_t kind, std::size_t cases)
                        "pixels", describe, mappings, pixels);
 }
 
-// Checks, for random nodes a and b, the first link on the route of a ray from a to b, the return link of a, and the
-// nodes at the other ends of a's links.
+// Checks, for random nodes a and b of toruses, alternately 3-D and 2-D: the first link on the route of a ray from a to
+// b, the return link of a, and the nodes at the other ends of a's links.
 Verdict check_torus_routes(CheckRunner& runner, std::size_t cases) {
-    const auto [toruses, nodes] = torus_cases(cases);
-    Words expected;
+    constexpr std::uint64_t kSeed = 805;
+    SplitMix random(kSeed);
+    std::vector<raya_torus> toruses;
+    Words nodes, expected;  // nodes: [torus][2]
     for (std::size_t i = 0; i < cases; ++i) {
-        expected.push_back(raya_next_link(toruses[i], nodes[2 * i], nodes[2 * i + 1]));
-        expected.push_back(raya_return_link(toruses[i], nodes[2 * i]));
-        expected.push_back(raya_nodes(toruses[i]));
-        expected.push_back(nodes[2 * i]);
-        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-            expected.push_back(raya_link_end(toruses[i], nodes[2 * i], link));
+        const auto side = [&] { return 1 + random_below(random, i % 5 ? 7 : 40); };
+        const raya_torus torus =
+            toruses.emplace_back(make_torus({side(), side(), side()}, i % 2 ? Links::kTorus2d : Links::kTorus3d));
+        const std::uint32_t a = nodes.emplace_back(random_below(random, raya_nodes(torus))),
+                            b = nodes.emplace_back(random_below(random, raya_nodes(torus)));
+        expected.insert(expected.end(),
+                        {raya_next_link(torus, a, b), raya_return_link(torus, a), raya_nodes(torus), a});
+        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) expected.push_back(raya_link_end(torus, a, link));
     }
-    const auto describe = [&, &t = toruses, &n = nodes](std::size_t i) {
-        return fmt::format("node {} to {} on {}", n[2 * i], n[2 * i + 1],
-                           sides_text({t[i].sides[0], t[i].sides[1], t[i].sides[2]}));
+    const auto describe = [&](std::size_t i) {
+        const raya_u32* const sides = toruses[i].sides;
+        return fmt::format("node {} to {} on {}", nodes[2 * i], nodes[2 * i + 1],
+                           sides_text({sides[0], sides[1], sides[2]}));
     };
     return check_cases(runner, "find_routes", expected,
                        {"next link", "return link", "number of nodes", "node at the place", "end of +x", "end of -x",
@@ -469,12 +446,6 @@ Verdict check_local_memory(CheckRunner& runner, std::uint32_t group_size) {
                          {"times that a number was taken from the counter"}, describe, pass_text);
 }
 
-const char* kind_name(std::uint32_t kind) {
-    constexpr std::array<const char*, RAYA_RANDOM + 1> kNames = {
-        "cyclic, cyclic fold", "cyclic, block fold", "rows", "blocks", "grid", "tiles", "random"};
-    return kNames[kind];
-}
-
 void verify_kernels(Verification& v) {
     const std::size_t cases = v.full() ? 50'000 : 5'000;
     const auto check = [&](const std::string& name, std::uint32_t group,
@@ -483,13 +454,15 @@ void verify_kernels(Verification& v) {
             if (group > v.device().max_group_size)
                 return skipped(fmt::format("needs groups of {} work-items, the device allows {}", group,
                                            v.device().max_group_size));
-            CheckRunner runner(session,
-                               Kernels(session, {.group_size = group}, v.sources()).program("checks/machine.cl"));
+            CheckRunner runner(
+                session, Kernels(session, {.group_size = group}, v.settings().sources).program("checks/machine.cl"));
             return with_options(body(runner), runner.options());
         });
     };
-    for (std::uint32_t kind = 0; kind <= RAYA_RANDOM; ++kind)
-        check(fmt::format("mapping: {}", kind_name(kind)), 1,
+    constexpr std::array<const char*, RAYA_RANDOM + 1> kKinds = {
+        "cyclic, cyclic fold", "cyclic, block fold", "rows", "blocks", "grid", "tiles", "random"};
+    for (std::uint32_t kind = 0; kind < kKinds.size(); ++kind)
+        check(fmt::format("mapping: {}", kKinds[kind]), 1,
               [&](CheckRunner& runner) { return check_owners(runner, kind, cases); });
     check("torus routes", 1, [&](CheckRunner& runner) { return check_torus_routes(runner, cases); });
     check("torus packets", 1, [&](CheckRunner& runner) { return check_packet_words(runner, cases); });

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <sstream>
-#include <stdexcept>
 
 #include "host/cl/kernel_options.hpp"
 #include "host/cl/measure.hpp"
@@ -77,28 +77,34 @@ std::string NumberBuild::name() const {
                        optimised ? "" : ", -cl-opt-disable");
 }
 
-NumberRunner::NumberRunner(Session& session, const NumberBuild& build)
-    : format_(build.format),
-      has_denormals_(session.device().denormals),
-      runner_(session, build_number_program(session, build), build.lanes) {}
+namespace {
 
-NumberResults NumberRunner::run(const NumberRows& rows) {
+NumberResults run_operations(CheckRunner& runner, const NumberRows& rows) {
     std::vector<float> operands = rows.a;
     operands.insert(operands.end(), rows.b.begin(), rows.b.end());
     operands.insert(operands.end(), rows.c.begin(), rows.c.end());
-    const auto operand_buffer = runner_.filled("operands", operands);
-    auto result_buffer = runner_.poisoned("results", kNumberOperations.size() * rows.count());
-    runner_.run_rows<const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&>(
+    const auto operand_buffer = runner.filled("operands", operands);
+    auto result_buffer = runner.poisoned("results", kNumberOperations.size() * rows.count());
+    runner.run_rows<const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&>(
         "operations", rows.count(), operand_buffer, static_cast<cl_uint>(rows.count()), result_buffer);
-    const std::vector<std::uint32_t> columns = runner_.read(result_buffer);
+    const std::vector<std::uint32_t> columns = runner.read(result_buffer);
     NumberResults results;
     for (auto column = columns.begin(); column != columns.end(); column += std::ptrdiff_t(rows.count()))
         results.emplace_back(column, column + std::ptrdiff_t(rows.count()));
     return results;
 }
 
-Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNumbers>& expected) {
-    const NumberResults results = run(rows);
+}  // namespace
+
+NumberResults run_numbers(Session& session, const NumberBuild& build, const NumberRows& rows) {
+    CheckRunner runner(session, build_number_program(session, build), build.lanes);
+    return run_operations(runner, rows);
+}
+
+Verdict check_numbers(Session& session, const NumberBuild& build, const NumberRows& rows,
+                      const std::vector<ExpectedNumbers>& expected) {
+    CheckRunner runner(session, build_number_program(session, build), build.lanes);
+    const NumberResults results = run_operations(runner, rows);
     KnownWords known(results.size() * rows.count());
     std::size_t wrong = 0, compared = 0, kept = 0, flushed = 0;
     std::string operations;
@@ -108,7 +114,8 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
         for (std::size_t i = 0; i < answers.results.size(); ++i) {
             const std::size_t row = answers.first_row + i;
             const std::uint32_t got = results[answers.operation].at(row), correct = answers.results[i];
-            const std::uint32_t zeroed = answers.flushed.empty() || has_denormals_ ? correct : answers.flushed[i];
+            const std::uint32_t zeroed =
+                answers.flushed.empty() || session.device().denormals ? correct : answers.flushed[i];
             const bool may_flush = !agrees(zeroed, correct), keeps = agrees(got, correct);
             const bool flushes = may_flush && (agrees(got, zeroed) || (is_zero(got) && is_zero(zeroed)));
             ++compared;
@@ -116,7 +123,7 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
             flushed += flushes && !keeps;
             known.set(answers.operation * rows.count() + row, flushes ? got : correct, is_nan(correct));
             if (keeps || flushes) continue;
-            if (wrong++ == 0) fault = fault_of(format_, answers.operation, operands_of(rows, row), correct, got);
+            if (wrong++ == 0) fault = fault_of(build.format, answers.operation, operands_of(rows, row), correct, got);
             ++wrong_of_operation;
         }
         if (wrong_of_operation)
@@ -126,7 +133,7 @@ Verdict NumberRunner::check(const NumberRows& rows, const std::vector<ExpectedNu
     }
     if (wrong) {
         report_expected("results", known);
-        return failed("wrong: " + operations, fault);
+        return with_options(failed("wrong: " + operations, fault), runner.options());
     }
     const std::string denormals =
         kept + flushed ? fmt::format(", denormal numbers {} times kept, {} times flushed", kept, flushed) : "";
@@ -151,8 +158,7 @@ Verdict check_answers(Session& session, const NumberBuild& build, const FormatAn
         }
     }
     rows.pad();
-    NumberRunner runner(session, build);
-    return with_options(runner.check(rows, expected), runner.options());
+    return check_numbers(session, build, rows, expected);
 }
 
 void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t lanes, bool trusted,
@@ -162,7 +168,7 @@ void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t 
                             .trusted = trusted,
                             .imprecise = !trusted && v.device().correctly_rounded_divide_sqrt,
                             .optimised = optimised,
-                            .sources = v.sources()};
+                            .sources = v.settings().sources};
     v.check("number", build.name(), [&](Session& session) { return check_answers(session, build, answers); });
 }
 
@@ -226,7 +232,7 @@ void verify_numbers(Verification& v) {
     const KernelOptions options{.lanes = v.lanes_or_default()};
     if (v.full())
         v.check("number", "chains of bench, fp32, " + counted(options.lanes, "lane"),
-                [&](Session& session) { return check_chains(session, options, v.sources()); });
+                [&](Session& session) { return check_chains(session, options, v.settings().sources); });
 }
 
 void verify_number_format(Verification& v, const NumberFormat& format, std::uint32_t lanes) {
@@ -238,44 +244,26 @@ void verify_number_format(Verification& v, const NumberFormat& format, std::uint
             [&](Session&) { return skipped(fmt::format("there are no stored results in {}", format_name(format))); });
 }
 
-namespace {
-
-constexpr std::uint32_t kOne = 0x3f800000;  // 1.0f
-
-std::size_t operation_number(const std::string& name) {
-    for (std::size_t k = 0; k < kNumberOperations.size(); ++k)
-        if (name == kNumberOperations[k].name) return k;
-    throw std::logic_error("known answers: no operation " + name);
-}
-
-KnownAnswer answer_of(const std::vector<std::string>& fields, const NumberOperation& operation) {
-    if (fields.size() != operation.operands + 1 && fields.size() != operation.operands + 2)
-        throw std::logic_error(fmt::format("known answers: {} fields for {}", fields.size(), operation.name));
-    KnownAnswer answer{{kOne, kOne, kOne}, word_of(fields[operation.operands]), word_of(fields.back())};
-    for (std::size_t k = 0; k < operation.operands; ++k) answer.operands[k] = word_of(fields[k]);
-    return answer;
-}
-
-}  // namespace
-
 std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
+    constexpr std::uint32_t kOne = 0x3f800000;  // 1.0f
     std::vector<FormatAnswers> all;
     std::size_t operation = 0;
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {
-        if (line.empty() || line[0] == '#') continue;
-        std::vector<std::string> fields;
+        if (line.starts_with('#')) continue;
         std::istringstream in(line);
-        for (std::string field; in >> field;) fields.push_back(field);
+        const std::vector<std::string> fields{std::istream_iterator<std::string>(in), {}};
         // The name of a format contains a letter that is not a hexadecimal digit: the p of "fp32" or the m of "eXmY".
-        if (fields[0].find_first_of("mp") != std::string::npos && fields.size() == 2) {
+        if (fields.at(0).find_first_of("mp") != std::string::npos) {
             const NumberFormat format = parse_format(fields[0]);
             if (all.empty() || all.back().format != format) all.push_back({format, {}});
-            operation = operation_number(fields[1]);
+            for (operation = 0; fields.at(1) != kNumberOperations.at(operation).name;) ++operation;
             continue;
         }
-        if (all.empty()) throw std::logic_error("known answers: a line before the first section");
-        all.back().operations[operation].push_back(answer_of(fields, kNumberOperations[operation]));
+        const std::size_t operands = kNumberOperations[operation].operands;
+        KnownAnswer answer{{kOne, kOne, kOne}, word_of(fields.at(operands)), word_of(fields.back())};
+        for (std::size_t k = 0; k < operands; ++k) answer.operands[k] = word_of(fields[k]);
+        all.back().operations[operation].push_back(answer);
     }
     return all;
 }

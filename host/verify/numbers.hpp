@@ -92,27 +92,15 @@ struct ExpectedNumbers {
     std::size_t first_row = 0;
 };
 
-/// Runs the kernels of one build of kernels/checks/numbers.cl.
-class NumberRunner {
-  public:
-    NumberRunner(Session& session, const NumberBuild& build);
+/// Returns the results of all operations in one build. The number of rows must be a multiple of kMaxLanes.
+NumberResults run_numbers(Session& session, const NumberBuild& build, const NumberRows& rows);
 
-    const std::string& options() const { return runner_.options(); }
-
-    /// Returns the results of all operations. The number of rows must be a multiple of kMaxLanes.
-    NumberResults run(const NumberRows& rows);
-
-    /// Computes the operations and compares the results with `expected`. The verdict of a pass has a text such as "357
-    /// answers"; that of a failure states the number of wrong results of each operation and the first wrong result. Any
-    /// NaN matches any NaN. On devices that report no denormal numbers, the flushed results are right, too, with zeros
-    /// of either sign; the text states how often the device kept and flushed denormal numbers (OpenCL 3.0 C, 7.5.3).
-    Verdict check(const NumberRows& rows, const std::vector<ExpectedNumbers>& expected);
-
-  private:
-    NumberFormat format_;
-    bool has_denormals_;
-    CheckRunner runner_;
-};
+/// Computes the operations and compares the results with `expected`. The verdict of a pass has a text such as "357
+/// answers"; that of a failure states the number of wrong results of each operation and the first wrong result. Any NaN
+/// matches any NaN. On devices that report no denormal numbers, the flushed results are right, too, with zeros of
+/// either sign; the text states how often the device kept and flushed denormal numbers (OpenCL 3.0 C, 7.5.3).
+Verdict check_numbers(Session& session, const NumberBuild& build, const NumberRows& rows,
+                      const std::vector<ExpectedNumbers>& expected);
 
 /// Operands and correct result of an edge case, as bits of fp32 numbers; the operand of from_index is an integer.
 /// Unused operands are 1. tests/verify/make_known_answers.cpp computes the results with MPFR and prints
@@ -130,7 +118,7 @@ struct FormatAnswers {
 
 /// Parses known_answers.csv. A line "FORMAT OPERATION" starts a section. Each further line has the bits of the
 /// operands, of the result and, if it differs, of the flushed result, in hexadecimal without trailing zeros. # starts a
-/// comment. Throws std::logic_error for a syntax error, because the file is generated.
+/// comment. Throws std::logic_error for most syntax errors; the file is generated, and a test compares it.
 std::vector<FormatAnswers> parse_known_answers(const std::string& text);
 
 /// Returns the answers of known_answers.csv, which is embedded in the program.

@@ -38,8 +38,11 @@ const std::vector<ReferenceImage>& reference_images();
 const ReferenceImage& reference_image_named(const std::string& name);
 Scene scene_of(const ReferenceImage& image);
 
-/// Returns the settings with which reference_images.txt was generated: a ring with one PE, one lane, work-groups of one
-/// work-item, no accelerator, no sphere filter or polygon filter.
+/// Returns the settings of the simplest kernels: a ring with one PE, one lane, work-groups of one work-item, no
+/// accelerator, no sphere filter or polygon filter.
+RingSettings simplest_settings(const ImageSize& size);
+
+/// Returns the settings with which reference_images.txt was generated: simplest_settings() for the image.
 RingSettings reference_settings(const ReferenceImage& image);
 
 /// The stored hash, pixels and counts of a reference image.
@@ -54,11 +57,10 @@ struct StoredImage {
 /// Parses reference_images.txt. A line "NAME: HASH" starts an image. Lines "counts KIND: COUNTER NUMBER ..." follow,
 /// one for each check kind; then one line for each row of pixels. A pixel is RED/GREEN/BLUE, fp32 bits in hexadecimal
 /// without trailing zeros; "." repeats the pixel to the left, "=" the pixel at the same position in the previous image.
-/// Throws std::logic_error for a syntax error.
+/// Throws std::logic_error if pixels do not match their hash.
 std::vector<StoredImage> parse_reference_images(const std::string& text);
 
-/// Returns the result of `image` in reference_images.txt, which is embedded in the program. Throws std::logic_error if
-/// the result is missing.
+/// Returns the result of `image` in reference_images.txt, which is embedded in the program.
 const StoredImage& stored_image(const ReferenceImage& image);
 
 /// Returns "COUNTER NUMBER ...": the counted events in the order of kernels/shared/events.h, then `other_counts`.

@@ -24,7 +24,7 @@ namespace {
 using Settings = RenderCase::Settings;
 
 constexpr std::uint32_t kSmallSide = 32;  // pixels of the longer side of the small image of the render's scene
-constexpr int kExactHitBits = 12;         // minimum fraction bits for which known_scenes() are exact
+constexpr int kExactHitBits = 12;         // minimum fraction bits for which the known hits are exact
 
 struct CaseImage {
     Image image;
@@ -63,13 +63,9 @@ std::uint32_t chosen_lanes(const Verification& v, const RenderCase& render, cons
     return checked_settings(std::get<RingSettings>(settings), v.device()).kernels.lanes;
 }
 
-// Returns settings that give the same image with the simplest kernels: a ring of one PE, one lane, groups of one
-// work-item, neither accelerator nor filters.
-RingSettings simplest_settings(const Settings& settings, const ImageSize& size) {
-    RingSettings simplest;
-    simplest.machine = machine_named("grande");
-    simplest.mapping = make_mapping(column_mapping(), size, 1);
-    simplest.kernels = {.lanes = 1, .group_size = 1, .filter = false};
+// Returns settings that give the same image with the simplest kernels.
+RingSettings simplest_settings_of(const Settings& settings, const ImageSize& size) {
+    RingSettings simplest = simplest_settings(size);
     std::visit(
         [&](const auto& s) {
             simplest.bounces = s.bounces;
@@ -109,7 +105,7 @@ std::optional<Settings> reference_case(const RenderCase& render, const Reference
 }
 
 void verify_hits_of_case(Verification& v, const Settings& settings, const NumberFormat& format, std::uint32_t lanes) {
-    HitBuild build{.format = format, .lanes = lanes, .grid = false, .sources = v.sources()};
+    HitBuild build{.format = format, .lanes = lanes, .grid = false, .sources = v.settings().sources};
     if (format.fraction_bits < kExactHitBits)
         return v.check("geometry", "known hits, " + build.name(), [&](Session&) {
             return skipped(fmt::format("the known hits are exact only with {} or more fraction bits", kExactHitBits));
@@ -144,7 +140,7 @@ void verify_own_image(Verification& v, const RenderCase& render, const SizedCase
     const std::string name = fmt::format("{} {}x{}, as given and as simple as possible", render.scene.name,
                                          small.size.width, small.size.height);
     v.check("image", name, [&](Session& session) {
-        const CaseImage simplest = case_image(session, render.scene, simplest_settings(small.settings, small.size));
+        const CaseImage simplest = case_image(session, render.scene, simplest_settings_of(small.settings, small.size));
         const CaseImage got = case_image(session, render.scene, small.settings);
         return with_options(compare_images(simplest.image, got.image), got.options);
     });

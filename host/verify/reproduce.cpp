@@ -4,10 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdint>
+#include <map>
 #include <sstream>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "host/base/child_process.hpp"
 #include "host/base/json.hpp"
@@ -22,6 +23,28 @@
 namespace raya {
 namespace {
 
+// How to run a check in a child process.
+struct CheckRun {
+    std::string name;                                  // for people: "-cl-opt-disable"
+    std::string selector;                              // of the device, as in choose_device()
+    VerifySettings settings;                           // select one check
+    std::map<std::string, std::string> environment{};  // variables of the child process
+};
+
+// A build or a launch of a run; see Capture (host/cl/capture.hpp).
+struct Step {
+    std::string name;
+    bool done = false;
+    std::map<std::string, std::string> outputs{};  // hashes by argument
+};
+
+// One run of a check.
+struct Observation {
+    std::vector<Step> steps;   // steps[n - 1] is step n
+    std::size_t expected = 0;  // step of which the check gave the correct words; 0: none
+    bool passed = false;
+};
+
 void take_line(Observation& seen, const Json& line) {
     if (find_member(line, "step")) seen.steps.push_back({json_text(line.at("name"))});
     if (find_member(line, "expected")) seen.expected = json_integer(line.at("expected"));
@@ -33,9 +56,10 @@ void take_line(Observation& seen, const Json& line) {
     for (const auto& [name, hash] : outputs.items()) seen.steps.back().outputs[name] = json_text(hash);
 }
 
-}  // namespace
-
-Observation observe(const CheckRun& v, std::size_t step, const std::filesystem::path& folder, bool ends_at_step) {
+// Runs the check of `v`. Captures step number `step`, if not 0, in `folder`. Ends the run after settings.timeout_s, or,
+// if `ends_at_step`, when the inputs of the step have been captured.
+Observation observe(const CheckRun& v, std::size_t step = 0, const std::filesystem::path& folder = {},
+                    bool ends_at_step = false) {
     Json request = settings_json(v.settings, v.selector, 0);
     request["environment"] = v.environment;
     request["capture"] = {{"step", step}, {"folder", folder.string()}};
@@ -52,20 +76,7 @@ Observation observe(const CheckRun& v, std::size_t step, const std::filesystem::
     return seen;
 }
 
-namespace {
-
 constexpr const char* kBuildOptions = "RAYA_BUILD_OPTIONS";
-
-/// Returns the settings to run only the check of this name, "LAYER NAME", once.
-VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name) {
-    settings.only = full_name;
-    settings.is_whole_name = true;
-    settings.skip.clear();
-    settings.shard = settings.shards = settings.repeat = 1;
-    settings.done = 0;
-    settings.soak_s = 0;
-    return settings;
-}
 
 // Repeats a failing check with changes of the environment: variables and their values.
 class Bisector {
@@ -180,27 +191,6 @@ std::string case_header(const Json& launch, const std::string& options, const st
         is_build ? 1 : json_integer(launch.at("groups")), is_build ? 1 : json_integer(launch.at("group_size")), rows);
 }
 
-constexpr const char* kReadme = R"(# {check}: a case for a bug report
-
-{what}
-
-| | |
-|---|---|
-| device | {device} ({platform}) |
-| version, driver | {version}, {driver} |
-| step of the check | {step} |
-| build options | `{options}` |
-| source of the expected words | {reference} |
-| made by | {program} |
-
-    make && ./repro          exit code 0: right; 1: wrong; 125: cannot tell (no such device, the build fails, ...)
-    git bisect run sh -c 'BUILD-THE-DRIVER && CASE/repro'       finds the commit of a driver that broke it
-    make reduce              reduced.cl: a smaller kernel that still fails; needs cvise and oclgrind
-
-kernel.cl: the kernel with its included files. NAME.in: inputs; NAME.expected: correct outputs, compared
-where NAME.mask, if there is one, is not 0 (2: every NaN is correct); NAME.out: outputs of the failing device. NAME is argN_BUFFER for argument N. case.h: work-groups and sizes.{right}
-)";
-
 // Returns the number of the first step whose outputs differ from those of the reference; 0: none. Ignores outputs that
 // differ between two runs of the reference.
 std::size_t first_difference(const Observation& failing, const Observation& reference, const Observation& repeated) {
@@ -300,13 +290,31 @@ void write_case(const fs::path& folder, const DeviceChecks& device, const Check&
     const std::string right = fs::exists(folder / "right.cl")
                                   ? " right.cl: raya's own kernel; `./repro right.cl` ends with exit code 0."
                                   : "";
-    write_whole_file(folder / "README.md",
-                     fmt::format(fmt::runtime(kReadme), fmt::arg("check", check.layer + " " + check.name),
-                                 fmt::arg("what", check.verdict.result), fmt::arg("device", device.name),
-                                 fmt::arg("platform", device.platform), fmt::arg("version", device.version),
-                                 fmt::arg("driver", device.driver), fmt::arg("step", step),
-                                 fmt::arg("options", json_text(launch.at("options"))), fmt::arg("reference", reference),
-                                 fmt::arg("program", name_and_version()), fmt::arg("right", right)));
+    write_whole_file(
+        folder / "README.md",
+        fmt::format(R"(# {} {}: a case for a bug report
+
+{}
+
+| | |
+|---|---|
+| device | {} ({}) |
+| version, driver | {}, {} |
+| step of the check | {} |
+| build options | `{}` |
+| source of the expected words | {} |
+| made by | {} |
+
+    make && ./repro          exit code 0: right; 1: wrong; 125: cannot tell (no such device, the build fails, ...)
+    git bisect run sh -c 'BUILD-THE-DRIVER && CASE/repro'       finds the commit of a driver that broke it
+    make reduce              reduced.cl: a smaller kernel that still fails; needs cvise and oclgrind
+
+kernel.cl: the kernel with its included files. NAME.in: inputs; NAME.expected: correct outputs, compared where NAME.mask,
+if there is one, is not 0 (2: every NaN is correct); NAME.out: outputs of the failing device. NAME is argN_BUFFER for
+argument N. case.h: work-groups and sizes.{}
+)",
+                    check.layer, check.name, check.verdict.result, device.name, device.platform, device.version,
+                    device.driver, step, json_text(launch.at("options")), reference, name_and_version(), right));
     fs::remove(folder / "launch.json");
 }
 

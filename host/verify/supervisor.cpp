@@ -65,17 +65,6 @@ SelectedDevices selected_devices(const std::string& selector, std::size_t index)
     return selected;
 }
 
-// Returns the names of the first check of each layer, as examples for --only.
-std::string example_names(const std::vector<std::string>& names) {
-    std::string text, layer;
-    for (const std::string& name : names) {
-        const std::string layer_of_check = name.substr(0, name.find(' '));
-        if (layer_of_check != layer) text += "\n  " + name;
-        layer = layer_of_check;
-    }
-    return text;
-}
-
 // Throws UserError if --only selects no check.
 void refuse_empty_selection(const cl::Device& device, const VerifySettings& settings) {
     if (!check_names(device, settings).empty()) return;
@@ -83,13 +72,10 @@ void refuse_empty_selection(const cl::Device& device, const VerifySettings& sett
         throw UserError(
             fmt::format("--only, --skip and --shard select no check of {}; --list prints the selected checks",
                         device_info(device).name));
-    VerifySettings unfiltered = settings;
-    unfiltered.only.clear();
     throw UserError(fmt::format(
-        "--only \"{}\": no check of {} has this text in \"LAYER NAME\"; the layers are number, geometry, machine and "
-        "image; checks are, for example:{}{}",
-        settings.only, device_info(device).name, example_names(check_names(device, unfiltered)),
-        settings.depth == Depth::kFull ? "" : "\n  ... and --full has more"));
+        "--only \"{}\": no check of {} has this text in \"LAYER NAME\"; the layers are number, geometry, machine "
+        "and image; raya verify --list prints the names{}",
+        settings.only, device_info(device).name, settings.depth == Depth::kFull ? "" : ", and --full has more"));
 }
 
 // --- In the parent process

@@ -59,7 +59,7 @@ std::string indented(const std::string& label, const std::string& text) {
 }
 
 void visit_layers(Verification& verification) {
-    if (verification.render() != nullptr) return verify_render_case(verification, *verification.render());
+    if (const auto& render = verification.settings().render) return verify_render_case(verification, *render);
     verify_numbers(verification);
     verify_geometry(verification);
     verify_machines(verification);
@@ -209,22 +209,24 @@ std::vector<Check> verify(const cl::Device& device, const VerifySettings& settin
     return verification.take_checks();
 }
 
+VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name) {
+    settings.only = full_name;
+    settings.is_whole_name = true;
+    settings.skip.clear();
+    settings.shard = settings.shards = settings.repeat = 1;
+    settings.done = 0;
+    settings.soak_s = 0;
+    return settings;
+}
+
 void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
     std::vector<VerifySettings> choices;
     std::vector<std::uint32_t> lanes_choices = {1, 4, 8, 16};
     if (settings.lanes != 0 || settings.render) lanes_choices = {settings.lanes};
     for (const std::uint32_t lanes : lanes_choices) {
-        VerifySettings one = settings;
-        one.lanes = lanes;
-        one.done = 0;
-        const std::vector<std::string> names = check_names(device, one);
-        one.is_whole_name = true;
-        one.skip.clear();
-        one.shard = one.shards = 1;
-        for (const std::string& name : names) {
-            one.only = name;
-            choices.push_back(one);
-        }
+        VerifySettings all = settings;
+        all.lanes = lanes;
+        for (const std::string& name : check_names(device, all)) choices.push_back(settings_of_one(all, name));
     }
     SplitMix random(settings.seed);
     const Clock::time_point start = Clock::now();

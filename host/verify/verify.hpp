@@ -106,6 +106,9 @@ std::vector<Check> verify(const cl::Device& device, const VerifySettings& settin
 /// same sequence of checks; the first settings.done checks of the sequence are skipped. The results end with the lanes.
 void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink);
 
+/// Returns the settings to run only the check of this name, "LAYER NAME", once.
+VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name);
+
 /// Returns "LAYER NAME" of every check that verify() would run, in the same order.
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings);
 
@@ -119,23 +122,18 @@ class Verification {
     Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs = true);
 
     const DeviceInfo& device() const { return info_; }
-    Depth depth() const { return settings_.depth; }
-    bool full() const { return depth() == Depth::kFull; }
+    const VerifySettings& settings() const { return settings_; }
+    bool full() const { return settings_.depth == Depth::kFull; }
 
     /// Runs one check in a new session, because a failed command may make an OpenCL context unusable.
     void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
 
-    const KernelSources& sources() const { return settings_.sources; }
-    /// Returns the only render to check; null: all layers are checked.
-    const RenderCase* render() const { return settings_.render.get(); }
-    /// Returns the sources and options of a renderer's kernels. If `lanes` is 0, the options have given_lanes() lanes.
+    /// Returns the sources and options of a renderer's kernels. If `lanes` is 0, the options have settings().lanes.
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const {
         return {.lanes = lanes ? lanes : settings_.lanes, .group_size = group_size, .sources = settings_.sources};
     }
 
-    /// Returns VerifySettings::lanes: the only number of lanes to check, or 0.
-    std::uint32_t given_lanes() const { return settings_.lanes; }
-    /// Returns given_lanes() if set, else the device's default.
+    /// Returns settings().lanes if set, else the device's default.
     std::uint32_t lanes_or_default() const { return settings_.lanes ? settings_.lanes : default_lanes(info_); }
     /// Returns every number of lanes to check.
     std::vector<std::uint32_t> lanes() const;

@@ -48,10 +48,10 @@ inline std::vector<NumberBuild> fp32_builds() {
     return builds;
 }
 
-/// Returns the results of NumberRunner::run() on the default device.
+/// Returns the results of run_numbers() on the default device.
 inline NumberResults run_numbers(const NumberBuild& build, const NumberRows& rows) {
     Session session(choose_device(""));
-    return NumberRunner(session, build).run(rows);
+    return run_numbers(session, build, rows);
 }
 
 /// Returns a description of the wrong results, with details of the first wrong result; an empty text if all results are
@@ -59,7 +59,7 @@ inline NumberResults run_numbers(const NumberBuild& build, const NumberRows& row
 inline std::string wrong_numbers(const NumberBuild& build, const NumberRows& rows,
                                  const std::vector<ExpectedNumbers>& expected) {
     Session session(choose_device(""));
-    const Verdict verdict = NumberRunner(session, build).check(rows, expected);
+    const Verdict verdict = check_numbers(session, build, rows, expected);
     if (verdict.outcome == Outcome::kPass) return {};
     return verdict.result + "\n" + verdict.fault.where + "\nexpected " + verdict.fault.expected + "\ngot " +
            verdict.fault.got;

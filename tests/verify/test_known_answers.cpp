@@ -45,12 +45,4 @@ TEST_CASE("known answers: every format has every operation, and covers ties and 
     }
 }
 
-TEST_CASE("parse_known_answers: refuses invalid texts", "[verify]") {
-    for (const char* text :
-         {"3f8 3f8\n", "fp32 add\n3f8 3f8\n", "fp32 add\n3f8 3f8 3f8x\n", "fp32 pow\n", "fp32 sqrt\n123456789 0\n"}) {
-        CAPTURE(text);
-        CHECK_THROWS_AS(parse_known_answers(text), std::logic_error);
-    }
-}
-
 }  // namespace raya

@@ -57,7 +57,6 @@ TEST_CASE("parse_reference_images: refuses pixels that do not match the hash", "
     CHECK_NOTHROW(parse_reference_images(text));
     text.replace(text.find(stored.hash), 1, stored.hash[0] == '0' ? "1" : "0");
     CHECK_THROWS_AS(parse_reference_images(text), std::logic_error);
-    CHECK_THROWS_AS(parse_reference_images("3f8/0/0\n"), std::logic_error);
 }
 
 }  // namespace raya
