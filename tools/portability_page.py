@@ -1,8 +1,8 @@
-"""The matrix of tools/portability as text: kinds of cells, rows that --root and --arch saved, and their table in docs/verify.md."""
-import datetime, re
+"""The matrix of tools/portability as text: kinds of cells, JUnit XML, rows that --root and --arch saved, and their table in docs/verify.md."""
+import dataclasses, datetime, re
+import xml.etree.ElementTree as xml
 from pathlib import Path
 
-import ci_reports
 from portability_roots import preset_of
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -12,12 +12,74 @@ ROOT_CHECKS = ["tests", "package"]  # only with --root, with PoCL
 PAGE = ROOT / "docs" / "verify.md"
 
 
+@dataclasses.dataclass
+class Case:
+    """A cell as a test case. outcome: PASS, FAIL, SKIP, XFAIL (failed as expected) or XPASS (passed unexpectedly); result: one line; details: lines."""
+    suite: str
+    name: str
+    seconds: float
+    outcome: str
+    result: str
+    details: str
+
+
+def name_matches(name, pattern):
+    """Returns true if the name contains the pattern, in which * stands for any text."""
+    return re.search(".*".join(map(re.escape, pattern.split("*"))), name) is not None
+
+
+def read_expected_failures(path):
+    """Reads lines PATTERN | REASON | LINK, the link being optional; # starts a comment line. Returns [("FILE:LINE", pattern, reason and link)]. Raises
+    ValueError with file and line."""
+    failures = []
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        fields = [field.strip() for field in line.split("|")]
+        if not line.strip() or line.strip().startswith("#"):
+            continue
+        if not 2 <= len(fields) <= 3 or not fields[0] or not fields[1]:
+            raise ValueError(f"{path}:{number}: expected PATTERN | REASON or PATTERN | REASON | LINK")
+        failures.append((f"{path}:{number}", fields[0], ", ".join(filter(None, fields[1:]))))
+    return failures
+
+
+def unmatched(failures, names):
+    """Returns a warning for each pattern that matches none of the names."""
+    return [f'{place}: "{pattern}" matches no check' for place, pattern, _ in failures if not any(name_matches(name, pattern) for name in names)]
+
+
 def judge(name, check, seconds, verdict, details, expected):
-    """Returns the cell as a ci_reports.Case, and its verdict, with X before it if `expected` lists the cell."""
+    """Returns the cell as a Case, and its verdict, with X before it if `expected` lists the cell; the first pattern that matches counts."""
     outcome = {"right": "PASS", "FAIL": "FAIL", "undecided": "SKIP"}[cell_kind(verdict)]
-    case = ci_reports.Case(name, f"{name}, {check}", seconds, outcome, verdict, details)
-    ci_reports.apply_expectations(case, expected)
-    return case, {"XFAIL": "X", "XPASS": "XPASS "}.get(case.outcome, "") + verdict
+    case = Case(name, f"{name}, {check}", seconds, outcome, verdict, details)
+    why = next((why for _, pattern, why in expected if outcome != "SKIP" and name_matches(case.name, pattern)), None)
+    if why and outcome == "PASS":
+        case.outcome, case.result, verdict = "XPASS", f"passed, but --expect lists it as failing ({why}): {verdict}", f"XPASS {verdict}"
+    elif why:
+        case.outcome, case.result, verdict = "XFAIL", f"{verdict} (expected: {why})", f"X{verdict}"
+    return case, verdict
+
+
+def xml_text(text):
+    """Returns the text without the control characters that XML 1.0 does not allow."""
+    return re.sub("[^\t\n\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", " ", text)
+
+
+def junit_report(name, cases):
+    """Returns JUnit XML with a test suite for each Case.suite. Expected failures are skipped test cases, unexpected passes are failures."""
+    root = xml.Element("testsuites", name=name)
+    for suite in dict.fromkeys(case.suite for case in cases):
+        own = [case for case in cases if case.suite == suite]
+        failures, skipped = (sum(case.outcome in kinds for case in own) for kinds in (("FAIL", "XPASS"), ("SKIP", "XFAIL")))
+        element = xml.SubElement(root, "testsuite", name=xml_text(suite), tests=str(len(own)), failures=str(failures), errors="0",
+                                 skipped=str(skipped), time=f"{sum(case.seconds for case in own):.3f}")
+        for case in own:
+            one = xml.SubElement(element, "testcase", classname=name, name=xml_text(case.name), time=f"{case.seconds:.3f}")
+            if case.outcome in ("FAIL", "XPASS"):
+                xml.SubElement(one, "failure", message=xml_text(case.result)).text = xml_text(case.details)
+            elif case.outcome in ("SKIP", "XFAIL"):
+                xml.SubElement(one, "skipped", message=xml_text(case.result))
+    xml.indent(root)
+    return xml.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
 def cell_kind(verdict):
@@ -55,7 +117,7 @@ def note_line(name, check, text):
 def rows_of_root(release, saved, checks):
     """Returns the rows of the matrix, and the notes, from the results that --root saved."""
     rows, notes, file = [], [], expected_failures(release)
-    expected = ci_reports.read_expected_failures(file) if file.exists() else []
+    expected = read_expected_failures(file) if file.exists() else []
     for name, device in saved["devices"].items():
         verdicts, seconds = dict.fromkeys(checks, ""), 0
         for check in checks:

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -75,14 +76,9 @@ class AnswerMaker {
         mpfr_set_flt(x, a, MPFR_RNDN);
         mpfr_set_flt(y, b, MPFR_RNDN);
         mpfr_set_flt(z, c, MPFR_RNDN);
-        if (operation == kAdd)
-            mpfr_add(exact_, x, y, MPFR_RNDZ);
-        else if (operation == kSub)
-            mpfr_sub(exact_, x, y, MPFR_RNDZ);
-        else if (operation == kMul)
-            mpfr_mul(exact_, x, y, MPFR_RNDZ);
-        else if (operation == kDiv)
-            mpfr_div(exact_, x, y, MPFR_RNDZ);
+        constexpr auto kBinary = std::array{mpfr_add, mpfr_sub, mpfr_mul, mpfr_div};  // from kAdd on
+        if (operation <= kDiv)
+            kBinary[operation](exact_, x, y, MPFR_RNDZ);
         else if (operation == kSqrt)
             mpfr_sqrt(exact_, x, MPFR_RNDZ);
         else if (operation == kMad)
@@ -130,25 +126,9 @@ inline std::vector<float> special_numbers(const NumberFormat& format) {
     const Range range = range_of(format);
     const double unit = std::ldexp(1.0, -format.fraction_bits), base = std::ldexp(1.0, range.highest - 1);
     const double smallest = std::ldexp(1.0, range.lowest), step = base * unit;
-    const double positive[] = {0,
-                               1,
-                               1 + unit,
-                               1 - unit / 2,
-                               1.5,
-                               2.25,
-                               3,
-                               base,
-                               base + step,
-                               step / 2,
-                               step * 2,
-                               smallest,
-                               smallest * 1.5,
-                               smallest * (1 + unit),
-                               smallest * (1 + 2 * unit),
-                               smallest * (1 + 3 * unit),
-                               step / 4 * (2 - unit),
-                               base * (2 - unit),
-                               2 * base * (2 - unit)};
+    std::vector<double> positive = {0, 1, 1 + unit, 1 - unit / 2, 1.5, 2.25, 3, base, base + step, step / 2, step * 2};
+    for (const double factor : {1.0, 1.5, 1 + unit, 1 + 2 * unit, 1 + 3 * unit}) positive.push_back(smallest * factor);
+    for (const double factor : {step / 4, base, 2 * base}) positive.push_back(factor * (2 - unit));
     std::vector<float> all;
     for (const double value : positive)
         for (const int sign : {1, -1}) all.push_back(static_cast<float>(sign * value));
@@ -241,11 +221,11 @@ inline FormatAnswers answers_in(const NumberFormat& format) {
 /// Inverse of parse_known_answers().
 inline std::string known_answers_text(const std::vector<FormatAnswers>& all) {
     std::string text =
-        "# Known answers of the number layer, made by tests/verify/make_known_answers.cpp with MPFR: do not edit.\n"
-        "# A line \"FORMAT OPERATION\" starts a section. Each further line has the bits of the operands, of the "
-        "result\n"
-        "# and, if it differs, of the result of a device that replaces denormal operands and results by zeros:\n"
-        "# fp32 numbers in hexadecimal without trailing zeros.\n";
+        R"(# Known answers of the number layer, made by tests/verify/make_known_answers.cpp with MPFR: do not edit.
+# A line "FORMAT OPERATION" starts a section. Each further line has the bits of the operands, of the result
+# and, if it differs, of the result of a device that replaces denormal operands and results by zeros:
+# fp32 numbers in hexadecimal without trailing zeros.
+)";
     for (const FormatAnswers& answers : all)
         for (std::size_t k = 0; k < kNumberOperations.size(); ++k) {
             text += fmt::format("{} {}\n", format_name(answers.format), kNumberOperations[k].name);

@@ -26,14 +26,11 @@ inline std::string colour_text(const float* rgb) {
 /// Inverse of parse_reference_images().
 inline std::string reference_images_text(const std::vector<StoredImage>& all) {
     std::string text =
-        "# Hashes, counts and pixels of the reference images, made by tests/verify/make_reference_images.cpp: do not "
-        "edit.\n"
-        "# An image has a line \"NAME: HASH\", lines \"counts KIND: COUNTER NUMBER ...\", and a line for each row of "
-        "pixels.\n"
-        "# A pixel is RED/GREEN/BLUE, bits of fp32 numbers in hexadecimal without trailing zeros; \".\" repeats the "
-        "pixel "
-        "to the\n"
-        "# left, \"=\" the pixel at the same position in the previous image.\n";
+        R"(# Hashes, counts and pixels of the reference images, made by tests/verify/make_reference_images.cpp: do not edit.
+# An image has a line "NAME: HASH", lines "counts KIND: COUNTER NUMBER ...", and a line for each row of pixels.
+# A pixel is RED/GREEN/BLUE, bits of fp32 numbers in hexadecimal without trailing zeros; "." repeats the pixel to the
+# left, "=" the pixel at the same position in the previous image.
+)";
     std::vector<std::string> previous;
     for (const StoredImage& stored : all) {
         const auto width = static_cast<std::size_t>(stored.image.width);
