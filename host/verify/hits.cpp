@@ -78,43 +78,31 @@ Rays random_rays(const NumberFormat& format, const Scene& scene, std::size_t cou
     return rays;
 }
 
-// Compares the hits of the first `count` rays. `describe(ray)` returns the description of a ray. If all hits are equal,
-// the verdict is a pass with the text `pass_text`; else it states the number of rays with a wrong hit, and the details
-// of the first such ray.
-Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays, std::size_t count,
+// Compares the hits of all rays. `describe(ray)` returns the description of a ray. If all hits are equal, the verdict
+// is a pass with the text `pass_text`; else it states the number of rays with a wrong hit, and the details of the first
+// such ray.
+Verdict compare_hits(const Hits& expected, const Hits& got, const Rays& rays,
                      const std::function<std::string(std::size_t)>& describe, const std::string& pass_text) {
     std::size_t wrong_rays = 0, first_wrong = 0;
-    for (std::size_t i = count; i-- > 0;) {
+    for (std::size_t i = rays.count(); i-- > 0;) {
         if (got.objects[i] == expected.objects[i] && got.distances[i] == expected.distances[i]) continue;
         ++wrong_rays;
         first_wrong = i;
     }
     if (wrong_rays == 0) return passed(pass_text);
-    KnownWords objects(expected.objects.size()), distances(expected.distances.size());
-    for (std::size_t i = 0; i < count; ++i) {
-        objects.set(i, expected.objects[i]);
-        distances.set(i, expected.distances[i]);
-    }
-    report_expected("objects", objects);
-    report_expected("distances", distances);
-    return failed(fmt::format("{} of {} rays wrong", wrong_rays, count),
+    report_expected("objects", KnownWords(expected.objects));
+    report_expected("distances", KnownWords(expected.distances));
+    return failed(fmt::format("{} of {} rays wrong", wrong_rays, rays.count()),
                   {.where = fmt::format("{}\n{}", describe(first_wrong), rays.text(first_wrong)),
                    .expected = expected.text(first_wrong),
                    .got = got.text(first_wrong)});
 }
 
-// Checks that each kernel in the build finds the hits of host/verify/known_NAME.nff, which are calculated by hand: from
-// outside and inside, tangents, misses and equal distances. A line "#hit ORIGIN DIRECTION OBJECT T LIMIT DESCRIPTION"
-// has a ray and its hit; OBJECT is - for a miss.
-Verdict check_known_hits(CheckRunner& runner, const HitBuild& build, const std::string& name) {
-    const std::string file = fmt::format("host/verify/known_{}.nff", name);
-    Scene scene = parse_nff(embedded_files().at(file), file);
-    // A quadrilateral that is not planar, which the reader would cut into triangles.
-    if (name == "polygons") scene.polygons.push_back({{{200, 0, 12}, {200, 8, 20}, {192, 8, 12}, {192, 0, 20}}, {}, 0});
-    Rays rays;
-    Hits expected;
+// Reads rays and their hits from the lines "#hit ORIGIN DIRECTION OBJECT T LIMIT DESCRIPTION" of a scene; OBJECT is -
+// for a miss. Returns the descriptions.
+std::vector<std::string> read_known_hits(const std::string& text, Rays& rays, Hits& hits) {
     std::vector<std::string> descriptions;
-    std::istringstream lines(embedded_files().at(file));
+    std::istringstream lines(text);
     for (std::string line, object; std::getline(lines, line);) {
         if (!line.starts_with("#hit ")) continue;
         std::istringstream in(line.substr(5));
@@ -124,21 +112,38 @@ Verdict check_known_hits(CheckRunner& runner, const HitBuild& build, const std::
         float t = 0, limit = 0;
         in >> object >> t >> limit >> std::ws;
         rays.add(origin, direction, limit);
-        expected.objects.push_back(object == "-" ? kNoObject : static_cast<std::uint32_t>(std::stoul(object)));
-        expected.distances.push_back(std::bit_cast<std::uint32_t>(object == "-" ? limit : t));
+        hits.objects.push_back(object == "-" ? kNoObject : static_cast<std::uint32_t>(std::stoul(object)));
+        hits.distances.push_back(std::bit_cast<std::uint32_t>(object == "-" ? limit : t));
         std::getline(in, descriptions.emplace_back());
     }
+    return descriptions;
+}
+
+// Checks that each kernel in the build finds the hits of host/verify/known_NAME.nff, which are calculated by hand: from
+// outside and inside, tangents, misses and equal distances.
+Verdict check_known_hits(CheckRunner& runner, const HitBuild& build, const std::string& name) {
+    const std::string file = fmt::format("host/verify/known_{}.nff", name);
+    Scene scene = parse_nff(embedded_files().at(file), file);
+    // A quadrilateral that is not planar, which the reader would cut into triangles.
+    if (name == "polygons") scene.polygons.push_back({{{200, 0, 12}, {200, 8, 20}, {192, 8, 12}, {192, 0, 20}}, {}, 0});
+    Rays rays;
+    Hits expected;
+    std::vector<std::string> descriptions = read_known_hits(embedded_files().at(file), rays, expected);
+    const std::string text = fmt::format("{} rays, {}without grid", descriptions.size(), build.grid ? "with and " : "");
     rays.pad();
+    expected.objects.resize(rays.count(), kNoObject);
+    expected.distances.resize(rays.count());  // equal to the limit
+    descriptions.resize(rays.count(), "a ray of limit 0");
     const PackedJob job = job_with_grid(scene, build.format);
-    const std::size_t count = descriptions.size();
-    Verdict verdict;
-    for (const char* const kernel : {"hits_without_accel", "hits_with_accel"}) {
-        if (verdict.outcome != Outcome::kPass || (kernel == std::string("hits_with_accel") && !build.grid)) continue;
+    std::vector<const char*> kernels = {"hits_without_accel"};
+    if (build.grid) kernels.push_back("hits_with_accel");
+    for (const char* const kernel : kernels) {
         const auto describe = [&](std::size_t i) { return fmt::format("{}: {} ({})", name, descriptions[i], kernel); };
-        verdict = compare_hits(expected, find_hits(runner, kernel, job.words(), rays), rays, count, describe,
-                               fmt::format("{} rays, {}without grid", count, build.grid ? "with and " : ""));
+        const Verdict verdict =
+            compare_hits(expected, find_hits(runner, kernel, job.words(), rays), rays, describe, text);
+        if (verdict.outcome != Outcome::kPass) return verdict;
     }
-    return verdict;
+    return passed(text);
 }
 
 // A kernel that finds hits.
@@ -162,7 +167,7 @@ Verdict compare_finders(const NumberFormat& format, const HitFinder& reference, 
         const auto describe = [&](std::size_t i) {
             return fmt::format("ray {} through {}, with {}", i, file, difference);
         };
-        const Verdict verdict = compare_hits(expected, got, rays, rays_per_scene, describe, "");
+        const Verdict verdict = compare_hits(expected, got, rays, describe, "");
         if (verdict.outcome != Outcome::kPass) return verdict;
         for (const std::uint32_t object : expected.objects) hits += object != kNoObject;
     }

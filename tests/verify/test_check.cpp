@@ -65,14 +65,4 @@ TEST_CASE("check_of: inverts to_json", "[verify]") {
     }
 }
 
-TEST_CASE("verify: skips the first `done` checks", "[verify]") {
-    const cl::Device device = choose_device("");
-    const std::vector<std::string> names = check_names(device, {.only = "rotations"});
-    REQUIRE(names.size() == 3);
-    const std::vector<Check> remaining = verify(device, {.only = "rotations", .done = 1});
-    REQUIRE(remaining.size() == 2);
-    for (std::size_t i = 0; i < remaining.size(); ++i)
-        CHECK(remaining[i].layer + " " + remaining[i].name == names[i + 1]);
-}
-
 }  // namespace raya

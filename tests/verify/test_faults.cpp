@@ -151,15 +151,6 @@ TEST_CASE("count faults at one place: the check of an image with this event fail
     }
 }
 
-TEST_CASE("count faults: only image checks fail", "[verify][faults][slow]") {
-    const auto checks = run({kCountFaults.front().patch}, "");
-    std::set<std::string> layers;
-    for (const Check& check : checks)
-        if (check.verdict.outcome == Outcome::kFail) layers.insert(check.layer);
-    CHECK(layers == std::set<std::string>{"image"});
-    CHECK(failures(checks).size() >= 4);
-}
-
 TEST_CASE("verify: a failed build fails its check, and the other checks run", "[verify]") {
     const VerifySettings settings{.sources = {"/no/such/folder"}, .only = "machine"};
     const auto checks = verify(choose_device(""), settings);
