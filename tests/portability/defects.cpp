@@ -41,66 +41,54 @@ struct Sides {
 };
 
 struct Defect {
-    std::string name;  // name of the .cl file, without ".cl"
-    cl_uint n = 0;     // argument of the kernel
-    std::size_t groups = 1, group_size = 1;
-    cl_uint right = 0;  // the correct result of each work-item
-    std::vector<KnownFailure> known_failures;
-    std::string options{};  // for the compiler
+    std::string name;          // name of the .cl file, without ".cl"
+    cl_uint n = 0, right = 0;  // argument of the kernel, correct result of each work-item
+    KnownFailure known{};      // without a reason: none
+    std::string options{};     // for the compiler
+    std::size_t group_size = 1;
 };
 
+const char *const kPocl = "Portable Computing Language", *const kMesa = "rusticl";
+
 const std::vector<Defect> kDefects = {
-    {"long_loop", 65'535, 1, 1, 65'535, {}},
+    {"long_loop", 65'535, 65'535},
     {"long_loop",
      100'000,
-     1,
-     1,
      100'000,
-     {{"rusticl", "llvmpipe", 65'535, false, "Mesa's llvmpipe ends every loop after 65,535 iterations"}}},
-    {"nested_loops", 200, 1, 1, 40'000, {}},
+     {kMesa, "llvmpipe", 65'535, false, "Mesa's llvmpipe ends every loop after 65,535 iterations"}},
+    {"nested_loops", 200, 40'000},
     {"nested_loops",
      1'000,
-     1,
-     1,
      1'000'000,
-     {{"rusticl", "llvmpipe", 65'405, false,
-       "Mesa's llvmpipe counts the iterations of all loops of a work-item together and ends them after 65,535"}}},
+     {kMesa, "llvmpipe", 65'405, false,
+      "Mesa's llvmpipe counts the iterations of all loops of a work-item together and ends them after 65,535"}},
     {"struct_argument",
      20,
-     1,
-     1,
      20,
-     {{"rusticl", "llvmpipe", 0, true,
-       "Mesa's llvmpipe crashes on an array inside a structure that is a kernel's argument"}}},
+     {kMesa, "llvmpipe", 0, true,
+      "Mesa's llvmpipe crashes on an array inside a structure that is a kernel's argument"}},
     {"struct_after_barrier",
      32,
-     1,
      32,
-     32,
-     {{"Portable Computing Language", "driver 3.0", 5, false,
-       "PoCL 3.0 takes a private structure of another work-item after a barrier"}}},
+     {kPocl, "driver 3.0", 5, false, "PoCL 3.0 takes a private structure of another work-item after a barrier"},
+     "",
+     32},
     {"wide_vector",
      20,
-     1,
-     1,
      40,
-     {{"Portable Computing Language", "skylake-avx512*driver 7.1", 402, false,
-       "PoCL 7.1 passes vectors of 512 bits to builtin functions in the registers of another calling convention"}},
+     {kPocl, "skylake-avx512*driver 7.1", 402, false,
+      "PoCL 7.1 passes vectors of 512 bits to builtin functions in the registers of another calling convention"},
      "-cl-opt-disable"},
     {"widest_vector",
      21,
-     1,
-     1,
      21,
-     {{"Portable Computing Language", "driver 6.0*SPIR-V", 0, false,
-       "PoCL 6.0, for SPIR-V, passes vectors that are larger than a register in memory that it does not write"}}},
+     {kPocl, "driver 6.0*SPIR-V", 0, false,
+      "PoCL 6.0, for SPIR-V, passes vectors that are larger than a register in memory that it does not write"}},
     {"early_return",
      21,
-     1,
-     1,
      22,
-     {{"Portable Computing Language", "driver 7.1*SPIR-V", 0, true,
-       "PoCL 7.1 crashes while it compiles the SPIR-V of a private variable to which nothing is written"}}},
+     {kPocl, "driver 7.1*SPIR-V", 0, true,
+      "PoCL 7.1 crashes while it compiles the SPIR-V of a private variable to which nothing is written"}},
 };
 
 // Runs the kernel. Returns the first wrong result, or the correct one.
@@ -108,15 +96,15 @@ cl_uint run_kernel(const Defect& defect, Session& session) {
     std::ifstream file(RAYA_SOURCE_DIR "/tests/portability/" + defect.name + ".cl");
     const std::string source{std::istreambuf_iterator<char>(file), {}};
     Program program = session.build(defect.name + ".cl", source, {"-cl-std=CL1.2", defect.options});
-    std::vector<cl_uint> results(defect.groups * defect.group_size, 0);
+    std::vector<cl_uint> results(defect.group_size, 0);
     Buffer<cl_uint> out = session.buffer<cl_uint>("out", results.size());
     session.write("clear", out, results);
     if (defect.name == "struct_argument") {
         auto kernel = program.kernel<Buffer<cl_uint>&, Sides>("defect");
-        session.launch("defect", kernel, defect.groups, defect.group_size, out, Sides{{10, 20, 30}});
+        session.launch("defect", kernel, 1, defect.group_size, out, Sides{{10, 20, 30}});
     } else {
         auto kernel = program.kernel<Buffer<cl_uint>&, cl_uint>("defect");
-        session.launch("defect", kernel, defect.groups, defect.group_size, out, defect.n);
+        session.launch("defect", kernel, 1, defect.group_size, out, defect.n);
     }
     session.read("read", out, results);
     for (const cl_uint value : results)
@@ -125,13 +113,13 @@ cl_uint run_kernel(const Defect& defect, Session& session) {
 }
 
 std::string text_of(const Defect& defect) {
-    return fmt::format("{}, n = {}, {} x {} work-items{}{}", defect.name, defect.n, defect.groups, defect.group_size,
+    return fmt::format("{}, n = {}, {} x {} work-items{}{}", defect.name, defect.n, 1, defect.group_size,
                        defect.options.empty() ? "" : ", ", defect.options);
 }
 
 // Returns true if the failure is known for this device.
 bool occurs_on(const KnownFailure& known, const DeviceInfo& device) {
-    return device.platform.find(known.platform) != std::string::npos &&
+    return !known.reason.empty() && device.platform.find(known.platform) != std::string::npos &&
            name_matches(device.name + ", driver " + device.driver + (uses_il() ? ", SPIR-V" : ""), known.device);
 }
 
@@ -140,32 +128,29 @@ bool occurs_on(const KnownFailure& known, const DeviceInfo& device) {
 bool report(const Defect& defect, Session& session, const DeviceInfo& device) {
     const cl_uint got = run_kernel(defect, session);
     const std::string description = text_of(defect);
-    for (const KnownFailure& known : defect.known_failures) {
-        if (!occurs_on(known, device)) continue;
-        if (got == defect.right) {
-            fmt::print("{}: right, {} was expected: {}\n", description,
-                       known.crashes ? "a crash" : std::to_string(known.wrong), known.reason);
-            return true;
-        }
-        if (known.crashes || got != known.wrong) break;
+    const KnownFailure& known = defect.known;
+    const bool is_right = got == defect.right, is_known = occurs_on(known, device);
+    const bool fails_as_known = is_known && !is_right && !known.crashes && got == known.wrong;
+    if (is_known && is_right)
+        fmt::print("{}: right, {} was expected: {}\n", description,
+                   known.crashes ? "a crash" : std::to_string(known.wrong), known.reason);
+    else if (fails_as_known)
         fmt::print("{}: expected failure, {} instead of {}: {}\n", description, got, defect.right, known.reason);
-        return true;
-    }
-    fmt::print("{}: {}\n", description,
-               got == defect.right ? "right" : fmt::format("WRONG: {} instead of {}", got, defect.right));
-    return got == defect.right;
+    else
+        fmt::print("{}: {}\n", description,
+                   is_right ? "right" : fmt::format("WRONG: {} instead of {}", got, defect.right));
+    return is_right || fails_as_known;
 }
 
 /// Prints the output line for a defect whose process a signal has ended; returns true if the crash is expected.
 bool report_crash(const Defect& defect, int signal, const DeviceInfo& device) {
-    for (const KnownFailure& known : defect.known_failures) {
-        if (!known.crashes || !occurs_on(known, device)) continue;
+    const bool is_known = defect.known.crashes && occurs_on(defect.known, device);
+    if (is_known)
         fmt::print("{}: expected failure, signal {} instead of {}: {}\n", text_of(defect), signal, defect.right,
-                   known.reason);
-        return true;
-    }
-    fmt::print("{}: WRONG: ended by signal {}\n", text_of(defect), signal);
-    return false;
+                   defect.known.reason);
+    else
+        fmt::print("{}: WRONG: ended by signal {}\n", text_of(defect), signal);
+    return is_known;
 }
 
 /// Runs `body`, which returns an exit code, in a child process; returns the status of waitpid(). The parent never uses
