@@ -7,19 +7,19 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
-#include <climits>
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
 
 #include "host/base/log.hpp"
+#include "host/error.hpp"
 
 namespace raya {
 namespace {
 
-constexpr const char* kOwnProgram = "/proc/self/exe";
 constexpr const char* kWorker = "--worker";
 
 std::runtime_error system_error(const char* what) {
@@ -28,15 +28,22 @@ std::runtime_error system_error(const char* what) {
 
 // Runs the program in the forked child. This code runs between fork and exec, so it calls only functions that take no
 // locks.
-[[noreturn]] void exec_program(const char* program, char* const* arguments, int kept, pid_t parent) {
+[[noreturn]] void exec_program(char* const* arguments, int pipe, int descriptor, pid_t parent) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);  // inherited through exec
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() == parent) {
+        ::dup2(pipe, descriptor);
         ::close_range(STDERR_FILENO + 1, ~0u, CLOSE_RANGE_CLOEXEC);  // MPI's sockets belong to the parent
-        ::fcntl(kept, F_SETFD, 0);                                   // stays open through exec
-        ::execv(program, arguments);
+        ::fcntl(descriptor, F_SETFD, 0);                             // stays open through exec
+        ::execvp(arguments[0], arguments);
     }
     ::_exit(kNotStarted);
+}
+
+[[noreturn]] void throw_sent(const std::string& kind, const std::string& error) {
+    if (kind == "user") throw UserError(error);
+    if (kind == "device") throw DeviceError(error);
+    throw std::runtime_error(error);
 }
 
 }  // namespace
@@ -47,82 +54,74 @@ std::string ending_text(int status) {
     return fmt::format("signal {}{}", WTERMSIG(status), name != nullptr ? fmt::format(" (SIG{})", name) : "");
 }
 
-pid_t start_child(const std::string& program, std::vector<std::string> arguments, int kept) {
+Child::Child(std::vector<std::string> arguments, int descriptor) {
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
-    const pid_t parent = ::getpid();
-    const pid_t child = ::fork();
-    if (child == 0) exec_program(program.c_str(), argv.data(), kept, parent);
-    if (child < 0) throw system_error("cannot start a child process");
-    return child;
-}
-
-ChildProcess::ChildProcess(const char* task, const Json& settings) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw system_error("cannot create a pipe to a child process");
-    const Json request = {
-        {"task", task}, {"lines", ends[1]}, {"verbosity", verbosity() - kErrorsOnly}, {"settings", settings}};
-    pipe_ = ends[0];
-    try {
-        child_ = start_child(kOwnProgram, {"raya", kWorker, json_dump(request)}, ends[1]);
-    } catch (...) {
-        for (const int end : ends) ::close(end);
-        throw;
-    }
+    const pid_t parent = ::getpid();
+    child_ = ::fork();
+    if (child_ == 0) exec_program(argv.data(), ends[1], descriptor, parent);
     ::close(ends[1]);
+    pipe_ = ends[0];
+    if (child_ > 0) return;
+    const std::runtime_error error = system_error("cannot start a child process");
+    ::close(pipe_);
+    throw error;
 }
 
-ChildProcess::~ChildProcess() {
+Child::~Child() {
     ::close(pipe_);
-    if (ended_) return;
-    ::kill(child_, SIGKILL);
+    if (child_ > 0) ::kill(child_, SIGKILL);
     wait();
 }
 
-bool ChildProcess::take_line(std::string& line) {
-    const std::size_t end = unread_text_.find('\n');
-    if (end == std::string::npos) return false;
-    line = unread_text_.substr(0, end);
-    unread_text_.erase(0, end + 1);
-    return true;
-}
-
-bool ChildProcess::check_ended() {
-    if (!ended_) ended_ = ::waitpid(child_, &status_, WNOHANG) == child_;
-    return ended_;
-}
-
-ChildProcess::Read ChildProcess::read(std::string& line, std::chrono::milliseconds wait) {
-    while (!take_line(line)) {
-        pollfd in{pipe_, POLLIN, 0};
-        const int ready = ::poll(&in, 1, static_cast<int>(wait.count()));
+std::optional<std::size_t> Child::read(char* bytes, std::size_t count, std::chrono::milliseconds wait) {
+    pollfd in{pipe_, POLLIN, 0};
+    const int ready = ::poll(&in, 1, static_cast<int>(wait.count()));
+    if (ready == 0) {
         // The child may have ended without an end of file: a process that its driver started may hold the pipe open.
-        if (ready == 0) return check_ended() ? Read::kEnd : Read::kNothing;
-        std::array<char, 4096> block{};
-        const ssize_t count = ready > 0 ? ::read(pipe_, block.data(), block.size()) : -1;
-        if (count > 0)
-            unread_text_.append(block.data(), static_cast<std::size_t>(count));
-        else if (count == 0 || errno != EINTR)
-            return Read::kEnd;
+        if (child_ > 0 && ::waitpid(child_, &status_, WNOHANG) == child_) child_ = -1;
+        return child_ < 0 ? std::optional<std::size_t>(0) : std::nullopt;
     }
-    return Read::kLine;
+    const ssize_t got = ready > 0 ? ::read(pipe_, bytes, count) : -1;
+    if (got < 0 && errno == EINTR) return {};
+    return static_cast<std::size_t>(std::max<ssize_t>(got, 0));
 }
 
-int ChildProcess::wait() {
-    while (!ended_) ended_ = ::waitpid(child_, &status_, 0) == child_ || errno != EINTR;
+int Child::wait() {
+    while (child_ > 0)
+        if (::waitpid(child_, &status_, 0) == child_ || errno != EINTR) child_ = -1;
     return status_;
+}
+
+std::optional<int> run_child(const char* task, const Json& settings,
+                             const std::function<bool(const Json& sent)>& take) {
+    const Json request = {{"task", task}, {"verbosity", verbosity() - kErrorsOnly}, {"settings", settings}};
+    Child child({"/proc/self/exe", kWorker, json_dump(request)});
+    std::string unread;
+    std::array<char, 4096> block{};
+    for (;;) {
+        const auto count = child.read(block.data(), block.size(), std::chrono::milliseconds(200));
+        if (count == 0u) return child.wait();
+        if (!count && !take(nullptr)) return {};
+        unread.append(block.data(), count.value_or(0));
+        for (std::size_t end = 0; (end = unread.find('\n')) != unread.npos; unread.erase(0, end + 1)) {
+            const Json sent = parse_json(unread.substr(0, end), {"a child process"});
+            if (sent.contains("error")) throw_sent(json_text(sent.at("kind")), json_text(sent.at("error")));
+            if (!take(sent)) return {};
+        }
+    }
 }
 
 std::optional<WorkerRequest> worker_request(int argc, const char* const* argv) {
     if (argc != 3 || std::string_view(argv[1]) != kWorker) return {};
-    WorkerRequest request = read_json(argv[2], {kWorker}, [](const Json& json) {
+    ::fcntl(kReportDescriptor, F_SETFD, FD_CLOEXEC);
+    return read_json(argv[2], {kWorker}, [](const Json& json) {
         set_verbosity(kErrorsOnly + static_cast<int>(json_integer(json.at("verbosity"), kDetailed - kErrorsOnly)));
-        return WorkerRequest{json_text(json.at("task")), static_cast<int>(json_integer(json.at("lines"), INT_MAX)),
-                             json.at("settings")};
+        return WorkerRequest{.task = json_text(json.at("task")), .settings = json.at("settings")};
     });
-    ::fcntl(request.pipe, F_SETFD, FD_CLOEXEC);
-    return request;
 }
 
 void send_line(int pipe, const Json& object) {

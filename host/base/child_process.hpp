@@ -1,10 +1,12 @@
-// Worker: a child process that runs raya's executable for one task and reports to its parent through a pipe.
+// Child processes. A worker is a child that runs raya's executable for one task and reports in JSON.
 #pragma once
 #include <sys/types.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -44,65 +46,60 @@ class TemporaryFolder {
 /// Exit code of a child process in which exec failed.
 inline constexpr int kNotStarted = 127;
 
-/// Runs `program` in a child process, without a search in PATH; arguments[0] is its name. The child inherits the
-/// standard streams and the descriptor `kept`, and no other. If the parent ends for any reason, the system kills the
-/// child. The child ignores SIGINT, SIGTERM, SIGHUP and SIGQUIT, which the parent handles. If exec fails, the child
-/// ends with kNotStarted. Throws std::runtime_error if there can be no new process.
-pid_t start_child(const std::string& program, std::vector<std::string> arguments, int kept);
+/// The descriptor into which a child reports, unless it is told another one.
+inline constexpr int kReportDescriptor = 3;
 
-/// A child process that runs raya's executable for one task and writes JSON objects, one per line, into a pipe to its
-/// parent. The destructor kills the child. See also start_child(). Command line of the child:
-///
-///     raya --worker '{"task": TASK, "lines": descriptor of the pipe, "verbosity": level - kErrorsOnly,
-///                     "settings": {...}}'
-class ChildProcess {
+/// A child process and a pipe from it. If the parent ends for any reason, the system kills the child. The child ignores
+/// SIGINT, SIGTERM, SIGHUP and SIGQUIT, which the parent handles.
+class Child {
   public:
-    /// Starts the child. Throws std::runtime_error on failure.
-    ChildProcess(const char* task, const Json& settings);
-    ChildProcess(const ChildProcess&) = delete;
-    ChildProcess& operator=(const ChildProcess&) = delete;
-    ~ChildProcess();
+    /// Runs `arguments`, which start with the program: a path, or a name that is searched in PATH. The child writes
+    /// into the pipe through its descriptor `descriptor`, and inherits the other standard streams. If exec fails, it
+    /// ends with kNotStarted. Throws std::runtime_error if there can be no new process.
+    explicit Child(std::vector<std::string> arguments, int descriptor = kReportDescriptor);
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+    /// Kills the child if it still runs.
+    ~Child();
 
-    enum class Read { kLine, kNothing, kEnd };
-
-    /// Reads the next line into `line`. Returns kLine if there is one, kNothing if none arrived within `wait`, and kEnd
-    /// if the child has ended or closed the pipe.
-    Read read(std::string& line, std::chrono::milliseconds wait);
+    /// Reads up to `count` bytes from the pipe as soon as there are any. Returns their number: 0 if the child has ended
+    /// or closed the pipe. Empty: there were none within `wait`.
+    std::optional<std::size_t> read(char* bytes, std::size_t count, std::chrono::milliseconds wait);
 
     /// Waits for the child to end and returns its waitpid() status.
     int wait();
 
   private:
-    /// Moves the first whole line of unread_text_ to `line`. Returns false if unread_text_ has none.
-    bool take_line(std::string& line);
-    /// Returns true if the child has ended. Does not wait.
-    bool check_ended();
-
-    pid_t child_ = -1;
+    pid_t child_ = -1;  // -1: it has ended with status_
     int pipe_ = -1;
     int status_ = 0;
-    bool ended_ = false;       // waitpid() has returned status_
-    std::string unread_text_;  // text from the pipe that read() has not returned yet
 };
 
 /// Returns a text for a waitpid() status: "signal 11 (SIGSEGV)" or "exit code 1".
 std::string ending_text(int status);
 
-/// The task of a child process, parsed from its command line.
+/// Runs a worker. Calls `take` with each JSON object that the worker sends, and with null after each fifth of a second
+/// without one. If `take` returns false, kills the worker. Returns the worker's waitpid() status; nothing if it was
+/// killed. If the worker reports an error, {"error": TEXT, "kind": "user" or "device" or "internal"}, throws it as
+/// UserError, DeviceError or std::runtime_error.
+std::optional<int> run_child(const char* task, const Json& settings, const std::function<bool(const Json& sent)>& take);
+
+/// The task of a worker, parsed from its command line:
+///
+///     raya --worker '{"task": TASK, "verbosity": level - kErrorsOnly, "settings": {...}}'
 struct WorkerRequest {
     std::string task;
-    int pipe = -1;  // descriptor of the pipe to the parent
+    int pipe = kReportDescriptor;
     Json settings;
 };
 
-/// Call this function at the start of main(). In a child process it returns the task, sets the verbosity that the
-/// parent passed, and marks the pipe close-on-exec, so that programs that the child starts, such as a driver's
-/// compiler, do not inherit the pipe. In any other process it returns nothing. Throws UserError for an invalid command
-/// line.
+/// Call this function at the start of main(). In a worker it returns the task, sets the verbosity that the parent
+/// passed, and marks the pipe close-on-exec, so that programs that the worker starts, such as a driver's compiler, do
+/// not inherit the pipe. In any other process it returns nothing. Throws UserError for an invalid command line.
 std::optional<WorkerRequest> worker_request(int argc, const char* const* argv);
 
-/// In the child: writes `object` as one line into `pipe`, the descriptor in WorkerRequest. Writes nothing if the parent
-/// has closed its end of the pipe.
+/// In the worker: sends `object` through the descriptor in WorkerRequest. Sends nothing if the parent has closed its
+/// end of the pipe.
 void send_line(int pipe, const Json& object);
 
 }  // namespace raya

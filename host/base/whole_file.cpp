@@ -336,10 +336,6 @@ void reserve_stdout() {
         throw UserError("cannot reserve stdout for a file: " + std::generic_category().message(errno));
 }
 
-void restore_stdout() {
-    if (reserved_stdout >= 0) ::dup2(reserved_stdout, STDOUT_FILENO);
-}
-
 bool stdout_is_reserved() { return reserved_stdout != kNotReserved; }
 
 int take_stdout() {

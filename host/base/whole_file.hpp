@@ -82,9 +82,6 @@ int take_stdin();
 void reserve_stdout();
 bool stdout_is_reserved();
 
-/// Undoes reserve_stdout(), because the program executes another one. Async-signal-safe.
-void restore_stdout();
-
 /// Reserves stdout if necessary and returns its descriptor, which the caller closes. A second call throws UserError,
 /// because the content of two files would be mixed.
 int take_stdout();

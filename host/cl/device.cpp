@@ -124,7 +124,7 @@ std::string name_of(const cl::Platform& platform) try {
 }  // namespace
 
 std::vector<cl::Device> all_devices() {
-    const Discovery discovery;
+    const DeviceSearch search;
     std::vector<cl::Device> all;
     std::vector<std::string> errors;
     for (const cl::Platform& platform : all_platforms()) try {

@@ -1,6 +1,5 @@
 #include "host/cl/driver.hpp"
 
-#include <fcntl.h>
 #include <fmt/core.h>
 #include <pthread.h>
 #include <sys/resource.h>
@@ -8,17 +7,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <csignal>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <list>
 #include <system_error>
 #include <thread>
-#include <vector>
 
-#include "host/base/child_process.hpp"
 #include "host/base/encoding.hpp"
 #include "host/base/interruption.hpp"
 #include "host/base/log.hpp"
@@ -33,6 +31,12 @@ namespace {
 
 std::atomic<const char*> current_operation{nullptr};
 static_assert(std::atomic<const char*>::is_always_lock_free);
+
+constexpr unsigned kSearchLimit_s = 20;  // seconds that the drivers may take to list their devices
+std::atomic<bool> is_searching{false};
+void (*on_long_search)(int) = SIG_IGN;  // handler of SIGALRM; SIG_IGN unless install_crash_handlers() was called
+
+constexpr std::array kCrashSignals = {SIGABRT, SIGSEGV, SIGBUS, SIGILL};  // PoCL handles SIGFPE: kernels divide by 0
 
 std::array<char, 300> crash_prefix{};  // "rank 1 on node7: ", or empty
 unsigned int crash_delay_us = 0;
@@ -54,10 +58,9 @@ extern "C" void report_driver_crash(int signal) {
     pid_t first_thread = 0;
     if (!crashed_thread.compare_exchange_strong(first_thread, thread) && first_thread != thread)
         for (;;) ::pause();  // another thread crashed first: it ends the process
-    remove_files_in_progress();
+    remove_file_in_progress();
     const char* operation = current_operation.load();
     if (operation == nullptr && thread != ::getpid()) operation = "running a kernel";  // probably a driver's thread
-    if (first_thread == 0) restart_after_crash();
     if (operation == nullptr || first_thread != 0) {  // outside of drivers, or in this handler itself
         std::signal(signal, SIG_DFL);
         ::raise(signal);
@@ -66,14 +69,17 @@ extern "C" void report_driver_crash(int signal) {
     if (crash_delay_us > 0) ::usleep(crash_delay_us);
     write_message("\nraya: ");
     write_message(crash_prefix.data());
-    write_message("the OpenCL driver crashed (SIG");
+    write_message(signal == SIGALRM ? "the OpenCL driver hangs (SIG" : "the OpenCL driver crashed (SIG");
     write_message(::sigabbrev_np(signal));
     write_message(") while ");
     write_message(operation);
     write_message(
-        "; remedy: smaller work-groups (--group) or fewer lanes (--lanes), an empty folder as POCL_CACHE_DIR in case "
-        "the cache is damaged, more memory (ulimit -v), a mounted /sys, or another driver (raya devices); raya verify "
-        "shows the driver's errors\n");
+        is_searching
+            ? "; remedy: leave out the driver: set OCL_ICD_VENDORS to the .icd file of another one "
+              "(/etc/OpenCL/vendors)\n"
+            : "; remedy: smaller work-groups (--group) or fewer lanes (--lanes), an empty folder as POCL_CACHE_DIR in "
+              "case the cache is damaged, more memory (ulimit -v), a mounted /sys, or another driver (raya devices); "
+              "raya verify shows the driver's errors\n");
     ::_exit(kExitDeviceError);
 }
 
@@ -81,21 +87,12 @@ extern "C" void report_driver_crash(int signal) {
 void report_driver_exit() {
     const char* const operation = current_operation.load();
     if (operation == nullptr) return;
-    remove_files_in_progress();
+    remove_file_in_progress();
     for (const char* text :
          {"\nraya: ", static_cast<const char*>(crash_prefix.data()), "the OpenCL driver ended the program while ",
           operation, "; remedy: free some space for PoCL's kernels, or name another folder in POCL_CACHE_DIR\n"})
         write_message(text);
     ::_exit(kExitDeviceError);
-}
-
-/// Replaces the signal's handler, if it is `old_handler`, by `new_handler`.
-void replace_handler(int signal, void (*old_handler)(int), void (*new_handler)(int)) {
-    struct sigaction action {};
-    if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != old_handler) return;
-    action.sa_handler = new_handler;
-    action.sa_flags = SA_NODEFER | SA_ONSTACK;
-    ::sigaction(signal, &action, nullptr);
 }
 
 /// Returns the size of a new thread's stack in bytes; its guard has the same size. If RLIMIT_AS limits the address
@@ -126,31 +123,6 @@ std::string unsafe_reason(fs::path folder) {
     return unsafe_path_reason(folder, {::geteuid()}, Sticky::kRefused);
 }
 
-/// Creates a folder that only this user may access. Returns true if the folder then belongs to this user and has these
-/// permissions; another user may have created it before.
-bool make_private_folder(const fs::path& folder) {
-    struct stat status {};
-    ::mkdir(folder.c_str(), S_IRWXU);
-    return ::lstat(folder.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == ::geteuid() &&
-           (status.st_mode & ACCESSPERMS) == S_IRWXU;
-}
-
-/// In the folder for temporary files, creates a folder that only this user may access, and returns its path. Throws
-/// DeviceError if that fails. `reason`, for the error message: why PoCL's default folder is not safe.
-fs::path private_cache_folder(const std::string& reason) {
-    std::error_code error;
-    fs::path temporary = fs::canonical(fs::temp_directory_path(error), error);
-    if (error) temporary = "/tmp";
-    const std::string base_path = temporary / fmt::format("raya-pocl-cache-{}", ::geteuid());
-    if (unsafe_path_reason(temporary, {::geteuid()}, Sticky::kAllowed).empty())
-        for (const char* suffix : {"", "-1", "-2", "-3", "-4", "-5", "-6", "-7", "-8", "-9"})
-            if (make_private_folder(base_path + suffix)) return base_path + suffix;
-    throw DeviceError(fmt::format(
-        "no safe folder for PoCL's kernel cache: {0}; none of the folders '{1}', '{1}-1', ... '{1}-9' can be "
-        "restricted to this user; name another folder in POCL_CACHE_DIR",
-        reason, base_path));
-}
-
 }  // namespace
 
 DriverCall::DriverCall(const char* operation) : outer_operation_(current_operation.exchange(operation)) {}
@@ -162,11 +134,11 @@ void set_crash_prefix(const std::string& prefix, double delay_s) {
     crash_delay_us = static_cast<unsigned int>(delay_s * 1e6);
 }
 
-void install_crash_handlers() {
-    std::atexit(report_driver_exit);
-    for (const int signal : kCrashSignals) {
-        replace_handler(signal, SIG_DFL, report_driver_crash);
-        if (signal != SIGFPE) protect_handler(signal);  // PoCL's SIGFPE handler lets kernels continue after x / 0
+void install_crash_handlers(bool is_worker) {
+    on_long_search = is_worker ? SIG_DFL : report_driver_crash;
+    if (!is_worker) {
+        std::atexit(report_driver_exit);
+        for (const int signal : kCrashSignals) handle_signal(signal, report_driver_crash);
     }
     static AlternateStack signal_stack;
     const stack_t alternate{signal_stack.data(), 0, signal_stack.size()};
@@ -186,25 +158,23 @@ void install_crash_handlers() {
     ::pthread_attr_destroy(&large_stack);
 }
 
-void remove_crash_handlers() {
-    for (const int signal : kCrashSignals) {
-        unprotect_handler(signal);
-        replace_handler(signal, report_driver_crash, SIG_DFL);
-    }
-}
-
 void set_driver_cache_folder() {
     if (!environment_value(kCacheVariable).empty()) return;
-    std::error_code error;
-    const fs::path preferred = fs::weakly_canonical(fs::absolute(default_cache_folder(), error), error);
-    const std::string reason =
-        error ? fmt::format("'{}': {}", default_cache_folder().string(), error.message()) : unsafe_reason(preferred);
     // PoCL gets the resolved path that was checked, because a symbolic link could be changed after the check.
-    const fs::path chosen = reason.empty() ? preferred : private_cache_folder(reason);
-    ::setenv(kCacheVariable, chosen.c_str(), 1);
-    if (!reason.empty())
+    std::error_code error;
+    fs::path folder = fs::weakly_canonical(fs::absolute(default_cache_folder(), error), error);
+    const std::string reason = error ? default_cache_folder().string() + ": " + error.message() : unsafe_reason(folder);
+    if (!reason.empty()) {
+        const fs::path temporary = fs::canonical(fs::temp_directory_path(error), error);
+        folder = (error ? "/tmp" : temporary) / fmt::format("raya-pocl-cache-{}", ::geteuid());
+        ::mkdir(folder.c_str(), S_IRWXU);
+        if (const std::string why = unsafe_reason(folder); !why.empty())
+            throw DeviceError(
+                fmt::format("no safe folder for PoCL's kernel cache: {}; {}; name one in POCL_CACHE_DIR", reason, why));
         warn(fmt::format("warning: {}: PoCL keeps its kernels in {}; set POCL_CACHE_DIR to use another folder", reason,
-                         chosen.string()));
+                         folder.string()));
+    }
+    ::setenv(kCacheVariable, folder.c_str(), 1);
 }
 
 std::string driver_cache_problem() {
@@ -221,115 +191,17 @@ std::string driver_cache_problem() {
     }
 }
 
-namespace {
-
-// After 4 s the program starts again; then the drivers have as much time. A driver that takes longer is left out only
-// if another one answers.
-constexpr unsigned kLimit_s = 4;
-constexpr const char *kDrivers = "OCL_ICD_VENDORS", *kRestarted = "RAYA_RESTARTED";
-
-// What execve() needs in a signal handler. Empty: there is no restart.
-std::vector<char*> restart_arguments, restart_environment;
-int kept_descriptor = -1;
-std::atomic<int> discoveries = 0;
-
-extern "C" void restart(int signal) {
-    if (discoveries == 0) {  // LLVM has kept this handler, and calls it for a later crash
-        std::signal(signal, SIG_DFL);
-        ::raise(signal);
-        return;
-    }
-    sigset_t none;  // execve() keeps the signals that are blocked in a handler
-    ::sigemptyset(&none);
-    ::sigprocmask(SIG_SETMASK, &none, nullptr);
-    restore_stdout();
-    if (kept_descriptor >= 0) ::fcntl(kept_descriptor, F_SETFD, 0);
-    ::execve("/proc/self/exe", restart_arguments.data(), restart_environment.data());
+DeviceSearch::DeviceSearch() {
+    if (on_long_search == SIG_IGN) return;
+    is_searching = true;
+    std::signal(SIGALRM, on_long_search);
+    ::alarm(kSearchLimit_s);
 }
 
-void replace_handlers(void (*old_handler)(int), void (*new_handler)(int)) {
-    for (const int crash : kCrashSignals) {
-        struct sigaction action {};
-        if (::sigaction(crash, nullptr, &action) == 0 && action.sa_handler == old_handler)
-            std::signal(crash, new_handler);
-    }
-}
-
-std::vector<fs::path> driver_files() {
-    const std::string named = environment_value(kDrivers);
-    std::vector<fs::path> files;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(named.empty() ? "/etc/OpenCL/vendors" : named, error))
-        if (entry.path().extension() == ".icd") files.push_back(entry.path());
-    std::ranges::sort(files);
-    return files;
-}
-
-void leave_out_bad_drivers() {
-    struct Driver {
-        explicit Driver(const fs::path& named) : file(named) {}
-        fs::path file;
-        ChildProcess process{kDiscoveryTask, {{"driver", file.string()}}};
-    };
-    std::list<Driver> asked;
-    std::vector<fs::path> good, bad;
-    const std::string before = environment_value(kDrivers);
-    for (const fs::path& file : driver_files()) {
-        ::setenv(kDrivers, file.c_str(), 1);
-        asked.emplace_back(file);
-    }
-    before.empty() ? ::unsetenv(kDrivers) : ::setenv(kDrivers, before.c_str(), 1);
-    const Clock::time_point deadline = Clock::now() + std::chrono::seconds(kLimit_s);
-    for (Driver& driver : asked) {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
-        std::string line;
-        const bool answers =
-            driver.process.read(line, std::max(left, std::chrono::milliseconds(1))) == ChildProcess::Read::kLine;
-        (answers ? good : bad).push_back(driver.file);
-    }
-    if (good.empty() || bad.empty()) return;
-    static const TemporaryFolder folder("raya-drivers");  // deleted when the program ends
-    for (const fs::path& file : good) fs::create_symlink(fs::absolute(file), folder / file.filename().string());
-    ::setenv(kDrivers, folder.path().c_str(), 1);
-    for (const fs::path& file : bad)
-        warn(
-            fmt::format("warning: the OpenCL driver {} hangs or crashes when it is asked for its devices, and is left "
-                        "out; remedy: remove or update it, or set OCL_ICD_VENDORS",
-                        file.string()));
-}
-
-}  // namespace
-
-void restart_without_bad_drivers(char** argv, int kept) {
-    if (std::getenv(kRestarted) != nullptr) {
-        ::unsetenv(kRestarted);
-        return leave_out_bad_drivers();
-    }
-    for (char** argument = argv; *argument != nullptr; ++argument) restart_arguments.push_back(*argument);
-    restart_arguments.push_back(nullptr);
-    for (char** variable = environ; *variable != nullptr; ++variable) restart_environment.push_back(*variable);
-    static std::string restarted = std::string(kRestarted) + "=1";
-    restart_environment.push_back(restarted.data());
-    restart_environment.push_back(nullptr);
-    kept_descriptor = kept;
-}
-
-Discovery::Discovery() {
-    if (discoveries++ > 0 || restart_arguments.empty()) return;
-    // The crashes of a worker; other processes have handlers, which call restart_after_crash().
-    replace_handlers(SIG_DFL, restart);
-    std::signal(SIGALRM, restart);
-    ::alarm(kLimit_s);
-}
-
-Discovery::~Discovery() {
-    if (--discoveries > 0 || restart_arguments.empty()) return;
+DeviceSearch::~DeviceSearch() {
+    if (!is_searching.exchange(false)) return;
     ::alarm(0);
-    replace_handlers(restart, SIG_DFL);
-}
-
-void restart_after_crash() {
-    if (discoveries > 0 && !restart_arguments.empty()) restart(SIGALRM);
+    std::signal(SIGALRM, SIG_DFL);
 }
 
 }  // namespace raya

@@ -1,18 +1,15 @@
 #include "host/cl/kernel_source.hpp"
 
-#include <fcntl.h>
 #include <fmt/core.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spawn.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
+#include <array>
+#include <chrono>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -123,59 +120,32 @@ namespace {
 
 constexpr const char* kIlOption = "--il";
 
-// A file in memory, which a compiler reads or writes.
-class MemoryFile {
-  public:
-    MemoryFile()
-        : descriptor_(::memfd_create("raya", MFD_CLOEXEC)), path_(fmt::format("/proc/self/fd/{}", descriptor_)) {}
-    MemoryFile(const MemoryFile&) = delete;
-    MemoryFile& operator=(const MemoryFile&) = delete;
-    ~MemoryFile() { ::close(descriptor_); }
-
-    const std::string& path() const { return path_; }  // valid in this process, and in a child process before exec
-    std::string content() const { return read_file(path_); }
-
-  private:
-    int descriptor_;
-    std::string path_;
-};
-
-// Runs a program with stdin from `in`, stdout to `out` and stderr to `log`. Throws DeviceError unless it succeeds.
-void run_compiler(std::vector<std::string> arguments, const MemoryFile& in, const MemoryFile& out,
-                  const MemoryFile& log, const std::string& operation) {
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    ::posix_spawn_file_actions_init(&files);
-    ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, in.path().c_str(), O_RDONLY, 0);
-    ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out.path().c_str(), O_WRONLY, 0);
-    ::posix_spawn_file_actions_addopen(&files, STDERR_FILENO, log.path().c_str(), O_WRONLY, 0);
-    pid_t child = -1;
-    const int error = ::posix_spawnp(&child, argv[0], &files, nullptr, argv.data(), environ);
-    ::posix_spawn_file_actions_destroy(&files);
-    if (error != 0)
+// Runs a compiler. Throws DeviceError, with its messages, unless it succeeds.
+void run_compiler(const std::vector<std::string>& arguments, const std::string& operation) {
+    Child compiler(arguments, STDERR_FILENO);
+    std::string log;
+    std::array<char, 4096> block{};
+    for (std::optional<std::size_t> count; count != 0u; log.append(block.data(), count.value_or(0)))
+        count = compiler.read(block.data(), block.size(), std::chrono::seconds(1));
+    const int status = compiler.wait();
+    if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)
         throw DeviceError(
-            fmt::format("{0}: --il cannot run {1}: {2}; remedy: install clang-{3} and llvm-spirv-{3} (tools/setup "
-                        "--gpu), or omit --il",
-                        operation, arguments[0], std::strerror(error), llvm_version()));
-    int status = 0;
-    while (::waitpid(child, &status, 0) != child)
-        if (errno != EINTR) throw DeviceError(fmt::format("{}: lost {}", operation, arguments[0]));
+            fmt::format("{0}: --il cannot run {1}; remedy: install clang-{2} and llvm-spirv-{2} (tools/setup --gpu), "
+                        "or omit --il",
+                        operation, arguments[0], llvm_version()));
     if (status != 0)
         throw DeviceError(fmt::format("{}: {} ended with {}\n  options: {}\n  build log:\n{}", operation, arguments[0],
-                                      ending_text(status), fmt::join(arguments, " "), log.content()));
+                                      ending_text(status), fmt::join(arguments, " "), log));
 }
 
 // Returns the source as SPIR-V. Compiles without optimisation, because of defects of llvm-spirv
 // (docs/porting.md); the driver optimises. The version is 1.0; with -g, which needs it, 1.1.
 std::string compiled_to_spirv(const std::string& source, const std::string& options, cl_uint address_bits,
                               const std::string& operation) {
-    MemoryFile text, bitcode, spirv, log;
-    std::ofstream(text.path()) << source;
+    const TemporaryFolder folder("raya-spirv");
+    const std::string text = folder / "kernel.cl", bitcode = folder / "kernel.bc", spirv = folder / "kernel.spv";
+    write_whole_file(text, source);
     std::vector<std::string> clang = {std::string("clang-") + llvm_version(),
-                                      "-x",
-                                      "cl",
                                       "-target",
                                       address_bits == 32 ? "spir" : "spir64",
                                       "-O2",
@@ -184,14 +154,14 @@ std::string compiled_to_spirv(const std::string& source, const std::string& opti
                                       "-emit-llvm",
                                       "-c",
                                       "-o",
-                                      "-",
-                                      "-"};
+                                      bitcode,
+                                      text};
     std::istringstream words(options);
     for (std::string word; words >> word;) clang.push_back(word);
-    run_compiler(clang, text, bitcode, log, operation);
-    run_compiler({std::string("llvm-spirv-") + llvm_version(), "--spirv-max-version=1.1", "-o", "-", "-"}, bitcode,
-                 spirv, log, operation);
-    return spirv.content();
+    run_compiler(clang, operation);
+    run_compiler({std::string("llvm-spirv-") + llvm_version(), "--spirv-max-version=1.1", "-o", spirv, bitcode},
+                 operation);
+    return read_file(spirv);
 }
 
 }  // namespace

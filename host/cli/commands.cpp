@@ -19,7 +19,6 @@
 #include "host/base/encoding.hpp"
 #include "host/base/interruption.hpp"
 #include "host/base/whole_file.hpp"
-#include "host/cl/device.hpp"
 #include "host/cl/driver.hpp"
 #include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
@@ -97,7 +96,7 @@ constexpr const char* kEnvironment =
 [[noreturn]] void report_uncaught() {
     const std::type_info* const type = abi::__cxa_current_exception_type();
     if (type == nullptr || *type != typeid(std::bad_alloc)) __gnu_cxx::__verbose_terminate_handler();
-    remove_files_in_progress();
+    remove_file_in_progress();
     for (const std::string_view part : {"raya: ", kOutOfMemory, "\n"})
         if (::write(STDERR_FILENO, part.data(), part.size()) < 0) break;
     ::_exit(kExitUserError);
@@ -115,7 +114,6 @@ void open_standard_files() {
 
 // Runs raya as a worker process. If the task fails, the last line of the worker's output contains the error.
 int run_worker(const WorkerRequest& request) {
-    remove_crash_handlers();  // the parent process reports the worker's crashes
     const auto send_error = [&](const char* kind, const std::exception& error) {
         send_line(request.pipe, {{"error", error.what()}, {"kind", kind}});
         return kExitOk;
@@ -123,8 +121,6 @@ int run_worker(const WorkerRequest& request) {
     try {
         if (request.task == kTrialTask)
             run_trial(request.pipe, request.settings);
-        else if (request.task == kDiscoveryTask)
-            send_line(request.pipe, {{"devices", all_devices().size()}});
         else
             run_checks(request.pipe, request.settings, render_case);
         return kExitOk;
@@ -250,15 +246,12 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
 int run_program(int argc, char** argv, const std::string& build) {
     open_standard_files();
     install_interrupt_handlers();
-    install_crash_handlers();
     silence_signals_of_other_ranks();
     try {
-        if (const auto request = worker_request(argc, argv)) {
-            if (request->task != kDiscoveryTask) restart_without_bad_drivers(argv, request->pipe);
-            return run_worker(*request);
-        }
+        const auto request = worker_request(argc, argv);
+        install_crash_handlers(request.has_value());  // the parent process reports a worker's crashes
+        if (request) return run_worker(*request);
         const std::unique_ptr<Ranks> ranks = open_ranks();
-        if (!ranks) restart_without_bad_drivers(argv, -1);
         if (ranks)
             set_crash_prefix(fmt::format("rank {} on {}: ", ranks->rank(), ranks->host()),
                              failure_delay_s(ranks->rank()));

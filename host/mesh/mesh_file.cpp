@@ -1,9 +1,6 @@
 #include "host/mesh/mesh_file.hpp"
 
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <poll.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,7 +10,6 @@
 #include <chrono>
 #include <stdexcept>
 #include <string_view>
-#include <thread>
 
 #include "host/base/child_process.hpp"
 #include "host/base/encoding.hpp"
@@ -50,47 +46,26 @@ std::filesystem::path import_program(const MeshScene& scene) {
 class ImportProcess : public RecordSource {
   public:
     ImportProcess(const std::filesystem::path& file, const MeshScene& scene)
-        : scene_(scene), limit_(time_limit()), deadline_(Clock::now() + limit_) {
-        const std::string program = import_program(scene);
-        std::array<int, 2> ends{};
-        if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("cannot create a pipe to a child process");
-        pipe_ = ends[0];
-        try {
-            child_ = start_child(program, {kImportProgram, std::to_string(ends[1]), file.string()}, ends[1]);
-        } catch (...) {
-            for (const int end : ends) ::close(end);
-            throw;
-        }
-        ::close(ends[1]);
-    }
-    ImportProcess(const ImportProcess&) = delete;
-    ImportProcess& operator=(const ImportProcess&) = delete;
-    ~ImportProcess() override {
-        ::close(pipe_);
-        if (child_ >= 0) wait(Clock::now());
-    }
+        : scene_(scene), child_({import_program(scene), std::to_string(kReportDescriptor), file.string()}) {}
 
     void take(char* bytes, std::size_t count) override {
         while (count > 0) {
             const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline_ - Clock::now());
-            pollfd in{pipe_, POLLIN, 0};
-            const int ready = left.count() > 0 ? ::poll(&in, 1, static_cast<int>(left.count())) : 0;
-            if (ready == 0)
+            if (left.count() <= 0)
                 scene_.refuse(fmt::format(
                     "reading the mesh takes more than {} s; the file may be damaged; remedy for a large file: set "
                     "RAYA_MESH_TIMEOUT",
                     limit_.count()));
-            const ssize_t read_bytes = ready > 0 ? ::read(pipe_, bytes, count) : -1;
-            if (read_bytes < 0 && errno == EINTR) continue;
-            if (read_bytes <= 0) refuse_end();
-            bytes += read_bytes;
-            count -= static_cast<std::size_t>(read_bytes);
+            const auto got = child_.read(bytes, count, left);
+            if (got == 0u) refuse_end();
+            bytes += got.value_or(0);
+            count -= got.value_or(0);
         }
     }
 
   private:
     [[noreturn]] void refuse_end() {
-        const int status = wait(deadline_);
+        const int status = child_.wait();
         if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)
             scene_.refuse(fmt::format(
                 "cannot read meshes: {} does not start; remedy: install assimp (Debian: libassimp5)", kImportProgram));
@@ -98,22 +73,10 @@ class ImportProcess : public RecordSource {
                                   ending_text(status)));
     }
 
-    /// Waits for the end of the process, kills it at the deadline, and returns its status.
-    int wait(Clock::time_point deadline) {
-        int status = 0;
-        while (::waitpid(child_, &status, WNOHANG) == 0) {
-            if (Clock::now() >= deadline) ::kill(child_, SIGKILL);
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        child_ = -1;
-        return status;
-    }
-
     const MeshScene& scene_;
-    std::chrono::seconds limit_;
-    Clock::time_point deadline_;
-    int pipe_ = -1;
-    pid_t child_ = -1;
+    std::chrono::seconds limit_ = time_limit();
+    Clock::time_point deadline_ = Clock::now() + limit_;
+    Child child_;
 };
 
 /// Checks that the file can be read, because assimp's messages do not say why it cannot.

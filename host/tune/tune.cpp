@@ -79,44 +79,34 @@ Json request_json(const Workload& workload, const TrialSetup& render, const std:
             {"stop_early", samples == kSamples ? 1 : 0}};
 }
 
-// Reads the lines of a trial's process until it is done, fails, or has run for `limit_s` seconds.
-Trial read_trial(ChildProcess& process, const std::vector<TunedValues>& candidates, const std::string& expected_check,
-                 double limit_s, const TrialProgress& progress) {
+// Runs a trial in a child process, because drivers may crash or hang. Ends it after `limit_s` seconds.
+Trial run_trial(const Json& request, const std::vector<TunedValues>& candidates, const std::string& expected_check,
+                double limit_s, const TrialProgress& progress) {
     const Clock::time_point start = Clock::now();
     Trial trial{.values = candidates.back(), .error = {}, .check = {}, .samples = {}};
     std::size_t built = 0;  // number of candidates whose kernels are built
-    const auto failed = [&](const std::string& why) {
+    const auto fail = [&](const std::string& why) {
         trial.error = (built < candidates.size() ? "compile: " : "runtime: ") + why.substr(0, why.find('\n'));
-        return trial;
     };
-    for (;;) {
-        std::string text;
-        const ChildProcess::Read read = process.read(text, std::chrono::milliseconds(200));
-        if (read == ChildProcess::Read::kEnd) return failed("ended by " + ending_text(process.wait()));
-        if (read == ChildProcess::Read::kNothing) progress(trial.values, seconds_since(start));
-        if (seconds_since(start) > limit_s) {
+    const auto take = [&](const Json& line) {
+        if (line.is_null()) progress(trial.values, seconds_since(start));
+        if (line.contains("built")) built = line["built"];
+        if (line.contains("check")) trial.check = line["check"];
+        if (line.contains("samples")) trial.samples = line["samples"];
+        if (seconds_since(start) > limit_s)
             trial.error = fmt::format("timeout: not done in {:.0f} s", limit_s);
-            return trial;
-        }
-        if (read != ChildProcess::Read::kLine) continue;
-        const Json line = parse_json(text, {"the trial's process"});
-        if (const Json* error = find_member(line, "error")) {
-            if (json_text(line.at("kind")) == "user") throw UserError(json_text(*error));
-            return failed(json_text(*error));
-        }
-        if (const Json* count = find_member(line, "built")) built = json_integer(*count);
-        if (const Json* check = find_member(line, "check")) {
-            trial.check = json_text(*check);
-            if (!expected_check.empty() && trial.check != expected_check) {
-                trial.error = fmt::format("correctness: image is {}; expected {}", trial.check, expected_check);
-                return trial;
-            }
-        }
-        if (const Json* all_samples = find_member(line, "samples")) {
-            all_samples->get_to(trial.samples);
-            return trial;
-        }
+        else if (line.contains("check") && !expected_check.empty() && trial.check != expected_check)
+            trial.error = fmt::format("correctness: image is {}; expected {}", trial.check, expected_check);
+        return trial.error.empty() && trial.samples.empty();
+    };
+    try {
+        if (const auto status = run_child(kTrialTask, request, take)) fail("ended by " + ending_text(*status));
+    } catch (const UserError&) {
+        throw;
+    } catch (const std::runtime_error& error) {
+        fail(error.what());
     }
+    return trial;
 }
 
 }  // namespace
@@ -200,10 +190,9 @@ Tuning tune(const DeviceInfo& device, const Workload& workload, const TuneSettin
     result.space = space_of(device, workload.key());
     const TunedValues defaults = result.best = result.space.defaults;
     std::string expected_check;
-    // Each trial runs in a child process, because drivers may crash or hang; ~ChildProcess() ends it.
     const auto trial_of = [&](const std::vector<TunedValues>& candidates, std::uint32_t samples, double limit_s) {
-        ChildProcess process(kTrialTask, request_json(workload, settings.render, candidates, samples));
-        return read_trial(process, candidates, expected_check, limit_s, progress);
+        return run_trial(request_json(workload, settings.render, candidates, samples), candidates, expected_check,
+                         limit_s, progress);
     };
     const Trial first = trial_of({defaults}, 1, kComparison_s);
     if (!first.error.empty())

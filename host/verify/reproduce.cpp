@@ -63,15 +63,15 @@ Observation observe(const CheckRun& v, std::size_t step = 0, const std::filesyst
     Json request = settings_json(v.settings, v.selector, 0);
     request["environment"] = v.environment;
     request["capture"] = {{"step", step}, {"folder", folder.string()}};
-    ChildProcess process(kVerifyTask, request);
     Observation seen;
     const Clock::time_point start = Clock::now();
-    for (std::string line;;) {
-        const ChildProcess::Read read = process.read(line, std::chrono::seconds(1));
-        if (read == ChildProcess::Read::kEnd) break;
-        if (read == ChildProcess::Read::kLine) take_line(seen, parse_json(line, {"the process of the checks"}));
-        if (ends_at_step && seen.steps.size() == step) break;
-        if (v.settings.timeout_s > 0 && seconds_since(start) > v.settings.timeout_s) break;
+    try {
+        run_child(kVerifyTask, request, [&](const Json& line) {
+            if (!line.is_null()) take_line(seen, line);
+            const bool is_late = v.settings.timeout_s > 0 && seconds_since(start) > v.settings.timeout_s;
+            return !is_late && !(ends_at_step && seen.steps.size() == step);
+        });
+    } catch (const std::runtime_error&) {  // the run ends without a passed check
     }
     return seen;
 }

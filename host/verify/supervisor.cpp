@@ -92,24 +92,20 @@ class Supervision {
         VerifySettings remaining = settings_;
         if (settings_.soak_s > 0)
             remaining.soak_s = std::max(1e-3, settings_.soak_s - seconds_since(supervision_start_));
-        ChildProcess process(kVerifyTask, settings_json(remaining, selector, index));
-        for (std::string line;;) {
-            const ChildProcess::Read read = process.read(line, std::chrono::seconds(1));
-            if (read == ChildProcess::Read::kEnd) break;
-            if (read == ChildProcess::Read::kLine)
-                take(parse_json(line, {"the process of the checks"}));
+        const auto status = run_child(kVerifyTask, settings_json(remaining, selector, index), [&](const Json& line) {
+            if (!line.is_null())
+                take(line);
             else if (sink_.running && running_)
                 sink_.running(running_->layer, running_->name, check_seconds());
-            if (running_ && settings_.timeout_s > 0 && check_seconds() > settings_.timeout_s) {
-                finish(
-                    stopped_check(fmt::format("no result after {:.0f} s, so the process was ended", check_seconds())));
-                return true;  // the destructor kills the process
-            }
+            return !running_ || settings_.timeout_s <= 0 || check_seconds() <= settings_.timeout_s;
+        });
+        if (!status) {
+            finish(stopped_check(fmt::format("no result after {:.0f} s, so the process was ended", check_seconds())));
+            return true;
         }
-        const int status = process.wait();
-        if (ended_ && status == 0) return false;
-        refuse_without_device(status);
-        finish(stopped_check("ended by " + ending_text(status)));
+        if (ended_ && *status == 0) return false;
+        refuse_without_device(*status);
+        finish(stopped_check("ended by " + ending_text(*status)));
         return !ended_ && settings_.done > done_before;
     }
 
@@ -119,7 +115,6 @@ class Supervision {
     double check_seconds() const { return seconds_since(start_); }
 
     void take(const Json& line) {
-        if (const Json* error = find_member(line, "error")) refuse(json_text(line.at("kind")), json_text(*error));
         if (find_member(line, "devices")) take_device(line);
         if (const Json* started = find_member(line, "started")) {
             running_ = Check{json_text(started->at("layer")), json_text(started->at("name")), 0, {}};
@@ -127,12 +122,6 @@ class Supervision {
         }
         if (const Json* check = find_member(line, "check")) finish(check_of(*check));
         ended_ = ended_ || find_member(line, "ended");
-    }
-
-    [[noreturn]] static void refuse(const std::string& kind, const std::string& error) {
-        if (kind == "user") throw UserError(error);
-        if (kind == "device") throw DeviceError(error);
-        throw std::runtime_error(error);
     }
 
     void take_device(const Json& line) {

@@ -103,33 +103,30 @@ TEST_CASE("meshes: a face of 96,000 corners is refused at once", "[cli][hostile]
                   {"x.ply", "more elements than raya reads"});
 }
 
-TEST_CASE("a bad driver is named, and the others are used", "[cli][hostile]") {
+TEST_CASE("a driver that crashes or hangs is an error with a remedy; one that fails is left out", "[cli][hostile]") {
     const fs::path pocl = "/etc/OpenCL/vendors/pocl.icd";
     if (!fs::exists(pocl) || kSanitized) return;
-    const ScratchFolder vendors;
+    const ScratchFolder vendors, outputs;
     fs::copy_file(pocl, vendors / "pocl.icd");
     write_text(vendors / "bad.icd", RAYA_BAD_DRIVER "\n");
-    for (const char* const fault : {"hang platforms", "hang devices", "hang info", "crash platforms", "crash devices",
-                                    "crash info", "fail devices", "fail info"}) {
-        const bool is_named_by_file = !std::string(fault).starts_with("fail");
-        const RunOptions options{.variables = {{"OCL_ICD_VENDORS", vendors.path()}, {"RAYA_BAD_DRIVER", fault}}};
-        for (const Arguments& command :
-             {Arguments{"devices"}, Arguments{"verify", "--timeout", "3", "--only", "machine mapping: rows"}}) {
-            if (std::string(fault) == "hang devices" && command.size() > 1) continue;  // as "hang info", to save 8 s
-            const auto start = std::chrono::steady_clock::now();
-            const RunOutcome run = run_raya(command, options);
+    const Arguments verify = {"verify", "--only", "machine mapping: rows"};
+    const auto with_fault = [&](const std::string& fault) -> RunOptions {
+        return {.variables = {{"OCL_ICD_VENDORS", vendors.path()}, {"RAYA_BAD_DRIVER", fault}}};
+    };
+    for (const char* const fault : {"crash platforms", "crash devices", "crash info", "hang devices"}) {
+        CAPTURE(fault);
+        check_refused(outputs, {"devices"}, 3, {"OCL_ICD_VENDORS"}, with_fault(fault));
+    }
+    check_refused(outputs, verify, 3, {"OCL_ICD_VENDORS"}, with_fault("crash platforms"));
+    for (const char* const fault : {"fail devices", "fail info", ""})
+        for (const Arguments& command : {Arguments{"devices"}, verify}) {
+            const RunOutcome run = run_raya(command, with_fault(fault));
             INFO(fault << "\n" << run.describe());
             CHECK(run.code == 0);
-            CHECK_THAT(run.err, Catch::Contains(is_named_by_file ? "bad.icd" : "Bad driver"));
-            CHECK_THAT(run.err, Catch::Contains("left out"));
+            CHECK(contains(run.err, "left out") == (fault[0] != '\0'));
+            CHECK(contains(run.err, "Bad driver") == (fault[0] != '\0'));
             CHECK_THAT(run.out, Catch::Contains("Portable Computing Language"));
-            CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(30));  // 8 s on an idle machine
         }
-    }
-    const RunOutcome fine = run_raya({"devices"}, {.variables = {{"OCL_ICD_VENDORS", vendors.path()}}});
-    INFO(fine.describe());
-    CHECK((fine.code == 0 && fine.err.empty()));
-    CHECK_THAT(fine.out, Catch::Contains("not usable"));
 }
 
 TEST_CASE("verify: refuses times that are no times; --reproduce leaves no folders", "[cli][hostile]") {
