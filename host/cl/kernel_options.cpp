@@ -146,7 +146,14 @@ Kernels::Kernels(Session& session, const KernelOptions& options, const KernelSou
 const Program& Kernels::program(const std::string& file) {
     const auto found = programs_.find(file);
     if (found != programs_.end()) return found->second;
-    const Program program = session_.build(file, kernel_source(file, sources_), build_options_);
+    const std::string source = kernel_source(file, sources_);
+    std::vector<std::string> options = build_options_;
+    // The driver's cache would not recognise a file that is built again with another value of a macro that it does not
+    // contain.
+    std::erase_if(options, [&](const std::string& option) {
+        return option.starts_with("-DRAYA_") && source.find(option.substr(2, option.find('=') - 2)) == source.npos;
+    });
+    const Program program = session_.build(file, source, options);
     return programs_.emplace(file, program).first->second;
 }
 

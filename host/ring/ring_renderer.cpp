@@ -63,6 +63,7 @@ void RingRenderer::build() {
 
 void RingRenderer::build_exchange(KernelOptions options) {
     options.lanes = 1;
+    options.accel = RAYA_ACCEL_NONE;  // these kernels do not read the scene
     Kernels kernels(session_, options, settings_.kernels.sources);
     const ExchangeSetup setup{.session = session_,
                               .broadcast = broadcast_,

@@ -75,7 +75,7 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       trace_(kernels.get<node_kernels::TraceVoxel>()),
       route_(kernels.get<node_kernels::Route>()),
       accept_(kernels.get<node_kernels::Accept>()),
-      build_options_(kernels.program(node_kernels::Accept::kFile).options()) {
+      build_options_(kernels.program(node_kernels::TraceVoxel::kFile).options()) {
     session_.write("scatter", memories_, memories.words);
     session_.write("scatter", starts_, memories.starts);
     write_inbox_table();

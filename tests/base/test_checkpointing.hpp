@@ -7,6 +7,7 @@
 
 #include "host/base/checkpoint.hpp"
 #include "host/base/encoding.hpp"
+#include "host/base/json.hpp"
 
 namespace raya {
 
