@@ -1,4 +1,4 @@
-// Builds and runs test kernels for all numbers of lanes, with and without compiler optimisation.
+// Builds and runs test kernels for several numbers of lanes, with and without compiler optimisation.
 #pragma once
 #include <fmt/core.h>
 
@@ -12,7 +12,6 @@
 #include "host/cl/commands.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/verify/verdict.hpp"
-#include "tests/kernels/unoptimised.hpp"
 #include "tests/paths.h"
 
 namespace raya {
@@ -35,15 +34,9 @@ struct TestBuild {
     }
 };
 
-/// Builds in fp32 for each number of lanes, with and without optimisation. Tests compare all results with the first.
+/// Builds in fp32, with and without optimisation. Tests compare all results with the first.
 inline const std::vector<TestBuild>& test_builds() {
-    static const std::vector<TestBuild> all = [] {
-        std::vector<TestBuild> builds;
-        for (const bool optimised : {true, false})
-            for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
-                if (optimised || tests_unoptimised(lanes)) builds.push_back({lanes, optimised});
-        return builds;
-    }();
+    static const std::vector<TestBuild> all = {{1, true}, {4, true}, {16, true}, {1, false}};
     return all;
 }
 

@@ -85,46 +85,6 @@ inline ProbedPlaces find_places(KernelRunner& runner, const std::vector<std::uin
     return {runner.read(leaving), runner.read(places)};
 }
 
-/// A ray of the ray tree as shade_tree_step stores it.
-struct ProbedRay {
-    Vec3 origin, direction;
-    double weight;
-};
-
-struct ProbedSteps {
-    static constexpr std::size_t kStateWords = 3 + RAYA_EVENTS;
-    static constexpr std::size_t kNumberWords = 17;
-    std::vector<std::uint32_t> state;  // [ray][kStateWords]: as stored by shade_tree_step in probe.cl
-    std::vector<float> numbers;        // [ray][kNumberWords]: as stored by shade_tree_step in probe.cl
-
-    bool active(std::size_t ray) const { return state[ray * kStateWords] != 0; }
-    std::uint32_t level(std::size_t ray) const { return state[ray * kStateWords + 1]; }
-    std::uint32_t pending_levels(std::size_t ray) const { return state[ray * kStateWords + 2]; }
-    std::uint32_t events(std::size_t ray, std::size_t kind) const { return state[ray * kStateWords + 3 + kind]; }
-    Colour sum(std::size_t ray) const { return vector(ray, 0); }
-    ProbedRay followed(std::size_t ray) const { return {vector(ray, 3), vector(ray, 6), number(ray, 9)}; }
-    ProbedRay pending(std::size_t ray) const { return {vector(ray, 10), vector(ray, 13), number(ray, 16)}; }
-
-  private:
-    double number(std::size_t ray, std::size_t word) const { return numbers[ray * kNumberWords + word]; }
-    Vec3 vector(std::size_t ray, std::size_t word) const {
-        return {number(ray, word), number(ray, word + 1), number(ray, word + 2)};
-    }
-};
-
-inline ProbedSteps shade_tree_step(KernelRunner& runner, const std::vector<std::uint32_t>& job,
-                                   const std::vector<float>& rays, std::uint32_t level) {
-    const std::size_t count = rays.size() / 7;
-    const auto job_buffer = runner.filled("job", job);
-    const auto ray_buffer = runner.filled("rays", rays);
-    auto state = runner.constant<std::uint32_t>("state", count * ProbedSteps::kStateWords, 0);
-    auto numbers = runner.constant<float>("numbers", count * ProbedSteps::kNumberWords, 0);
-    runner
-        .run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&, Buffer<float>&>(
-            "shade_tree_step", count, job_buffer, ray_buffer, level, state, numbers);
-    return {runner.read(state), runner.read(numbers)};
-}
-
 /// Returns the bits of the numbers, for exact comparison.
 inline std::vector<std::uint32_t> bits(const std::vector<float>& numbers) {
     std::vector<std::uint32_t> words;

@@ -169,9 +169,13 @@ void compare_images(Findings& f, Session& session, const Scene& scene, const Rin
     using namespace whole_image;
     if (s.antialias.method == AntialiasMethod::kFilter)
         f.expect(count_differences(result.image, filtered(plain, s.format)) == 0, "filter of the whole image");
-    else
+    else {
         f.expect(count_differences(result.mask, contrast_mask(plain, s.antialias.threshold, s.format)) == 0,
                  "contrasts of the whole image");
+        for (std::size_t i = 0; i < plain.rgb.size(); ++i)
+            f.expect(result.mask.rgb[i] == 1 || result.image.rgb[i] == plain.rgb[i], "pixel without a mark");
+        f.expect(result.phases[1].events[RAYA_PRIMARY] == 4 * result.recomputed, "points of marked pixels");
+    }
 }
 
 /// `simple`: result without an accelerator; `counted`: result with the accelerator of `s`, on which the counts of tests
@@ -362,7 +366,7 @@ void check_seen(const Seen& seen) {
 TEST_CASE("ring: image and counts are those of the simplest machine", "[property][ring]") {
     Session session(choose_device(""));
     Seen seen;
-    for (const std::uint64_t seed : seeds(kFailedRingSeeds, 50, 2000)) {
+    for (const std::uint64_t seed : seeds(kFailedRingSeeds, 120, 3000)) {
         CAPTURE(seed);
         CHECK(check_ring(session, seed, seen) == "");
     }
@@ -372,7 +376,7 @@ TEST_CASE("ring: image and counts are those of the simplest machine", "[property
 TEST_CASE("torus: image and counts are those of the simplest machine", "[property][torus]") {
     Session session(choose_device(""));
     Seen seen;
-    for (const std::uint64_t seed : seeds(kFailedTorusSeeds, 24, 600)) {
+    for (const std::uint64_t seed : seeds(kFailedTorusSeeds, 50, 1000)) {
         CAPTURE(seed);
         CHECK(check_torus(session, seed, seen) == "");
     }

@@ -1,14 +1,9 @@
-// Antialiasing on the ring, compared bit for bit with functions of whole images (whole_image.hpp), for random
-// distributions of the image over PEs. RAYA_ANTIALIAS_CASES sets the number of cases, for example 1000.
+// Anti-aliasing on the ring: sample points, thresholds, and the paper's numbers of rotations. That images do not depend
+// on the distribution of the pixels, and equal functions of the whole image: tests/property.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
-#include <map>
-#include <tuple>
 
-#include "tests/ring/grid_scene.hpp"
 #include "tests/ring/render_scene.hpp"
-#include "tests/ring/small_mapping.hpp"
 #include "tests/ring/whole_image.hpp"
 
 namespace raya {
@@ -17,78 +12,18 @@ namespace {
 using whole_image::count_differences;
 using whole_image::value_at;
 
-constexpr double kPixelsPerUnit = 32;
-
-/// [size]: width, height. There are few sizes, so that few reference images are rendered. Some sides have one or two
-/// pixels, so that pixels have few neighbours.
-constexpr std::array<std::array<std::uint32_t, 2>, 10> kSizes = {
-    {{1, 1}, {1, 9}, {8, 1}, {2, 2}, {3, 2}, {7, 5}, {17, 13}, {32, 20}, {8, 40}, {39, 40}}};
-
-int case_count() {
-    const char* given = std::getenv("RAYA_ANTIALIAS_CASES");
-    return given ? std::atoi(given) : 30;
-}
-
-/// Returns a random case. The number of PEs is 1 to width * height and often divides the width.
-RingCase random_case(SplitMix& random, const std::string& format) {
-    const auto& size = kSizes[random_below(random, kSizes.size())];
-    RingCase c{.width = size[0], .height = size[1], .format = format};
-    c.pes = 1 + random_below(random, random.next() % 2 ? c.width : c.width * c.height);
-    while (random.next() % 2 && c.width % c.pes) c.pes = 1 + random_below(random, c.width);
-    c.offset = random_below(random, c.width);
-    c.fold = random.next() % 2 ? Fold::kBlock : Fold::kCyclic;
-    c.sampling = c.width % 2 ? Sampling::kCorners : Sampling::kCentres;
-    return c;
-}
-
-Antialias random_supersampling(SplitMix& random) {
-    constexpr std::array<double, 4> kThresholds = {0, 1, 0.125, 0.03125};
-    const std::uint32_t choice = random_below(random, 8);
-    return {.method = AntialiasMethod::kSupersample,
-            .threshold =
-                choice < kThresholds.size() ? kThresholds[choice] : std::ldexp(random_below(random, 1u << 30), -31),
-            .points = random.next() % 2 ? RAYA_POINTS_AXES : RAYA_POINTS_DIAGONALS};
-}
-
-/// Reference images of the scene without antialiasing. A single PE renders each image once.
-class PlainImages {
-  public:
-    explicit PlainImages(Session& session) : session_(session) {}
-
-    /// Returns the image at the case's size.
-    const RingResult& image_of(const RingCase& c) { return render(c, c.width, c.height, kPixelsPerUnit); }
-
-    /// Returns the image sampled every half pixel, with a margin of half a pixel: point (2 j + 1, 2 x + 1) is the
-    /// sample point of the case's pixel (j, x).
-    const RingResult& fine_image_of(const RingCase& c) {
-        RingCase centres = c;
-        centres.sampling = Sampling::kCentres;
-        return render(centres, 2 * c.width + 1, 2 * c.height + 1, 2 * kPixelsPerUnit);
-    }
-
-  private:
-    const RingResult& render(const RingCase& c, std::uint32_t width, std::uint32_t height, double pixels_per_unit) {
-        const auto key = std::tuple(c.format, c.sampling, width, height, pixels_per_unit);
-        const auto found = images_.find(key);
-        if (found != images_.end()) return found->second;
-        const RingSettings settings = settings_of({.width = width,
-                                                   .height = height,
-                                                   .pes = 1,
-                                                   .offset = 0,
-                                                   .sampling = c.sampling,
-                                                   .format = c.format,
-                                                   .record_costs = true});
-        RingRenderer renderer(session_, grid_scene(height, c.sampling, pixels_per_unit), settings);
-        return images_.emplace(key, renderer.render()).first->second;
-    }
-
-    Session& session_;
-    std::map<std::tuple<std::string, Sampling, std::uint32_t, std::uint32_t, double>, RingResult> images_;
-};
-
-RingResult render_grid(Session& session, RingCase c) {
-    c.record_costs = true;
-    return RingRenderer(session, grid_scene(c.height, c.sampling, kPixelsPerUnit), settings_of(c)).render();
+/// Returns two shiny spheres above a checkered floor. Some colour values exceed 1.
+Scene two_spheres() {
+    Scene scene;
+    scene.background = {0.3, 0.5, 0.8};
+    scene.lights = {{{-3, 6, -4}, Colour{1.5, 1.4, 1.1}}};
+    scene.surfaces = {{.diffuse = 0.8, .checker = Checker{{0.9, 0.8, 0.7}, {0.3, 0.25, 0.2}, 0.5}},
+                      {.colour = {0.9, 0.2, 0.1}, .diffuse = 0.7, .specular = 0.6, .shine = 20},
+                      {.colour = {0.2, 0.2, 0.9}, .diffuse = 0.5, .specular = 0.3, .shine = 50}};
+    scene.spheres = {{{0.62, 0.1, 5}, 0.6, 1}, {{-0.7, 0.2, 4}, 0.65, 2}};
+    scene.planes = {{{0, 1, 0}, -0.15, 0}};
+    scene.view.angle_degrees = 40;
+    return scene;
 }
 
 // Offsets of a pixel's additional sample points, {down, right} in half pixels, in the order of summation.
@@ -110,100 +45,7 @@ float mean_of_points(const Image& fine, int row, int column, int colour, const R
     return whole_image::mean_of_five(values, settings_of(c).format);
 }
 
-/// Returns the plain image, in which each pixel of the mask is replaced by the mean of its five points.
-Image supersampled(const Image& plain, const Image& fine, const Image& mask, const RingCase& c) {
-    return whole_image::make_image(plain.width, plain.height, [&](int row, int column, int colour) {
-        if (value_at(mask, row, column, 0) == 0) return value_at(plain, row, column, colour);
-        return mean_of_points(fine, 2 * row + 1, 2 * column + 1, colour, c);
-    });
-}
-
-/// Returns the cost of the four additional points of each pixel in the mask, in cycles; 0 for the other pixels.
-std::vector<std::uint64_t> supersampling_cost(const CostImage& fine, const Image& mask, const RingCase& c) {
-    std::vector<std::uint64_t> cost;
-    for (int row = 0; row < mask.height; ++row)
-        for (int column = 0; column < mask.width; ++column) {
-            std::uint64_t sum = 0;
-            for (const auto& offset : offsets_of(c.antialias))
-                sum += fine.cycles[std::size_t((2 * row + 1 + offset[0]) * fine.width + 2 * column + 1 + offset[1])];
-            cost.push_back(value_at(mask, row, column, 0) != 0 ? sum : 0);
-        }
-    return cost;
-}
-
-std::size_t marked_pixels(const Image& mask) {
-    return static_cast<std::size_t>(std::count(mask.rgb.begin(), mask.rgb.end(), 1.0f)) / 3;
-}
-
-/// Returns the finer image's values at the pixels' own sample points.
-Image own_points(const Image& fine) {
-    return whole_image::make_image(fine.width / 2, fine.height / 2, [&](int row, int column, int colour) {
-        return value_at(fine, 2 * row + 1, 2 * column + 1, colour);
-    });
-}
-
-void check_supersampled(const RingResult& result, const RingResult& plain, const RingResult& fine, const RingCase& c) {
-    const Image mask = whole_image::contrast_mask(plain.image, c.antialias.threshold, settings_of(c).format);
-    const std::size_t marked = marked_pixels(mask);
-    REQUIRE(count_differences(own_points(fine.image), plain.image) == 0);
-    CHECK(count_differences(result.mask, mask) == 0);
-    CHECK(result.recomputed == marked);
-    CHECK(count_differences(result.image, supersampled(plain.image, fine.image, mask, c)) == 0);
-    REQUIRE(result.phases.size() == 2);
-    CHECK(result.phases[0].events == plain.events);
-    CHECK(result.phases[0].cost().cycles == plain.cost().cycles);
-    CHECK(result.phases[1].events[RAYA_PRIMARY] == 4 * marked);
-    CHECK(result.phases[1].cost().cycles == supersampling_cost(fine.cost(), mask, c));
-}
-
 }  // namespace
-
-TEST_CASE("the ring's filter gives the same pixels as the filter of the whole image", "[ring][antialias]") {
-    constexpr std::uint64_t kSeed = 31;
-    SplitMix random(kSeed);
-    Session session(choose_device(""));
-    PlainImages plain(session);
-    std::uint64_t rotations = 0;
-    for (const char* format : {"fp32", "spa22"})
-        for (int i = 0; i < case_count(); ++i) {
-            RingCase c = random_case(random, format);
-            c.antialias.method = AntialiasMethod::kFilter;
-            CAPTURE(kSeed, format, i, c.width, c.height, c.pes, c.offset, c.fold);
-            const RingResult result = render_grid(session, c), &expected = plain.image_of(c);
-            CHECK(count_differences(result.image, whole_image::filtered(expected.image, settings_of(c).format)) == 0);
-            CHECK(result.events == expected.events);
-            CHECK(result.cost().cycles == expected.cost().cycles);
-            CHECK(result.phases.size() == 1);
-            CHECK(result.mask.rgb.empty());
-            rotations += result.communication.rotations;
-        }
-    CHECK(rotations > 0);
-}
-
-TEST_CASE("supersampling takes the mean of five points where a neighbour differs", "[ring][antialias]") {
-    constexpr std::uint64_t kSeed = 32;
-    SplitMix random(kSeed);
-    Session session(choose_device(""));
-    PlainImages plain(session);
-    std::size_t recomputed = 0, pixels = 0, partly_marked = 0;
-    for (const char* format : {"fp32", "spa22"})
-        for (int i = 0; i < case_count(); ++i) {
-            RingCase c = random_case(random, format);
-            c.antialias = random_supersampling(random);
-            CAPTURE(kSeed, format, i, c.width, c.height, c.pes, c.offset, c.fold, c.sampling == Sampling::kCorners);
-            CAPTURE(c.antialias.threshold, c.antialias.points);
-            const RingResult result = render_grid(session, c);
-            check_supersampled(result, plain.image_of(c), plain.fine_image_of(c), c);
-            const std::size_t size = std::size_t{c.width} * c.height;
-            if (c.antialias.threshold == 0 && size > 1) CHECK(result.recomputed == size);
-            partly_marked += result.recomputed > 0 && result.recomputed < size;
-            recomputed += result.recomputed;
-            pixels += size;
-        }
-    CHECK(recomputed > pixels / 10);  // the cases have both marked and unmarked pixels
-    CHECK(recomputed < pixels * 9 / 10);
-    CHECK(partly_marked > std::size_t(case_count()) / 2);
-}
 
 TEST_CASE("the additional points lie half a pixel away, for any camera", "[ring][antialias]") {
     const Scene scene = project_scene("spheres");
@@ -242,7 +84,7 @@ TEST_CASE("pixels whose difference equals the threshold are marked; differences 
     // Without lights, a surface of Kd = 1 shows its own colour, so the image has two colours, which differ in one
     // component.
     const auto recomputed_pixels = [&](double background, double object, double threshold, int component) {
-        Scene scene = grid_scene(24, Sampling::kCentres, kPixelsPerUnit);
+        Scene scene = two_spheres();
         scene.background = scene.surfaces[1].colour = {0.5, 0.5, 0.5};
         scene.background[component] = background;
         scene.surfaces[1] = {.colour = scene.surfaces[1].colour, .diffuse = 1};
@@ -271,6 +113,23 @@ TEST_CASE("pixels whose difference equals the threshold are marked; differences 
     CHECK(recomputed_pixels(-7, 0, 0.125, 1) == 0);
     CHECK(recomputed_pixels(1, 9, 0.125, 0) == 0);
     CHECK(recomputed_pixels(-7, 9, 1, 1) == outline_pixels);
+}
+
+TEST_CASE("with one column of pixels per PE, the upper and lower neighbours are p PEs away", "[ring][antialias]") {
+    Session session(choose_device(""));
+    const Scene scene = two_spheres();
+    // The left and right neighbours take one rotation each, the upper and lower neighbours min(p, 256 - p) each. With
+    // p = 0 the upper and lower neighbours are in the PE's own block.
+    for (const auto method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample})
+        for (const auto& [offset, rotations] : {std::pair{0u, 2u}, {8u, 18u}, {16u, 34u}, {240u, 34u}}) {
+            const RingCase c{
+                .width = 256, .height = 256, .pes = 256, .offset = offset, .antialias = {.method = method}};
+            const RingResult result = RingRenderer(session, scene, settings_of(c)).render();
+            CAPTURE(offset, antialias_name(method));
+            CHECK(result.communication.rotations == rotations);
+            CHECK(result.communication.rotation_words == rotations * 256ull * 3 * 256);
+            CHECK(result.communication.broadcasts == 1);
+        }
 }
 
 }  // namespace raya

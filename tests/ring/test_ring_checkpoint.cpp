@@ -1,13 +1,11 @@
-// A render that stops between two bands and resumes from a checkpoint gives the same image and counts.
+// Checkpoints that must be refused: those of other renders, and damaged ones. Resumed renders: tests/property.
 #include <catch2/catch.hpp>
 #include <functional>
-#include <random>
 
 #include "host/error.hpp"
 #include "tests/base/test_checkpointing.hpp"
 #include "tests/ranks/same_results.hpp"
 #include "tests/ring/render_scene.hpp"
-#include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
@@ -19,48 +17,6 @@ RingSettings settings_for(AntialiasMethod method, std::uint64_t device_pixels) {
     settings.antialias.method = method;
     settings.device_pixels = device_pixels;
     return settings;
-}
-
-TEST_CASE("a render that is stopped at any band and resumed gives the same image and counts", "[ring][checkpoint]") {
-    const std::uint32_t seed = 20;
-    CAPTURE(seed);
-    std::mt19937 random(seed);
-    Session session(choose_device(""));
-    const Scene scene = project_scene("planes");
-    const std::pair<AntialiasMethod, std::uint64_t> cases[] = {{AntialiasMethod::kNone, 1 << 22},
-                                                               {AntialiasMethod::kNone, 500},
-                                                               {AntialiasMethod::kFilter, 1 << 22},
-                                                               {AntialiasMethod::kSupersample, 1 << 22}};
-    for (const auto& [method, device_pixels] : cases) {
-        CAPTURE(antialias_name(method), device_pixels);
-        const RingSettings settings = settings_for(method, device_pixels);
-        const RingResult whole = RingRenderer(session, scene, settings).render();
-        TestCheckpointing uninterrupted;
-        const RingResult saved = RingRenderer(session, scene, settings).render({}, uninterrupted.checkpointing());
-        check_same(saved, whole);
-        CHECK(saved.earlier_s == 0);
-        REQUIRE(uninterrupted.count() > 3);
-        for (int stop = 1; stop <= uninterrupted.count(); stop += 1 + static_cast<int>(random() % quick_cases(9, 3))) {
-            CAPTURE(stop, uninterrupted.count());
-            TestCheckpointing first(stop);
-            CHECK_THROWS_AS(RingRenderer(session, scene, settings).render({}, first.checkpointing()), Stopped);
-            TestCheckpointing second(1 + static_cast<int>(random() % 2), first.saved());  // the render may stop again
-            std::string state = first.saved();
-            RingSettings other_group = settings;  // the image and the counts do not depend on the group size
-            if (method == AntialiasMethod::kSupersample) other_group.kernels.group_size = 2;
-            try {
-                RingRenderer(session, scene, other_group).render({}, second.checkpointing());
-            } catch (const Stopped&) {
-                state = second.saved();
-            }
-            TestCheckpointing last(1 << 30, state);
-            const RingResult resumed = RingRenderer(session, scene, settings).render({}, last.checkpointing());
-            check_same(resumed, whole);
-            CHECK(resumed.earlier_s > 0);
-            CHECK(resumed.render_s > resumed.earlier_s);
-            REQUIRE(last.count() < uninterrupted.count());  // finished bands are not repeated
-        }
-    }
 }
 
 TEST_CASE("one renderer renders with and without a checkpoint, in any order", "[ring][checkpoint]") {
@@ -111,7 +67,7 @@ TEST_CASE("a checkpoint of another render is refused with a message that names t
     check_refused(scene, settings_for(AntialiasMethod::kNone, 100), "was rendered with a device window of ");
 }
 
-TEST_CASE("a checkpoint with a valid hash is refused if its vector sizes are not those of the render",
+TEST_CASE("a checkpoint is refused if a byte is changed or missing, or if its vector sizes are not those of the render",
           "[ring][checkpoint]") {
     Session session(choose_device(""));
     const Scene scene = project_scene("planes");
@@ -139,6 +95,14 @@ TEST_CASE("a checkpoint with a valid hash is refused if its vector sizes are not
                     s.set(at, s.number<std::uint64_t>(at) + static_cast<std::uint64_t>(change));
                 });
             }
+        for (std::size_t at = 0; at < first.saved().size(); at += first.saved().size() / 50) {
+            CAPTURE(at);
+            std::string damaged = first.saved();
+            damaged[at] ^= 4;
+            TestCheckpointing changed(1 << 30, damaged), shorter(1 << 30, damaged.substr(0, at));
+            CHECK_THROWS_AS(renderer.render({}, changed.checkpointing()), UserError);
+            if (at > 0) CHECK_THROWS_AS(renderer.render({}, shorter.checkpointing()), UserError);
+        }
         for (std::size_t i = 0; i < damages.size(); ++i) {
             CAPTURE(i);
             CheckpointBody damaged = saved;
@@ -147,40 +111,6 @@ TEST_CASE("a checkpoint with a valid hash is refused if its vector sizes are not
             CHECK_THROWS_WITH(renderer.render({}, last.checkpointing()), "damaged");
         }
     }
-}
-
-TEST_CASE("a checkpoint with a changed byte or a missing end is refused", "[ring][checkpoint]") {
-    const std::uint32_t seed = 21;
-    CAPTURE(seed);
-    std::mt19937 random(seed);
-    const StateSettings settings = {{"name", "value \"x\""}};
-    const std::vector<float> image = {1, 2, 3};
-    const std::vector<std::uint64_t> events = {1, 2};
-    CheckpointWriter writer(settings, {.fraction = 0.25});
-    writer.put(image);
-    writer.put(events);
-    const std::string bytes = writer.finish();
-    const auto read = [&](const std::string& file, const StateSettings& of) {
-        CheckpointReader reader(file, of);
-        std::vector<std::uint64_t> read_events(2);
-        CHECK(reader.part().fraction == 0.25);
-        CHECK((reader.take_any<float>() == image));
-        reader.take(read_events);
-        CHECK(read_events == events);
-        reader.check_end();
-    };
-    read(bytes, settings);
-    for (int i = 0; i < 500; ++i) {
-        std::string damaged = bytes;
-        if (random() % 4 == 0)
-            damaged.resize(random() % bytes.size());
-        else
-            damaged[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
-        CAPTURE(i);
-        CHECK_THROWS_AS(read(damaged, settings), UserError);
-    }
-    CHECK_THROWS_WITH(read(bytes, {{"name", "other"}}), "was rendered with name value \"x\", not other");
-    CHECK_THROWS_WITH(read(bytes, {{"new", "one"}}), "damaged header: 'new' is missing");
 }
 
 }  // namespace

@@ -118,27 +118,6 @@ TEST_CASE("the trace has bus transfers instead of rotations, and ends at the mod
         }
 }
 
-TEST_CASE("the counter of live rays decreases from the number of PEs to 0", "[ring]") {
-    const Rendered r = render({.width = 40, .height = 8, .pes = 40, .offset = 0, .machine = "spa", .lanes = 4});
-    double live_rays = 41;
-    std::size_t points = 0;
-    const Document json = trace_of(r, 4);
-    for (const Document& e : json["traceEvents"]) {
-        if (e["name"] != "live rays") continue;
-        CHECK(e["args"]["rays"] <= live_rays);
-        live_rays = e["args"]["rays"];
-        ++points;
-    }
-    CHECK(live_rays == 0);
-    CHECK(points == 41);
-}
-
-TEST_CASE("if no PE is requested, the trace omits the machine and contains the reason", "[ring]") {
-    const Rendered r = render({.width = 8, .height = 4, .pes = 8, .offset = 2, .machine = "spa", .lanes = 4});
-    CHECK(trace_of(r, 0)["otherData"]["machine"].get<std::string>().starts_with("left out"));
-    CHECK(trace_of(r, 3)["otherData"]["machine"]["pes"] == 8);
-}
-
 TEST_CASE("the work of the ring's kernels agrees with the counts", "[ring]") {
     RingCase c{.width = 24, .height = 16, .pes = 24, .machine = "spa", .lanes = 4};
     c.antialias.method = AntialiasMethod::kSupersample;

@@ -104,17 +104,6 @@ int min_rotations(std::uint32_t pes, std::uint32_t wanted) {
     return kUnreached;
 }
 
-/// Returns the number of rotations that go round the ring except across the widest gap between adjacent distances. 0 is
-/// one of the distances.
-std::uint32_t rotations_round_widest_gap(std::uint32_t pes, Distances stops) {
-    stops.push_back(0);
-    std::sort(stops.begin(), stops.end());
-    stops.push_back(pes);
-    std::uint32_t widest = 0;
-    for (std::size_t i = 1; i < stops.size(); ++i) widest = std::max(widest, stops[i] - stops[i - 1]);
-    return pes - widest;
-}
-
 std::uint64_t exchange_rotations(const raya_mapping& m, std::uint32_t capacity, std::uint32_t band) {
     return sum_of(exchange_moves(m, ExchangeMethod::kRing, false)) * ((capacity + band - 1) / band);
 }
@@ -134,22 +123,6 @@ TEST_CASE("neighbour distances agree with the owners of all neighbouring pixels"
     }
 }
 
-TEST_CASE("if a PE owns whole columns, each side has one distance, as in the paper", "[ring][route]") {
-    constexpr std::uint64_t kSeed = 6;
-    SplitMix random(kSeed);
-    for (int i = 0; i < 300; ++i) {
-        raya_mapping m = small_mapping(random, 30);
-        m.pes = m.width;
-        const std::uint32_t pes = m.pes, p = m.parameter;
-        CAPTURE(kSeed, i, m.width, m.height, p, m.kind);
-        const bool wide = m.width > 1, tall = m.height > 1;
-        CHECK(neighbour_distances(m, RAYA_LEFT) == (wide ? Distances{pes - 1} : Distances{}));
-        CHECK(neighbour_distances(m, RAYA_RIGHT) == (wide ? Distances{1} : Distances{}));
-        CHECK(neighbour_distances(m, RAYA_ABOVE) == (tall ? Distances{p} : Distances{}));
-        CHECK(neighbour_distances(m, RAYA_BELOW) == (tall ? Distances{(pes - p) % pes} : Distances{}));
-    }
-}
-
 TEST_CASE("routes have the minimum number of rotations: every set of distances on up to nine PEs", "[ring][route]") {
     for (std::uint32_t pes = 1; pes <= 9; ++pes)
         for (std::uint32_t wanted = 0; wanted < 1u << pes; ++wanted) {
@@ -165,22 +138,6 @@ TEST_CASE("routes have the minimum number of rotations: every set of distances o
         }
     CHECK(min_rotations(9, 0b000101001) == 5);  // 5 rotations down reach distances 3 and 5; upwards, 6 rotations do
     CHECK(min_rotations(9, 0b100000010) == 2);  // distances 1 and 8 take one rotation each, in opposite directions
-}
-
-TEST_CASE("large rings: a route omits the widest gap", "[ring][route]") {
-    constexpr std::uint64_t kSeed = 7;
-    SplitMix random(kSeed);
-    for (int i = 0; i < 500; ++i) {
-        const std::uint32_t pes = 1 + random_below(random, 2000);
-        std::set<std::uint32_t> chosen;
-        for (std::uint32_t n = random_below(random, 12); n > 0; --n) chosen.insert(random_below(random, pes));
-        const Distances distances(chosen.begin(), chosen.end());
-        const std::vector<Leg> route = shortest_route(pes, distances);
-        CAPTURE(kSeed, i, pes, distances);
-        CHECK(well_formed(route, pes));
-        CHECK(stops_of(route, pes) == distances);
-        CHECK(route_rotations(route) == rotations_round_widest_gap(pes, distances));
-    }
 }
 
 TEST_CASE("if a PE owns whole columns, four sides take 2 (min(p, P - p) + 1) rotations", "[ring][route]") {

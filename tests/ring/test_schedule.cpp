@@ -4,7 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <vector>
 
 #include "host/ring/mapping.hpp"
@@ -163,72 +165,6 @@ TEST_CASE("dynamic and hybrid schedules agree with the simulation", "[schedule]"
     }
 }
 
-TEST_CASE("schedules contain all work and satisfy Graham's bounds", "[schedule]") {
-    constexpr std::uint64_t kSeed = 4;
-    SplitMix random(kSeed);
-    for (int i = 0; i < 1'500; ++i) {
-        const raya_mapping m = small_mapping(random, 25);
-        const auto [width, height, pes, offset, fold] = m;
-        const CostImage image = random_image(random, width, height);
-        DynamicPlan plan = random_plan(random, width * height);
-        const std::uint64_t total = total_cycles(image), bound = lower_bound(image, pes);
-        CAPTURE(kSeed, i, width, height, pes, offset, fold, plan.chunk, plan.overhead, plan.static_fraction, total,
-                bound);
-        const Schedule schedule = dynamic_schedule(image, m, plan);
-        const std::uint64_t work = total + schedule.requests * (plan.overhead + plan.root_cycles);
-        CHECK(sum_of(schedule.load.per_pe) >= work);
-        if (plan.root_cycles == 0) CHECK(sum_of(schedule.load.per_pe) == work);
-        CHECK(schedule.load.max >= std::max(bound, schedule.requests * plan.root_cycles));
-
-        plan.overhead = plan.root_cycles = 0;
-        plan.static_fraction = 0;
-        const Schedule list_schedule = dynamic_schedule(image, m, plan);
-        std::uint64_t largest_chunk = 0;
-        for (std::size_t at = 0; at < image.cycles.size(); at += plan.chunk) {
-            const auto end = std::min<std::size_t>(at + plan.chunk, image.cycles.size());
-            largest_chunk = std::max(largest_chunk, sum_of({&image.cycles[at], image.cycles.data() + end}));
-        }
-        CHECK(list_schedule.requests == (width * height + plan.chunk - 1) / plan.chunk);
-        CHECK(pes * list_schedule.load.max <= total + (pes - 1) * largest_chunk);
-        plan.chunk = 1;
-        CHECK(pes * dynamic_schedule(image, m, plan).load.max <= (2 * pes - 1) * bound);  // (2 - 1/P) x the optimum
-    }
-}
-
-TEST_CASE("extreme plans have the expected loads: one chunk, all static, one PE, more PEs than chunks", "[schedule]") {
-    constexpr std::uint64_t kSeed = 5;
-    SplitMix random(kSeed);
-    for (int i = 0; i < 300; ++i) {
-        raya_mapping m = small_mapping(random, 25);
-        const std::uint32_t pixels = m.width * m.height;
-        const CostImage image = random_image(random, m.width, m.height);
-        const std::uint64_t total = total_cycles(image);
-        const DynamicPlan plan = random_plan(random, pixels);
-        CAPTURE(kSeed, i, m.width, m.height, m.pes, plan.chunk, plan.overhead, plan.static_fraction);
-
-        const Schedule one_chunk = dynamic_schedule(image, m, {pixels + random_below(random, 3), plan.overhead, 0});
-        Cycles on_first_pe(m.pes);
-        on_first_pe[0] = total + plan.overhead;
-        CHECK(one_chunk.load.per_pe == on_first_pe);
-        CHECK(one_chunk.requests == 1);
-
-        const Schedule all_static = dynamic_schedule(image, m, {plan.chunk, plan.overhead, 1});
-        CHECK(all_static.load.per_pe == static_load(image, m).per_pe);
-        CHECK(all_static.requests == 0);
-
-        m.pes = pixels;  // one PE per pixel: if every pixel costs something, each PE makes one request
-        if (*std::min_element(image.cycles.begin(), image.cycles.end()) > 0)
-            CHECK(dynamic_schedule(image, m, {1, 0, 0}).load.per_pe == image.cycles);
-        const Schedule idle = dynamic_schedule(image, m, {plan.chunk, plan.overhead + 1, 0});
-        const auto unused = std::count(idle.load.per_pe.begin(), idle.load.per_pe.end(), 0u);
-        CHECK(static_cast<std::uint64_t>(unused) == pixels - idle.requests);
-
-        m.pes = 1;
-        const Schedule on_one_pe = dynamic_schedule(image, m, plan);
-        CHECK(on_one_pe.load.max == total + on_one_pe.requests * (plan.overhead + plan.root_cycles));
-    }
-}
-
 TEST_CASE("speed-up counts only the pixels' work, and is defined if all costs are 0", "[schedule]") {
     const CostImage equal_costs{4, 1, {30, 30, 30, 30}};
     const raya_mapping two_pes{4, 1, 2, 0, RAYA_FOLD_CYCLIC};
@@ -246,20 +182,35 @@ TEST_CASE("speed-up counts only the pixels' work, and is defined if all costs ar
     CHECK(lower_bound(zero_costs, 3) == 0);
 }
 
-TEST_CASE("large images: schedules contain all work on few PEs, and on as many PEs as pixels", "[schedule]") {
-    constexpr std::uint64_t kSeed = 6;
-    constexpr std::uint32_t kSide = 1'024, kPixels = kSide * kSide;
-    SplitMix random(kSeed);
-    CostImage image{kSide, kSide, {}};
-    for (std::uint32_t i = 0; i < kPixels; ++i) image.cycles.push_back(1 + random.next() % 20'000);
-    const auto mapping_on = [](std::uint32_t pes) { return raya_mapping{kSide, kSide, pes, 32, RAYA_FOLD_CYCLIC}; };
-    CHECK((dynamic_schedule(image, mapping_on(kPixels), {1, 0, 0}).load.per_pe == image.cycles));
-    const std::uint64_t total = total_cycles(image);
-    for (const std::uint32_t pes : {1'000u, 16'384u, 524'288u}) {
-        CAPTURE(kSeed, pes);
-        const Schedule schedule = dynamic_schedule(image, mapping_on(pes), {2, 100, 0.25});
-        CHECK(sum_of(schedule.load.per_pe) == total + 100 * schedule.requests);
-        CHECK(pes * dynamic_schedule(image, mapping_on(pes), {1, 0, 0}).load.max <=
-              (2 * pes - 1) * lower_bound(image, pes));
-    }
+TEST_CASE("a plan's text omits default values at its end", "[schedule]") {
+    CHECK(dynamic_text({4, 0, 0}) == "dynamic:4");
+    CHECK(dynamic_text({4, 9, 0}) == "dynamic:4,9");
+    CHECK(dynamic_text({4, 0, 0, 7}) == "dynamic:4,0,7");
+    CHECK(dynamic_text({4, 0, 0.5}) == "hybrid:4,0,0.5");
+    CHECK(dynamic_text({4, 0, 0.5, 7}) == "hybrid:4,0,0.5,7");
+}
+
+TEST_CASE("schedules reject invalid cost images, mappings and plans, and mappings that do not match the cost image",
+          "[schedule]") {
+    const CostImage image{2, 2, {1, 2, 3, 4}};
+    const raya_mapping valid_mapping{2, 2, 2, 0, RAYA_FOLD_CYCLIC};
+    const auto check_error = [](const CostImage& costs, const raya_mapping& m) {
+        CHECK_THROWS_AS(static_load(costs, m), std::invalid_argument);
+        CHECK_THROWS_AS(dynamic_schedule(costs, m, {}), std::invalid_argument);
+    };
+    check_error(image, {1, 2, 2, 0, RAYA_FOLD_CYCLIC});
+    check_error(image, {2, 1, 2, 0, RAYA_FOLD_CYCLIC});
+    check_error(image, {2, 2, 0, 0, RAYA_FOLD_CYCLIC});
+    check_error(image, {2, 2, 5, 0, RAYA_FOLD_CYCLIC});
+    check_error({2, 2, {1, 2, 3}}, valid_mapping);
+    check_error({0, 0, {}}, {0, 0, 1, 0, RAYA_FOLD_CYCLIC});
+    for (const double static_fraction : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()})
+        CHECK_THROWS_AS(dynamic_schedule(image, valid_mapping, {1, 0, static_fraction}), std::invalid_argument);
+    CHECK_THROWS_AS(dynamic_schedule(image, valid_mapping, {0, 0, 0}), std::invalid_argument);
+    CHECK_THROWS_AS(dynamic_schedule(image, valid_mapping, {1, kMaxOverhead + 1, 0}), std::invalid_argument);
+    CHECK_THROWS_AS(dynamic_schedule(image, valid_mapping, {1, 0, 0, kMaxOverhead + 1}), std::invalid_argument);
+    CHECK_THROWS_AS(imbalance_of_offsets(image, 2, RAYA_FOLD_CYCLIC, {0, 2}), std::invalid_argument);
+    CHECK_THROWS_AS(imbalance_of_offsets(image, 2, 7, {0}), std::invalid_argument);
+    CHECK_THROWS_AS(imbalance_of_offsets(image, 5, RAYA_FOLD_BLOCK, {0}), std::invalid_argument);
+    CHECK_THROWS_AS(lower_bound(image, 0), std::invalid_argument);
 }
