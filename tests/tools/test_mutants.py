@@ -3,7 +3,7 @@
 
     test_mutants.py BUILD [--seed N]      BUILD: the build folder. Prints the seed of the sample (default: random).
 """
-import contextlib, importlib.machinery, importlib.util, io, random, subprocess, sys, tempfile
+import importlib.machinery, importlib.util, random, subprocess, sys, tempfile
 from pathlib import Path
 
 sys.dont_write_bytecode = True
@@ -47,18 +47,6 @@ def check_lines(tool):
     check(kernels - files <= {"geometry/ray.clh"}, f"files without mutant: {kernels - files}")
 
 
-def check_report(tool):
-    """The committed page has the committed results, and every equivalent mutant has a reason."""
-    page = ROOT / "docs" / "mutants.md"
-    text = page.read_text()
-    with contextlib.redirect_stdout(io.StringIO()):
-        check(tool.page() == text, "docs/mutants.md differs from tests/mutants; run tools/mutants --report")
-    rows = {tool.key(row) for row in tool.read_results()}
-    for entry, reason in tool.read_equivalent().items():
-        check(entry in rows, f"equivalent.txt: no such mutant: {entry}")
-        check(len(reason.split()) >= 3, f"equivalent.txt: no reason: {entry}")
-
-
 def check_sample(build, seed):
     command = [str(TOOL), "--build", build, "--sample", "6", "--seed", str(seed)]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -87,7 +75,6 @@ def main():
     print(f"seed {seed}", flush=True)
     tool = load_tool()
     check_lines(tool)
-    check_report(tool)
     check_lost(tool, build)
     check_sample(build, seed)
 
