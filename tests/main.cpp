@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "host/base/child_process.hpp"
 #include "host/base/module.hpp"
-#include "tests/kernel_cache.hpp"
 #include "tests/paths.h"
 
 // Open MPI starts as root, and more ranks than there are cores: version 4, 5 and 6. As in tests/tools/own_cache.sh.
@@ -16,11 +16,13 @@ constexpr std::pair<const char*, const char*> kMpiSettings[] = {
     {"PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"},
     {"PRTE_MCA_mapby", ":oversubscribe"}};
 
-// Unless RAYA_TUNED is set, tests ignore tuning results (raya tune).
+// Unless RAYA_TUNED is set, tests ignore tuning results (raya tune). ctest gives each program a kernel cache
+// (tests/tools/own_cache.sh); a program started by hand has an empty one.
 int main(int argc, char** argv) {
     setenv("RAYA_TUNED", "off", 0);
     for (const auto& [name, value] : kMpiSettings) setenv(name, value, 1);
+    const raya::TemporaryFolder cache("raya-test-kernels");
+    setenv("POCL_CACHE_DIR", cache.path().c_str(), 0);
     raya::set_program_file(RAYA_PROGRAM);
-    const raya::KernelCache cache;
     return Catch::Session().run(argc, argv);
 }

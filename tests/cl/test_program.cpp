@@ -104,7 +104,7 @@ TEST_CASE("the error of a failed build contains log, options, device and program
 }
 
 /// Returns the number of programs in PoCL's cache. The cache folder belongs to this test program
-/// (tests/kernel_cache.hpp).
+/// (tests/tools/own_cache.sh).
 long cached_programs() {
     long cached = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(std::getenv("POCL_CACHE_DIR")))

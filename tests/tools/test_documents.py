@@ -7,15 +7,11 @@ its data, and the version is the same in all files for citation.
 
 Exit codes: 0 no fault; 1 a fault.
 """
-import re
-import shutil
-import subprocess
-import sys
-import tempfile
+import re, subprocess, sys, tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-GENERATED = {"gpu_resources.md", "portability.md", "performance.md", "sweep.md", "verdicts.md", "artifact.md"}  # tools write these
+GENERATED = {"gpu_resources.md", "portability.md", "performance.md", "verdicts.md", "artifact.md"}  # tools write these
 PAPER = "paper.md"  # its paragraphs are those of a paper; comments behind its numbers name their data
 MAX_WORDS, MAX_CELL_WORDS, MAX_COLUMNS = 80, 30, 120
 # Lines with measured figures, and the parts of these lines that differ between machines and runs: times, rates, lanes, sizes of binaries, the name
@@ -117,13 +113,6 @@ def wrong_citations():
     checked = subprocess.run([sys.executable, "-B", ROOT / "docs/paper/check_numbers.py"], capture_output=True, text=True)
     if checked.returncode or int(checked.stdout.split()[0]) < 50:
         yield checked.stdout + checked.stderr
-    with tempfile.TemporaryDirectory() as folder:  # a wrong number, and one without a comment
-        for old, new in (("0.825<", "0.826<"), ("# Results\n", "# Results\n\nIt is 1.5.\n")):
-            copy = shutil.copytree(ROOT / "docs/paper", Path(folder) / "paper", dirs_exist_ok=True)
-            text = (copy / "paper.md").read_text()
-            (copy / "paper.md").write_text(text.replace(old, new, 1))
-            if old not in text or subprocess.run([sys.executable, "-B", copy / "check_numbers.py"], capture_output=True).returncode != 1:
-                yield f"check_numbers.py: does not find {new}"
     if subprocess.run([ROOT / "tools/artifact", "--appendix"], capture_output=True).stdout != (ROOT / "docs/artifact.md").read_bytes():
         yield "docs/artifact.md: not what tools/artifact --appendix prints"
 

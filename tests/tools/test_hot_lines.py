@@ -2,7 +2,7 @@
 """Tests tools/hot_lines: a line that is made slow becomes the hottest, and errors name what is missing.
   test_hot_lines.py BUILD     the build folder: raya and patch_kernels
 Exit code 77: no perf, no LLVM symbolizer, or perf is not permitted (tools/setup --profile); the checks that need none have passed."""
-import os, pathlib, platform, re, shutil, subprocess, sys, tempfile
+import os, pathlib, re, shutil, subprocess, sys, tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv[1]).resolve()
@@ -48,8 +48,6 @@ hot_lines(*at_build, *SCENE, code=3, texts=["perf cannot sample cpu-clock", "per
 probe = ["perf", "record", "-q", "-N", "-o", "/dev/null", "-e", "cpu-clock", "true"]
 if not shutil.which(SYMBOLIZER) or not shutil.which("perf") or subprocess.run(probe, capture_output=True).returncode:
     sys.exit(77)
-hot_lines(*at_build, "--event", "no-such-event", *SCENE, code=3, texts=["perf cannot sample no-such-event"])
-hot_lines(*at_build, SCRATCH / "none.nff", code=2, texts=["none.nff: cannot read"])
 
 # A line that is made slow is the hottest, with its function and text. The line is after an include that the preprocessor skips.
 kernels, page = SCRATCH / "kernels", SCRATCH / "page.html"
@@ -69,8 +67,6 @@ slow = hot_lines(*at_build, *SCENE, "--kernel-dir", kernels, "--page", page, tex
 hottest = slow.split("text\n")[1].splitlines()[0].split(maxsplit=4)
 expect(float(hottest[0]) > 80 and hottest[2:] == [place, "cast_rays", line_text], hottest, slow)
 expect(share_of(slow, "cast_rays") > 80, slow)  # the function
-if platform.machine() == "x86_64":
-    expect(float(re.search(r"^vector scalar ([\d.]+) %", slow, re.M)[1]) > 80, slow)  # the loop's instructions
 fast = hot_lines(*at_build, *SCENE)
 expect(share_of(fast, "count_all_tests(scene, t, m);") < 20, fast)
 
@@ -86,7 +82,4 @@ expect(re.search(rf'<tr><td class="n" style="background: rgb\(214 85 20 / 0.75\)
                  rf'<td class="n">{place.split(":")[1]}</td><td><code> +count_all_tests\(scene, t, m\); for', text), "no hottest line in", page)
 expect(not re.search(r"https?://|<script|<link|src=", text), page)
 
-# A render on PoCL's basic device, and one without samples in kernels.
-hot_lines(*at_build, *SCENE, "--size", "64", "--kernel-dir", kernels, texts=["kernel trace: "], POCL_DEVICES="basic")
-hot_lines(*at_build, *SCENE, "--event", "alignment-faults", code=3, texts=["none of 0 samples is in a kernel", "--size"])
 print("tools/hot_lines: as expected")

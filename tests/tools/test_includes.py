@@ -1,27 +1,14 @@
 #!/usr/bin/env python3
 """Checks every #include of the project against the table in docs/architecture.md ("Folders and includes"): a folder includes only folders of its
-row. Also: no include cycles; reports and machine models do not include OpenCL; files include the precompiled headers that they use; no type's
-name is in two headers of namespace raya, which would violate the one-definition rule.
+row. Also: no include cycles; reports and machine models do not include OpenCL; no type's name is in two headers of namespace raya, which would
+violate the one-definition rule.
   test_includes.py [ROOT]     ROOT: the project's folder (default: this checkout). Exit codes: 0 no fault; 1 a fault"""
-import pathlib
-import re
-import sys
+import pathlib, re, sys
 
 root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else __file__).resolve()
 root = root if root.is_dir() else root.parents[2]
 FOR_ALL = {"host/error.hpp", "host/embedded.hpp", "host/version.hpp"}  # every file may include them
 STANDALONE = "kernels/number/"  # a folder that other projects copy: its files include each other without a path
-# {header that targets precompile (raya_precompile in CMake): pattern of its use}
-PRECOMPILED = {
-    "CLI/CLI.hpp": r"\bCLI::(?!App\b|ParseError\b)",
-    "algorithm": r"\bstd::(sort|stable_sort|find_if|all_of|any_of|none_of|count_if|copy_if|shuffle|is_sorted|min_element|max_element|minmax_element|upper_bound|lower_bound|stable_partition|ranges::\w)",
-    "catch2/catch.hpp": r"\b(TEST_CASE|CHECK|REQUIRE|CAPTURE)\(",
-    "filesystem": r"\bstd::filesystem\b",
-    "fmt/core.h": r"\bfmt::",
-    "functional": r"\bstd::function\b",
-    "map": r"\bstd::map\b",
-}
-INCLUDERS = {"fmt/format.h": "fmt/core.h", "fmt/ranges.h": "fmt/core.h"}  # {header: precompiled header that it includes}
 NO_OPENCL = ["host/base/", "host/image/", "host/model/", "host/report/", "host/scene/"]
 faults = []
 
@@ -82,25 +69,6 @@ def includes():
                 found[name].add(target)
             elif not name.startswith(STANDALONE + "example/"):
                 faults.append(f'{name}: #include "{match[1]}": not a path relative to the project\'s root')
-    return found
-
-
-def precompiled():
-    """Returns ({file: precompiled headers that it uses}, {file: headers that it includes})."""
-    used, included = {}, {}
-    for path in sorted(p for top in ("host", "tests") for p in (root / top).rglob("*.?pp")):
-        name, text = path.relative_to(root).as_posix(), path.read_text()
-        code = re.sub(r'//.*|"(?:[^"\\\n]|\\.)*"', "", re.sub(r"^\s*#.*", "", text, flags=re.M))
-        used[name] = {header for header, use in PRECOMPILED.items() if re.search(use, code)}
-        included[name] = {INCLUDERS.get(header, header) for header in re.findall(r"#\s*include\s+<([^>]+)>", text)}
-    return used, included
-
-
-def missing_includes(used, included, graph):
-    found = []
-    for name, headers in used.items():
-        reached = set().union(*(included.get(file, set()) for file in reachable_files(graph, name) | {name}))
-        found += [f"{name} uses <{header}> but does not include it" for header in sorted(headers - reached)]
     return found
 
 
@@ -170,10 +138,6 @@ def main():
     rows = list(table_rows((root / "docs/architecture.md").read_text()))
     allowed, graph = allowed_includes(rows), includes()
     faults.extend(faults_of(graph, allowed))
-    used, included = precompiled()
-    faults.extend(missing_includes(used, included, graph))
-    if len(missing_includes(used, {**included, "tests/cli/test_commands.cpp": set()}, graph)) == len(missing_includes(used, included, graph)):
-        faults.append("missing includes of tests/cli/test_commands.cpp are not detected")
     types = types_of_headers()
     faults.extend(duplicate_types(types))
     if not duplicate_types([*types, ("host/image/pixels.hpp", types[0][1])]):

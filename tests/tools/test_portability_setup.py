@@ -8,9 +8,6 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "tools"))
 import portability_implementations
 
-ZEN5 = "vendor_id\t: AuthenticAMD\ncpu family\t: 26\nflags\t\t: fpu avx2 avx512f avx512vl\n"
-
-
 def expect(condition, what):
     if not condition:
         sys.exit(f"FAILED: {what}")
@@ -57,11 +54,8 @@ def check_setting_up(scratch):
     for name, driver in (("intel-cpu", "lib/libintelocl.so"), ("pocl-3.0", "pyopencl/.libs/libpocl-21.so")):
         expect((installed / f"{name}.icd").read_text() == f"{installed / name / driver}\n", f"wrong content of {name}.icd")
         expect((installed / name / driver).exists(), f"no {driver}")
-    inodes = [(installed / "intel-cpu" / "lib" / name).stat().st_ino for name in ("libintelocl.so", "libintelocl.so.1")]
-    expect(inodes[0] == inodes[1], "equal members are not hard links")
     listed = subprocess.run([ROOT / "tools" / "portability", "--list", "--build", build, "--raya", "/bin/true"], capture_output=True, text=True).stdout
-    pocl = "available" if portability_implementations.llvm_14_knows(Path("/proc/cpuinfo").read_text()) else "its LLVM 14 does not know this CPU"
-    expect("Intel CPU: available\n" in listed and f"PoCL 3.0 (PyPI): {pocl}\n" in listed, listed)
+    expect("Intel CPU: available\n" in listed, listed)
 
     code, output = set_up(build, packages, empty)
     expect(code == 0 and "intel-cpu: already set up" in output and "pocl-3.0: already set up" in output, f"again, without packages: {output}")
@@ -77,17 +71,6 @@ def check_setting_up(scratch):
     (packages / "intel-cpu.txt").write_text(make_wheel(wheels, "intel-stand-in", "2.0", library))
     code, output = set_up(build, packages, wheels)
     expect(code == 0 and (installed / "intel-cpu" / "lib" / "libintelocl.so").read_bytes() == b"driver 2", f"a newer version: {output}")
-
-    (packages / "intel-cpu.txt").write_text(make_wheel(wheels, "intel-stand-in", "3.0", {"{data}/lib/other.so": b""}))
-    code, output = set_up(build, packages, wheels)
-    expect(code == 3 and "no driver lib/libintelocl.so" in output, f"no driver: {output}")
-
-
-def check_known_cpus():
-    knows = portability_implementations.llvm_14_knows
-    zen4, zen3 = ZEN5.replace("26", "25"), ZEN5.replace("26", "25").replace("avx512vl", "")
-    expect(not knows(ZEN5) and not knows(ZEN5.replace("avx512vl", "")) and not knows(zen4), "LLVM 14 knows Zen 4 or Zen 5")
-    expect(knows(zen3) and knows(ZEN5.replace("AuthenticAMD", "GenuineIntel")) and knows(""), "LLVM 14 does not know Zen 3 or an Intel CPU")
 
 
 def check_missing_devices(scratch):
@@ -108,7 +91,6 @@ def check_missing_devices(scratch):
 
 def main():
     with tempfile.TemporaryDirectory() as scratch:
-        check_known_cpus()
         check_missing_devices(Path(scratch))
         if subprocess.run([sys.executable, "-m", "pip", "--version"], capture_output=True).returncode != 0:
             print("skipped: no pip; fetching packages was not tested")

@@ -3,13 +3,7 @@
 
     tests/tools/test_povray_scene.py RAYA     RAYA: the built program. Exit code 77: POV-Ray is missing (Debian: povray), the other tests pass
 """
-import re
-import shutil
-import struct
-import subprocess
-import sys
-import tempfile
-import unittest
+import re, shutil, struct, subprocess, sys, tempfile, unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -96,6 +90,9 @@ class Reading(unittest.TestCase):
         self.assertEqual([plane[:2] for plane in scene.planes], [((0, 0, 1), 0)])
         self.assertEqual([len(polygon[0]) for polygon in scene.polygons], [4, 4, 6, 3])
         self.assertEqual([cone[:4] for cone in scene.cones][1], ((-2.4, 0.8, 0.6), 1, (-2.4, 0.8, 1.9), 0))
+        *_, (vertices, normals, _) = scene.polygons
+        self.assertEqual(vertices[1], (2.4, -1, 1))
+        self.assertAlmostEqual(sum(x * x for x in normals[1]), 1)
 
     def test_surfaces_have_their_checkers(self):
         matt, glass = translation.Surface((0.8, 0.75, 0.65), 0.85, 0, 0, 0, 1), self.scene.spheres[1][2]
@@ -103,12 +100,6 @@ class Reading(unittest.TestCase):
         self.assertEqual([surface.axis for *_, surface in self.scene.planes + self.scene.polygons], [2, 0, 1, None, None])
         self.assertEqual(self.scene.planes[0][2].checker, (0.85, 0.8, 0.7, 0.3, 0.3, 0.5, 1.5))
         self.assertEqual(self.scene.planes[0][2].colour, matt.colour)
-
-    def test_normals_of_patches_have_length_1(self):
-        *_, (vertices, normals, _) = self.scene.polygons
-        self.assertEqual(vertices[1], (2.4, -1, 1))
-        self.assertAlmostEqual(sum(x * x for x in normals[1]), 1)
-        self.assertIsNone(self.scene.polygons[0][1])
 
     def test_invalid_nff_is_refused_with_its_line(self):
         for text, line, reason in [("b 0 0 0\ntt 1", 2, "unknown entity 'tt'"), ("b 0 0\n\nl 1 1 1", 3, "expected a number, found 'l'"),

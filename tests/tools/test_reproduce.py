@@ -72,7 +72,6 @@ class Test:
         self.make(folder, output)
         code, output = self.repro(folder)
         self.expect(code == 1 and "expected 0x" in output, f"{check}: the case of the faulty kernel: exit code {code}", output)
-        self.expect(output.split("\n")[1].strip() in (folder / "README.md").read_text(), "README.md has not the wrong words", output)
         code, output = self.repro(folder, folder / "right.cl")
         self.expect(code == 0, f"{check}: the case with the right kernel: exit code {code}", output)
         return folder
@@ -116,16 +115,12 @@ class Test:
         check, fault, description = DRIVER_FAULTS[0]
         folder = self.driver_fault(check, fault, description)
         self.expect(self.repro(folder, DEVICE="no such device")[0] == 125, "DEVICE of another name")
-        self.expect(self.repro(folder, "/no/kernel.cl")[0] == 125, "no kernel")
         (folder / "arg0_operands.in").unlink()
         self.expect(self.repro(folder)[0] == 125, "no input file")
         code, output = self.verify(check, "--only", check, "--reproduce", str(folder))
         self.expect(code == 2 and "is not an empty folder" in output, f"a folder that is not empty: exit code {code}", output)
         code, output = self.verify(check, "--only", check, "--reproduce", str(self.new_folder()))
         self.expect(code == 0 and not (self.folder / f"case{self.count}").exists(), f"a check that passes: exit code {code}", output)
-        for options in (["--soak", "1s"], ["--device", "all"]):
-            code, output = self.verify(check, "--reproduce", str(self.new_folder()), *options)
-            self.expect(code == 2 and "remedy: repeat the failed check" in output, f"--reproduce with {options}: exit code {code}", output)
         code, output = self.verify(check, "--only", "machine bus: broadcast", "--reproduce", str(self.new_folder()), fault="clEnqueueReadBuffer 1 -5")
         self.expect(code == 4 and "no case of" in output, f"a fault of transfers: exit code {code}", output)
 

@@ -5,13 +5,7 @@
 
 Independent of raya's code: implements the cyclic mapping, u, speed-ups and times again, and uses only raya's output files.
 """
-import json
-import math
-import struct
-import subprocess
-import sys
-import tempfile
-import unittest
+import json, math, struct, subprocess, sys, tempfile, unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent

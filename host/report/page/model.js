@@ -1,5 +1,5 @@
 // Computes owners, loads and other figures of a setting. The results equal raya's in every digit
-// (kernels/shared/mapping.h, host/ring/mapping.cpp, host/model/); tests/tools/test_explore.py compares them. JavaScript's
+// (kernels/shared/mapping.h, host/ring/mapping.cpp, host/model/); tests/tools/test_pages.py compares them. JavaScript's
 // numbers are exact for integers below 2^53; products of 32-bit integers use Math.imul. This file does not depend on
 // the page.
 //
