@@ -41,9 +41,10 @@ install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/raya/scenes FILES
 # Documents are installed in the folder structure of the sources, so that their links work.
 install(FILES README.md CONTRIBUTING.md CHANGELOG.md SECURITY.md LICENSE DESTINATION ${doc})
 install(DIRECTORY docs DESTINATION ${doc} FILES_MATCHING REGEX "\\.(md|png|svg|dot|yml|json|ipynb|py|csv|bib|cff)$|raya-health$")
+install(DIRECTORY ${PROJECT_BINARY_DIR}/schema DESTINATION ${doc}/docs)
 install(CODE "find_program(PYTHON3 python3)
     if(PYTHON3)
-        execute_process(COMMAND \${PYTHON3} ${PROJECT_SOURCE_DIR}/tools/report_doc COMMAND_ERROR_IS_FATAL ANY
+        execute_process(COMMAND \${PYTHON3} ${PROJECT_SOURCE_DIR}/tools/report_doc ${PROJECT_BINARY_DIR}/schema COMMAND_ERROR_IS_FATAL ANY
             OUTPUT_FILE \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${doc}/docs/report.md)
     endif()")
 install(FILES scenes/README.md DESTINATION ${doc}/scenes)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/members.hpp"
 #include "host/cl/opencl.hpp"
 
 namespace raya {
@@ -33,6 +34,15 @@ struct DeviceInfo {
     bool available = false, compiler_available = false;
     std::string il_versions{};  // as in il_versions(): versions of SPIR-V that the device accepts
 };
+
+/// Lists the names of a device and its driver, for reports.
+template <class Device>
+void device_members(Members& m, Device& device) {
+    m("name", device.name, "CL_DEVICE_NAME.");
+    m("platform", device.platform, "CL_PLATFORM_NAME.");
+    m("version", device.version, "CL_DEVICE_VERSION.");
+    m("driver", device.driver, "CL_DRIVER_VERSION.");
+}
 
 /// Returns all devices of all platforms, in the order of the ICD loader; empty if no driver is installed. Leaves out
 /// platforms whose queries fail, with a warning; throws DeviceError if no other platform has a device.

@@ -109,18 +109,6 @@ struct BaselineOptions {
     double tolerance_percent = 10;
 };
 
-Json compared_json(const BaselineOptions& options, const BenchComparison& comparison) {
-    Json rows = Json::array();
-    for (const ComparedRow& row : comparison.rows) rows.push_back(to_json(row));
-    return {{"baseline", options.baseline},
-            {"tolerance_percent", options.tolerance_percent},
-            {"remarks", comparison.remarks},
-            {"compared", comparison.compared},
-            {"slower", comparison.slower},
-            {"other_images", comparison.other_images},
-            {"rows", rows}};
-}
-
 // Returns the report of --compare; without --compare, an empty one. Throws UserError if the file or the tolerance is
 // not valid. Called before the measurements, so that an error is reported before they take their time.
 BenchReport read_baseline(const BaselineOptions& options) {
@@ -145,8 +133,9 @@ void check_comparable(const BaselineOptions& options, const BenchReport& baselin
 void write_and_compare(const BaselineOptions& options, const ReportFiles& files, const BenchReport& baseline,
                        BenchReport measured) {
     if (options.baseline.empty()) return write_report_and_page(files, to_json(measured));
-    const BenchComparison comparison = compare_bench(baseline, measured, options.tolerance_percent);
-    measured.compared = compared_json(options, comparison);
+    BenchComparison comparison = compare_bench(baseline, measured, options.tolerance_percent);
+    comparison.baseline = options.baseline;
+    measured.compared = comparison;
     write_report_and_page(files, to_json(measured));
     fmt::print("\ncompared with {}, tolerance {} % of its rates:\n{}", printable(options.baseline),
                options.tolerance_percent, comparison.text);
@@ -188,7 +177,7 @@ struct BenchCommand {
 };
 
 void write_and_check_builds(const BenchCommand& command, const BenchReport& report) {
-    fmt::print("compiled for {} {} {}\n", report.platform, report.device, report.driver);
+    fmt::print("compiled for {} {} {}\n", report.device.platform, report.device.name, report.device.driver);
     print_builds(report.builds);
     write_report_and_page({command.files.report, ""}, to_json(report));
     for (const BenchBuild& build : report.builds)

@@ -22,11 +22,15 @@
 #include "host/cl/driver.hpp"
 #include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
+#include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/verify.hpp"
 #include "host/error.hpp"
 #include "host/ranks/launch.hpp"
 #include "host/ranks/ranks.hpp"
+#include "host/report/bench_report.hpp"
+#include "host/report/scene_report.hpp"
+#include "host/tune/store.hpp"
 #include "host/tune/tune.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/version.hpp"
@@ -203,6 +207,39 @@ int fail_at_start(const std::string& text, int code) {
     return !launch || launch->rank == 0 ? Ranks::single().fail(text, code) : code;
 }
 
+// Prints the JSON Schema of a kind of report. The build writes the schemas with this function.
+int print_schema(const std::string& kind) {
+    Json schema;
+    if (kind == "render") schema = render_schema();
+    if (kind == "explore") schema = explore_schema();
+    if (kind == "bench")
+        schema = schema_of<BenchReport>("raya bench --report",
+                                        "Rates of kernels or, with `--variants`, of whole renders. `raya bench "
+                                        "--compare` compares a later run with "
+                                        "this report. `raya page` shows the report as a web page.");
+    if (kind == "info")
+        schema =
+            schema_of<SceneReport>("raya info --json",
+                                   "Contents of a scene, and the memory that it needs on each machine. `raya info` "
+                                   "does not render and does not use a device.");
+    if (kind == "verify")
+        schema = schema_of<VerifyReport>("raya verify --report",
+                                         "All checks of all devices, with details of failures (docs/verify.md). `raya "
+                                         "page` shows the report as a web page.");
+    if (kind == "ping")
+        schema = schema_of<PingReport>("raya ping",
+                                       "Message times between MPI ranks, measured with the transport that renders use "
+                                       "(docs/clusters.md). `raya ping` under mpirun prints the report to stdout.");
+    if (kind == "tuned")
+        schema = schema_of<StoredTuning>(
+            "raya/tuned-DEVICE.json",
+            "Tuned values of a device, stored by `raya tune` in `$XDG_CACHE_HOME` or `~/.cache` (docs/tuning.md). "
+            "Renders take their defaults from it. raya ignores a file whose format version, device, driver or version "
+            "of raya differs.");
+    fmt::print("{}\n", schema.dump(1));
+    return schema.is_null() ? kExitUserError : kExitOk;
+}
+
 }  // namespace
 
 std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
@@ -247,6 +284,7 @@ int run_program(int argc, char** argv, const std::string& build) {
     open_standard_files();
     install_interrupt_handlers();
     silence_signals_of_other_ranks();
+    if (argc == 3 && argv[1] == std::string_view("__schema")) return print_schema(argv[2]);
     try {
         const auto request = worker_request(argc, argv);
         install_crash_handlers(request.has_value());  // the parent process reports a worker's crashes
@@ -271,7 +309,7 @@ void run_ping(Ranks& ranks) {
     if (!ranks.has_several())
         throw UserError("ping needs two ranks or more and there is one; start it as mpirun -n 2 raya ping");
     const PingReport report = ping(ranks);
-    if (ranks.is_first()) fmt::print("{}\n", report.json().dump(2));
+    if (ranks.is_first()) fmt::print("{}\n", to_json(report).dump(2));
 }
 
 }  // namespace

@@ -169,43 +169,68 @@ std::string command_of(const ExploreCommand& command, const RingSettings& settin
     return text;
 }
 
-// Returns the rates from which the page computes modelled times.
-Json rates_of(const MachineClock& clock) {
-    return {{"cycle_ns", clock.cycle_ns},
-            {"cycle_factor", clock.cycle_factor},
-            {"setup_ms", clock.setup_ms},
-            {"link_words_per_s", clock.link_words_per_s},
-            {"rotation_sync_ms", clock.rotation_sync_ms}};
+// The page's data. The data contain no measured times, so that two runs with equal settings write equal pages.
+struct Exploration {
+    std::string scene, command;
+    RingSettings settings{};
+    DeviceInfo device{};
+    int width = 0, height = 0;  // pixels
+    std::string png;
+    CostPlanes cost{};
+};
+
+// The rates from which the page computes modelled times.
+void rate_members(Members& m, const MachineClock& clock) {
+    m("cycle_ns", clock.cycle_ns, "Time of one PE cycle, ns.");
+    m("cycle_factor", clock.cycle_factor, "Number of the machine's cycles per cycle of the budgets.");
+    m("setup_ms", clock.setup_ms, "Set-up time of an exchange of neighbouring pixels, ms.");
+    m("link_words_per_s", clock.link_words_per_s, "Words per second over each link of the ring.");
+    m("rotation_sync_ms", clock.rotation_sync_ms, "Time of the synchronisation before each rotation, ms.");
 }
 
-Json machine_json(const RingSettings& settings) {
-    const raya_mapping& m = settings.mapping;
-    const bool has_slots = raya_has_slots(m);
-    return {{"name", settings.machine.name},
-            {"pes", m.pes},
-            {"mapping", has_slots ? "cyclic" : mapping_text(m)},
-            {"offset", has_slots ? Json(m.parameter) : Json()},
-            {"fold", has_slots ? Json(m.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic") : Json()},
-            {"format", format_name(settings.format)},
-            {"bounces", settings.bounces},
-            {"accel", accel_text(settings.accel)},
-            {"rates", rates_of(settings.machine.clock)}};
+void machine_members(Members& m, const RingSettings& settings) {
+    const raya_mapping& mapping = settings.mapping;
+    const bool has_slots = raya_has_slots(mapping);
+    m("name", settings.machine.name, "Name, as given to --machine.");
+    m("pes", mapping.pes, "Number of PEs.");
+    m("mapping", has_slots ? "cyclic" : mapping_text(mapping), "Mapping of pixels to PEs, as given to --mapping.");
+    m("offset", has_slots ? std::optional(mapping.parameter) : std::nullopt,
+      "Offset p of the cyclic mapping, pixels; null without an offset.");
+    m("fold", has_slots ? std::optional(mapping.kind == RAYA_FOLD_BLOCK ? "block" : "cyclic") : std::nullopt,
+      "Assignment of slots to PEs (--fold); null without slots.");
+    m("format", format_name(settings.format), kFormatMeaning);
+    m("bounces", settings.bounces, "Maximum number of reflections and refractions after the primary ray.");
+    m("accel", accel_text(settings.accel), "Acceleration structure, as given to --accel.");
+    m("rates",
+      "Rates of the machine, from which the page computes modelled times (host/model/machine.hpp, MachineClock).",
+      [&](Members& rates) { rate_members(rates, settings.machine.clock); });
 }
 
-// Returns the page's data. The data contain no measured times, so that two runs with equal settings write equal pages.
-Json exploration(const ExploreCommand& command, const RingSettings& settings, const DeviceInfo& device,
-                 const RingResult& result) {
-    return {
-        {"kind", "raya explore"},
-        {"raya", raya_version()},
-        {"scene", scene_name(command)},
-        {"command", command_of(command, settings)},
-        {"machine", machine_json(settings)},
-        {"device", {{"name", device.name}, {"platform", device.platform}, {"driver", device.driver}}},
-        {"image",
-         {{"width", result.image.width}, {"height", result.image.height}, {"png", base64(plain_png(result.image))}}},
-        {"cost", cost_json(result.cost().cycles)}};
+}  // namespace
+
+static void members_of(Members& m, const Exploration& e) {
+    m("kind", "raya explore", "Identifies the report: `raya explore`.");
+    m("raya", raya_version(), kVersionMeaning);
+    m("scene", e.scene, kSceneMeaning);
+    m("command", e.command, "Command `raya render` of the same picture, without the mapping.");
+    m("machine", "Modelled machine that the page shows first.",
+      [&](Members& machine) { machine_members(machine, e.settings); });
+    m("device", "OpenCL device of the render.", [&](Members& device) { device_members(device, e.device); });
+    m("image", "Rendered image at full size.", [&](Members& image) {
+        image("width", e.width, "Width in pixels.");
+        image("height", e.height, "Height in pixels.");
+        image("png", base64(e.png), "PNG file in base64.");
+    });
+    m("cost", e.cost, "Modelled cycles of each pixel, row by row.");
 }
+
+Json explore_schema() {
+    return schema_of<Exploration>("raya explore",
+                                  "Data of the web page that `raya explore` writes: the modelled costs of one render, "
+                                  "without measured times.");
+}
+
+namespace {
 
 // Refuses an image that is too large for a page. Called before the render.
 void check_pixels(const ImageSize& size) {
@@ -252,7 +277,9 @@ void explore(const ExploreCommand& command) {
         renderer.render(bar->active() ? [&](double fraction) { bar->update(fraction); } : ProgressCallback{});
     bar->stage("writing");
     check_cycles(scene_name(command), result.cost());
-    const std::string page = report_page(exploration(command, settings, session.device(), result));
+    const std::string page = report_page(to_json(
+        Exploration{scene_name(command), command_of(command, settings), settings, session.device(), result.image.width,
+                    result.image.height, plain_png(result.image), cost_planes(result.cost().cycles)}));
     check_bytes(scene_name(command), result.cost(), page.size());
     write_whole_file(command.page, page);
     bar.reset();

@@ -20,4 +20,7 @@ struct ReportFiles {
 /// Writes the requested files. `raya page` makes the same page from the report's file.
 void write_report_and_page(const ReportFiles& files, const Json& report);
 
+/// Returns the JSON Schema of the data in the page of `raya explore`.
+Json explore_schema();
+
 }  // namespace raya

@@ -330,7 +330,7 @@ RenderReport common_report(const RenderCommand& command, const SceneInput& input
     RenderReport report;
     report.raya = raya_version();
     report.scene = input_name(command.render.scene);
-    report.view = view_json(input.scene);
+    report.view = view_of(input.scene);
     report.skipped = input.remarks;
     report.image = {result.image.width, result.image.height, output_name(command.image), pixel_hash(result.image),
                     stores_8bit_codes(command.image) ? std::optional(command.exposure.value_or(0)) : std::nullopt};
@@ -387,27 +387,6 @@ Roofline measured_roofline(RenderRun& run, const NumberFormat& format, const Ren
     }
 }
 
-Json rank_json(const Ranks& ranks, const Session& session, const std::string& parts, const RenderResult& result) {
-    const DeviceInfo& device = session.device();
-    return {{"rank", ranks.rank()},
-            {"host", ranks.host()},
-            {parts, result.parts_of_rank},
-            {"device",
-             {{"name", device.name},
-              {"platform", device.platform},
-              {"version", device.version},
-              {"compute_units", device.compute_units},
-              {"lanes", result.lanes},
-              {"group_size", result.group_size},
-              {"bytes_taken", session.bytes_taken()}}},
-            {"build_s", result.build_s},
-            {"render_s", result.render_s},
-            {"messages_sent", result.traffic.messages},
-            {"bytes_sent", result.traffic.bytes},
-            {"waiting_s", result.traffic.waiting_s},
-            {"commands", commands_json(result.commands, true)}};
-}
-
 void add_measured(RenderReport& report, const RenderCommand& command, RenderRun& run, const NumberFormat& format,
                   const RenderResult& result, const std::vector<KernelWork>& kernels) {
     Ranks& ranks = run.ranks;
@@ -418,10 +397,23 @@ void add_measured(RenderReport& report, const RenderCommand& command, RenderRun&
     report.measured.earlier_s = result.earlier_s;
     run.recorder.gather(session, ranks);
     if (!ranks.has_several()) return;
-    Json this_rank = rank_json(ranks, session, is_torus(command) ? "nodes" : "pes", result);
-    if (roofline) add_to(this_rank, *roofline);
-    for (const std::string& text : ranks.gather(json_dump(this_rank)))
-        report.ranks.push_back(parse_json(text, {"the report of a rank"}));
+    const RankReport rank{.rank = ranks.rank(),
+                          .host = ranks.host(),
+                          .torus = is_torus(command),
+                          .parts = result.parts_of_rank,
+                          .device = session.device(),
+                          .lanes = result.lanes,
+                          .group_size = result.group_size,
+                          .bytes_taken = session.bytes_taken(),
+                          .build_s = result.build_s,
+                          .render_s = result.render_s,
+                          .messages_sent = result.traffic.messages,
+                          .bytes_sent = result.traffic.bytes,
+                          .waiting_s = result.traffic.waiting_s,
+                          .commands = result.commands,
+                          .roofline = roofline};
+    for (const std::string& text : ranks.gather(json_dump(to_json(rank))))
+        report.ranks.push_back({parse_json(text, {"the report of a rank"})});
     if (roofline)
         report.rank_rooflines =
             ranks.gather(fmt::format("rank {} on {}, {}\n{}", ranks.rank(), ranks.host(), session.device().name,
@@ -429,6 +421,21 @@ void add_measured(RenderReport& report, const RenderCommand& command, RenderRun&
 }
 
 }  // namespace
+
+Json render_schema() {
+    const auto schema = [](auto list_machine) {
+        Members machine(Members::Mode::kDescribe);
+        list_machine(machine);
+        RenderReport report;
+        report.of_machine.json = machine.json();
+        return schema_of("raya render --report",
+                         "Counted, modelled and measured figures of one render. `raya page` shows the report as a web "
+                         "page. The members of `budget` and `modelled_ms` differ between ring and torus.",
+                         report);
+    };
+    return schema_of_either(schema([](Members& m) { ring_members(m, {}, {}, {}); }),
+                            schema([](Members& m) { torus_members(m, {}, {}, {}); }));
+}
 
 std::optional<RenderReport> finish_render(const RenderCommand& command, RenderRun& run, const RenderSettings& settings,
                                           const RenderResult& result, const MachineOutputs& outputs) {

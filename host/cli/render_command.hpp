@@ -230,4 +230,7 @@ struct MachineOutputs {
 std::optional<RenderReport> finish_render(const RenderCommand& command, RenderRun& run, const RenderSettings& settings,
                                           const RenderResult& result, const MachineOutputs& outputs);
 
+/// Returns the JSON Schema of the report.
+Json render_schema();
+
 }  // namespace raya

@@ -182,7 +182,8 @@ void run_verify(VerifyCommand command) {
     if (device_checks.size() > 1) print_device_totals(device_checks);
     for (const std::string& text : unmatched_patterns(settings.expected_failures, device_checks))
         warn(text + "; raya verify --full --list prints the names of all checks");
-    write_report_and_page({command.report, command.page}, verify_report(device_checks, settings));
+    write_report_and_page({command.report, command.page},
+                          to_json(VerifyReport{settings.depth, settings.as, device_checks}));
     if (!command.junit.empty()) write_whole_file(command.junit, junit_report("raya verify", device_checks));
     if (std::ranges::all_of(device_checks, &DeviceChecks::all_passed)) return;
     if (device_checks.size() == 1 && settings.soak_s == 0)
@@ -379,13 +380,12 @@ void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
     fmt::print("{}: {}\n", counted(device_checks.size(), "device"), closing_text(checks, seconds));
 }
 
-Json verify_report(const std::vector<DeviceChecks>& device_checks, const VerifySettings& settings) {
-    Json devices = Json::array();
-    for (const DeviceChecks& device : device_checks) devices.push_back(to_json(device));
-    Json report = {{"kind", kVerifyReportKind}, {"program", name_and_version()}, {"depth", depth_name(settings.depth)}};
-    if (!settings.as.empty()) report["as"] = settings.as;
-    report["devices"] = devices;
-    return report;
+void members_of(Members& m, const VerifyReport& report) {
+    m("kind", kVerifyReportKind, "Identifies the report: `raya verify`.");
+    m("program", name_and_version(), "raya and its version.");
+    m("depth", depth_name(report.depth), "Extent of the checks: `brief`, `quick` or `full`.");
+    m.when(!report.as.empty(), "as", report.as, "The render of --as, if only its checks ran.");
+    m("devices", report.devices, "Checked devices.");
 }
 
 RenderCase render_case(const std::string& text) {

@@ -63,8 +63,13 @@ class DeviceOutput {
 /// Prints the counts of several devices.
 void print_device_totals(const std::vector<DeviceChecks>& device_checks);
 
-/// Returns the report of --report (docs/schema).
-Json verify_report(const std::vector<DeviceChecks>& device_checks, const VerifySettings& settings);
+/// The report of --report.
+struct VerifyReport {
+    Depth depth = Depth::kQuick;
+    std::string as;  // VerifySettings::as
+    std::vector<DeviceChecks> devices;
+};
+void members_of(Members& m, const VerifyReport& report);
 
 // The option --as of `raya verify`: a render command, parsed like that of `raya render`.
 

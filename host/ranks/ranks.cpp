@@ -260,11 +260,18 @@ PingReport ping(Ranks& ranks) {
     return report;
 }
 
-Json PingReport::json() const {
-    Json times = Json::array();
-    for (const MessageTime& time : messages) times.push_back({{"bytes", time.bytes}, {"seconds", time.seconds}});
-    return {{"kind", "raya ping"}, {"library", library},         {"partner", partner},
-            {"messages", times},   {"alpha_s", network.alpha_s}, {"beta_s_per_byte", network.beta_s}};
+void members_of(Members& m, const MessageTime& time) {
+    m("bytes", time.bytes, "Size of the data that a rank sends, bytes.");
+    m("seconds", time.seconds, "Time of the message, minimum over many repetitions, s.");
+}
+
+void members_of(Members& m, const PingReport& report) {
+    m("kind", "raya ping", "Identifies the report: `raya ping`.");
+    m("library", report.library, "MPI library and version.");
+    m("partner", report.partner, "Rank that exchanges messages with rank 0: the first on another host, else 1.");
+    m("messages", report.messages, "One-way times between rank 0 and `partner`.");
+    m("alpha_s", report.network.alpha_s, "Latency of a message, s, fitted to `messages` (Hockney 1994).");
+    m("beta_s_per_byte", report.network.beta_s, "Additional time per byte of a message, s, fitted to `messages`.");
 }
 
 }  // namespace raya

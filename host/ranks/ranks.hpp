@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/base/json.hpp"
+#include "host/base/members.hpp"
 #include "host/ranks/transport.hpp"
 
 namespace raya {
@@ -198,9 +198,9 @@ struct PingReport {
     std::uint32_t partner = 0;          // lowest rank that is not on rank 0's host; 1 if there is none
     std::vector<MessageTime> messages;  // times of messages between rank 0 and the partner
     Network network;                    // fitted to `messages`
-
-    Json json() const;
 };
+void members_of(Members& m, const MessageTime& time);
+void members_of(Members& m, const PingReport& report);
 
 /// Collective; requires at least two ranks. Only rank 0 gets the complete report.
 PingReport ping(Ranks& ranks);

@@ -14,49 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the JSON object with the rates of a row in Mrays/s.
-Json rates_json(const BenchMeasurement& row) { return {{"best", row.best_rate()}, {"median", row.median_rate()}}; }
-
-/// Returns the JSON members that identify a row.
-Json row_key_json(const BenchMeasurement& row) {
-    return {{"kernel", row.kernel}, {"scene", row.scene}, {"size", row.size},       {"array", row.array},
-            {"format", row.format}, {"lanes", row.lanes}, {"group", row.group_size}};
-}
-
-Json row_json(const BenchMeasurement& row) {
-    Json json = row_key_json(row);
-    json["rays"] = row.rays;
-    json["mrays_per_s"] = rates_json(row);
-    json["ms"] = {{"best", 1e3 * row.best_s}, {"median", 1e3 * row.median_s}};
-    json["samples"] = row.samples;
-    json["hash"] = row.hash;
-    json["build_options"] = row.build_options;
-    if (!row.roofline) return json;
-    if (!row.roofline->unavailable.empty()) json["no_roofline"] = row.roofline->unavailable;
-    if (row.roofline->rows.empty()) return json;
-    json["peak"] = peak_json(row.roofline->peak);
-    json["roofline"] = roofline_json(*row.roofline).front();
-    return json;
-}
-
-BenchMeasurement row_of(const Json& json) {
-    const auto text = [&](const char* key) { return json_text(json.at(key)); };
-    const auto number = [&](const char* key) {
-        return static_cast<std::uint32_t>(json_integer(json.at(key), INT32_MAX));
-    };
-    return {.kernel = text("kernel"),
-            .scene = text("scene"),
-            .size = text("size"),
-            .array = text("array"),
-            .format = text("format"),
-            .lanes = number("lanes"),
-            .group_size = number("group"),
-            .rays = json_integer(json.at("rays")),
-            .best_s = json_number(json.at("ms").at("best")) * 1e-3,
-            .median_s = json_number(json.at("ms").at("median")) * 1e-3,
-            .samples = static_cast<int>(number("samples")),
-            .hash = text("hash"),
-            .build_options = text("build_options")};
+/// Returns the members that identify a row, as a tuple.
+auto key(const BenchMeasurement& r) {
+    return std::tie(r.kernel, r.scene, r.size, r.array, r.format, r.lanes, r.group_size);
 }
 
 bool is_valid_time(double seconds) { return seconds > 0; }  // JSON has no infinite numbers
@@ -65,50 +25,103 @@ BenchReport report_of(const Json& json) {
     const Json* const kind = find_member(json, "kind");
     if (kind == nullptr || !kind->is_string() || json_text(*kind) != kBenchReportKind)
         throw UserError("valid JSON, but not a report of raya bench");
-    const Json& device = json.at("device");
-    BenchReport report{.raya = json_text(json.at("raya")),
-                       .device = json_text(device.at("name")),
-                       .platform = json_text(device.at("platform")),
-                       .version = json_text(device.at("version")),
-                       .driver = json_text(device.at("driver")),
-                       .rows = {}};
-    for (const Json& row : json_array(json.at("rows"))) report.rows.push_back(row_of(row));
+    BenchReport report = from_json<BenchReport>(json);
     if (report.rows.empty()) throw UserError("the report has no measurements");
-    std::set<std::string> keys;
+    std::set<decltype(key(report.rows.front()))> keys;
     for (const BenchMeasurement& row : report.rows) {
         const std::string name = fmt::format("row with {} and {} lanes", row.format, row.lanes);
         if (!is_valid_time(row.best_s) || !is_valid_time(row.median_s) || row.rays == 0)
             throw UserError(name + ": rays and times must be positive");
-        if (!keys.insert(row_key_json(row).dump()).second) throw UserError(name + " occurs twice");
+        if (!keys.insert(key(row)).second) throw UserError(name + " occurs twice");
     }
     return report;
 }
 
+/// Adds the members that identify a row.
+template <class Row>
+void key_members(Members& m, Row& row) {
+    m("kernel", row.kernel, "Kernel, or `render, VARIANT`. This and the members up to `group` identify the row.");
+    m("scene", row.scene, "Scene file without folder.");
+    m("size", row.size, "Width x height in pixels.");
+    m("array", row.array, "Number of PEs, mapping, number of bounces and accelerator.");
+    m("format", row.format, kFormatMeaning);
+    m("lanes", row.lanes, kLanesMeaning);
+    m("group", row.group_size, kGroupMeaning);
+}
+
+constexpr const char* kOptionsMeaning = "Options of the kernel compiler.";
+
 }  // namespace
 
-Json to_json(const BenchReport& report) {
-    Json rows = Json::array();
-    for (const BenchMeasurement& row : report.rows) rows.push_back(row_json(row));
-    Json json = {{"kind", kBenchReportKind},
-                 {"raya", report.raya},
-                 {"device",
-                  {{"name", report.device},
-                   {"platform", report.platform},
-                   {"version", report.version},
-                   {"driver", report.driver}}},
-                 {"rows", rows}};
-    Json builds = Json::array();
-    for (const BenchBuild& build : report.builds)
-        builds.push_back({{"kernel", build.kernel},
-                          {"variant", build.variant},
-                          {"format", build.format},
-                          {"lanes", build.lanes},
-                          {"build_s", build.build_s},
-                          {"first_launch_s", build.launch_s},
-                          {"build_options", build.build_options}});
-    if (!report.builds.empty()) json["builds"] = builds;
-    if (!report.compared.is_null()) json["compared"] = report.compared;
-    return json;
+/// Millions of rays of all kinds per second.
+struct BenchRates {
+    double best = 0, median = 0;
+};
+
+void members_of(Members& m, const BenchRates& rates) {
+    m("best", rates.best, "Rate of the fastest sample, Mrays/s.");
+    m("median", rates.median, "Rate of the sample with the median time, Mrays/s.");
+}
+
+void members_of(Members& m, BenchMeasurement& row) {
+    key_members(m, row);
+    m("rays", row.rays, "Number of rays of one image.");
+    m("mrays_per_s", BenchRates{row.best_rate(), row.median_rate()}, "Millions of rays of all kinds per second.");
+    double best_ms = 1e3 * row.best_s, median_ms = 1e3 * row.median_s;
+    m("ms",
+      "Time for one image. Kernels: time of the kernel by the device's clock. With `--variants`: time of the whole "
+      "render by the host's clock.",
+      [&](Members& ms) {
+          ms("best", best_ms, "Time of the fastest sample, ms.");
+          ms("median", median_ms, "Median time of the samples, ms.");
+      });
+    if (m.reads()) row.best_s = 1e-3 * best_ms, row.median_s = 1e-3 * median_ms;
+    m("samples", row.samples, "Number of samples.");
+    m("hash", row.hash, kHashMeaning);
+    m("build_options", row.build_options, kOptionsMeaning);
+    roofline_members(m, row.roofline);
+}
+
+void members_of(Members& m, BenchBuild& build) {
+    m("kernel", build.kernel, "File of the program in kernels/.");
+    m("variant", build.variant, "Variant that uses the program: `none`, `grid`, `bvh` or `torus`.");
+    m("format", build.format, kFormatMeaning);
+    m("lanes", build.lanes, kLanesMeaning);
+    m("build_s", build.build_s, "Time of clBuildProgram, s.");
+    m("first_launch_s", build.launch_s, "First launches of its kernels, with compilation at launch, s.");
+    m("build_options", build.build_options, kOptionsMeaning);
+}
+
+void members_of(Members& m, const ComparedRow& row) {
+    const auto rates = [](const BenchMeasurement* of) {
+        return of ? std::optional(BenchRates{of->best_rate(), of->median_rate()}) : std::nullopt;
+    };
+    const BenchMeasurement none;
+    key_members(m, row.now ? *row.now : row.before ? *row.before : none);
+    m("mrays_per_s", rates(row.now), "Rates in this report; null if only the earlier report has the row.");
+    m("mrays_per_s_was", rates(row.before), "Rates in the earlier report; null if it lacks the row.");
+    m("verdict", row.verdict,
+      "`as before`, `faster`, `SLOWER`, `OTHER IMAGE: ...`, or which report alone has the row.");
+}
+
+void members_of(Members& m, const BenchComparison& c) {
+    m("baseline", c.baseline, "File of the earlier report.");
+    m("tolerance_percent", c.tolerance_percent, "Decrease that does not count as slower, percent.");
+    m("remarks", c.remarks, "Differences of device, driver or version of raya.");
+    m("compared", c.compared, "Number of rows that both reports have.");
+    m("slower", c.slower, "Number of rows whose best and median rates both fell by more than the tolerance.");
+    m("other_images", c.other_images, "Number of rows with another image hash.");
+    m("rows", c.rows, "Rows of this report and of the earlier report; one entry for a row that both have.");
+}
+
+void members_of(Members& m, BenchReport& report) {
+    m("kind", kBenchReportKind, "Identifies the report: `raya bench`.");
+    m("raya", report.raya, kVersionMeaning);
+    m("device", "OpenCL device.", [&](Members& device) { device_members(device, report.device); });
+    m("rows", report.rows, "One row for each kernel or variant, format and number of lanes; empty with `--build`.");
+    m.when(!report.builds.empty(), "builds", report.builds, "With --build: each program, variant and format.");
+    m.when(report.compared.has_value(), "compared", report.compared.value_or(BenchComparison{}),
+           "With --compare: comparison with an earlier report.");
 }
 
 BenchReport read_bench_report(const fs::path& path) {
@@ -119,11 +132,6 @@ BenchReport read_bench_report(const fs::path& path) {
 namespace {
 
 using Rows = std::vector<BenchMeasurement>;
-
-/// Returns the members that identify a row, as a tuple.
-auto key(const BenchMeasurement& r) {
-    return std::tie(r.kernel, r.scene, r.size, r.array, r.format, r.lanes, r.group_size);
-}
 
 const BenchMeasurement* find_row(const Rows& rows, const BenchMeasurement& wanted) {
     const auto found = std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return key(row) == key(wanted); });
@@ -178,14 +186,6 @@ void add_difference(BenchComparison& comparison, const char* property, const std
 
 }  // namespace
 
-Json to_json(const ComparedRow& row) {
-    Json json = row_key_json(row.now != nullptr ? *row.now : *row.before);
-    json["mrays_per_s"] = row.now != nullptr ? rates_json(*row.now) : Json{};
-    json["mrays_per_s_was"] = row.before != nullptr ? rates_json(*row.before) : Json{};
-    json["verdict"] = row.verdict;
-    return json;
-}
-
 int rows_in_common(const BenchReport& baseline, const BenchReport& now) {
     return static_cast<int>(std::count_if(now.rows.begin(), now.rows.end(),
                                           [&](const auto& row) { return find_row(baseline.rows, row) != nullptr; }));
@@ -193,8 +193,11 @@ int rows_in_common(const BenchReport& baseline, const BenchReport& now) {
 
 BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& now, double tolerance) {
     BenchComparison comparison;
-    add_difference(comparison, "device", baseline.platform + " " + baseline.device, now.platform + " " + now.device);
-    add_difference(comparison, "driver", baseline.version + ", " + baseline.driver, now.version + ", " + now.driver);
+    comparison.tolerance_percent = tolerance;
+    add_difference(comparison, "device", baseline.device.platform + " " + baseline.device.name,
+                   now.device.platform + " " + now.device.name);
+    add_difference(comparison, "driver", baseline.device.version + ", " + baseline.device.driver,
+                   now.device.version + ", " + now.device.driver);
     add_difference(comparison, "version of raya", baseline.raya, now.raya);
     std::vector<std::vector<std::string>> table = {{"kernel", "scene", "size", "format", "lanes", "group",
                                                     "best Mrays/s", "was", "change", "median", "was", "change", ""}};

@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "host/base/json.hpp"
+#include "host/base/members.hpp"
+#include "host/cl/device.hpp"
 #include "host/report/render_report.hpp"
 
 namespace raya {
 
-/// Measurement of one kernel with one set of options: a row of the report. Two rows are comparable if row_key_json()
-/// is equal for both.
+/// Measurement of one kernel with one set of options: a row of the report. Two rows are comparable if the
+/// members from `kernel` to `group_size` are equal.
 struct BenchMeasurement {
     std::string kernel, scene;  // scene: file name without folder
     std::string size;           // pixels, "512x512"
@@ -39,35 +40,14 @@ struct BenchBuild {
     std::string build_options{};
 };
 
-struct BenchReport {
-    std::string raya;  // version of raya
-    std::string device, platform, version, driver;
-    std::vector<BenchMeasurement> rows;
-    std::vector<BenchBuild> builds{};  // with --build; `rows` is then empty
-    Json compared{};                   // result of compare_bench() and the baseline's name; null: no comparison
-};
-
-/// Value of the member "kind", which identifies the report.
-inline constexpr const char* kBenchReportKind = "raya bench";
-
-/// Returns the report as JSON; "kind" is the first member.
-Json to_json(const BenchReport& report);
-
-/// Reads a report; ignores its rooflines and comparison. Throws UserError with file, reason and remedy if the file
-/// cannot be read, is not a report of raya bench, or has an invalid row.
-BenchReport read_bench_report(const std::filesystem::path& path);
-
 // Compares the rates and images of two runs of `raya bench`, row by row.
 
 /// A row in the baseline and in this run. Null: the run has no such row.
 struct ComparedRow {
-    const BenchMeasurement *before, *now;
+    const BenchMeasurement *before = nullptr, *now = nullptr;
     std::string verdict;      // "as before", "faster", "SLOWER", "OTHER IMAGE: ...", or which run alone has the row
     bool has_failed = false;  // slower, or another image
 };
-
-/// Returns the row's key, the rates of both runs, and the verdict.
-Json to_json(const ComparedRow& row);
 
 /// Result of compare_bench().
 struct BenchComparison {
@@ -77,8 +57,32 @@ struct BenchComparison {
     int other_images = 0;                // number of compared rows with different image hashes
     std::vector<ComparedRow> rows{};     // rows of both runs; they point into the reports
     std::vector<std::string> remarks{};  // the warnings: differences of device, driver or version
+    std::string baseline{};              // name of the baseline's file
+    double tolerance_percent = 0;        // of the rates
     bool failed() const { return slower + other_images > 0; }
 };
+
+struct BenchReport {
+    std::string raya;  // version of raya
+    DeviceInfo device;
+    std::vector<BenchMeasurement> rows{};
+    std::vector<BenchBuild> builds{};           // with --build; `rows` is then empty
+    std::optional<BenchComparison> compared{};  // with the rows of this report and of the baseline
+};
+
+/// Value of the member "kind", which identifies the report.
+inline constexpr const char* kBenchReportKind = "raya bench";
+
+// Lists of the members, for to_json(), schema_of() and from_json(), which ignores rooflines and comparison.
+void members_of(Members& m, BenchMeasurement& row);
+void members_of(Members& m, BenchBuild& build);
+void members_of(Members& m, const ComparedRow& row);
+void members_of(Members& m, const BenchComparison& comparison);
+void members_of(Members& m, BenchReport& report);
+
+/// Reads a report. Throws UserError with file, reason and remedy if the file
+/// cannot be read, is not a report of raya bench, or has an invalid row.
+BenchReport read_bench_report(const std::filesystem::path& path);
 
 /// Returns the number of rows of `now` that the baseline also has.
 int rows_in_common(const BenchReport& baseline, const BenchReport& now);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -14,6 +15,10 @@
 
 namespace raya {
 namespace {
+
+constexpr const char* kCommandsMeaning =
+    "Commands of the device, one entry for each label and kind, in order of first use. The device's clock measures the "
+    "times; they are 0 if the device does not time its commands (docs/profile.md).";
 
 double as_double(std::uint64_t count) { return static_cast<double>(count); }
 
@@ -139,106 +144,43 @@ std::string roofline_table(const Roofline& roofline, bool legend) {
     return text;
 }
 
-Json peak_json(const DevicePeak& p) {
-    return {{"fp32_multiply_adds_per_s", p.fp32_per_s},
-            {"format", p.format},
-            {"format_multiply_adds_per_s", p.multiply_per_s},
-            {"format_divisions_per_s", p.divide_per_s},
-            {"format_roots_per_s", p.sqrt_per_s},
-            {"copy_bytes_per_s", p.copy_bytes_per_s},
-            {"copy_buffer_bytes", p.copy_bytes},
-            {"scatter", p.scatter}};
+void members_of(Members& m, const DevicePeak& p) {
+    m("fp32_multiply_adds_per_s", p.fp32_per_s, "fp32 multiply-adds per second; each is one operation.");
+    m("format", p.format, kFormatMeaning);
+    m("format_multiply_adds_per_s", p.multiply_per_s, "Multiply-adds per second in `format`.");
+    m("format_divisions_per_s", p.divide_per_s, "Divisions per second in `format`.");
+    m("format_roots_per_s", p.sqrt_per_s, "Square roots per second in `format`.");
+    m("copy_bytes_per_s", p.copy_bytes_per_s, "Bytes read plus bytes written per second of a copy.");
+    m("copy_buffer_bytes", p.copy_bytes, "Size of each of the two buffers, bytes.");
+    m("scatter", p.scatter, "(best - worst) / best of three measurements of the fp32 rate.");
 }
 
-Json roofline_json(const Roofline& roofline) {
-    Json rows = Json::array();
-    for (const RooflineRow& r : roofline.rows) {
-        const double operations = as_double(r.work.all_operations());
-        rows.push_back({{"label", r.work.label},
-                        {"rays", r.work.rays},
-                        {"rays_per_s", per_second(as_double(r.work.rays), r.seconds)},
-                        {"operations", r.work.all_operations()},
-                        {"operations_per_s", per_second(operations, r.seconds)},
-                        {"bytes", r.work.bytes},
-                        {"bytes_per_s", per_second(as_double(r.work.bytes), r.seconds)},
-                        {"operations_per_byte", r.intensity},
-                        {"bound", bound_name(r.bound)},
-                        {"share_of_roof", r.roof_fraction},
-                        {"share_of_format", r.format_fraction ? Json(*r.format_fraction) : Json()}});
-    }
-    return rows;
+void members_of(Members& m, const RooflineRow& r) {
+    const std::uint64_t operations = r.work.all_operations();
+    const auto rate = [&](std::uint64_t count) { return per_second(as_double(count), r.seconds); };
+    m("label", r.work.label, "Label of the kernel in `commands`.");
+    m("rays", r.work.rays, "Number of rays that the kernel traced or generated.");
+    m("rays_per_s", rate(r.work.rays), "Rays per second of device time.");
+    m("operations", operations,
+      "Operations of the budgets of all events (host/model/budget.hpp), the same on every device.");
+    m("operations_per_s", rate(operations), "Operations per second of device time.");
+    m("bytes", r.work.bytes, "Minimum number of bytes that the kernel has to read and write.");
+    m("bytes_per_s", rate(r.work.bytes), "Bytes per second of device time.");
+    m("operations_per_byte", r.intensity, "Arithmetic intensity: `operations` / `bytes`.");
+    m("bound", bound_name(r.bound), "The lower roof: `compute` (fp32 multiply-adds) or `bandwidth` (copies).");
+    m("share_of_roof", r.roof_fraction, "Rate / roof at this arithmetic intensity; 1 at the limit of the device.");
+    m("share_of_format", r.format_fraction,
+      "Time at the peak rates of the format / time of the kernel; null without operations.");
 }
 
-void add_to(Json& json, const Roofline& roofline) {
-    if (!roofline.unavailable.empty()) {
-        json["no_roofline"] = roofline.unavailable;
-        return;
-    }
-    json["peak"] = peak_json(roofline.peak);
-    json["roofline"] = roofline_json(roofline);
+void roofline_members(Members& m, const std::optional<Roofline>& roofline) {
+    const Roofline shown = roofline.value_or(Roofline{});
+    const bool available = roofline && shown.unavailable.empty();
+    m.when(roofline && !available, "no_roofline", shown.unavailable, "Why there is no roofline.");
+    m.when(available, "peak", shown.peak, "Highest rates of this device (docs/profile.md).");
+    m.when(available, "roofline", shown.rows,
+           "With --profile or --page: each kernel compared with the peak (Williams, Waterman & Patterson 2009).");
 }
-
-namespace {
-
-Json image_json(const RenderReport& r) {
-    Json json = {{"width", r.image.width},
-                 {"height", r.image.height},
-                 {"file", r.image.file},
-                 {"hash", r.image.hash},
-                 {"exposure", r.image.exposure}};
-    const auto& preview = r.image.preview;
-    if (!preview.png.empty())
-        json["preview"] = {{"width", preview.width}, {"height", preview.height}, {"png", base64(preview.png)}};
-    return json;
-}
-
-Json load_json(const Load& load) {
-    return {{"unit", "cycles"},
-            {"mean", load.mean},
-            {"max", load.max},
-            {"min", load.min},
-            {"imbalance", load.imbalance},
-            {"speedup", load.speedup},
-            {"efficiency", load.efficiency},
-            {"per_pe", load.per_pe}};
-}
-
-Json loads_json(const RenderReport& r) {
-    Json all = load_json(r.load);
-    all["simulated"] = r.requests.has_value();
-    if (r.requests) all["requests"] = *r.requests;
-    for (const auto& [phase, load] : r.loads) all[phase] = load_json(load);
-    return all;
-}
-
-Json measured_json(const RenderReport& report) {
-    const auto& m = report.measured;
-    Json json = {{"build_s", m.build_s}, {"render_s", m.render_s}};
-    if (report.accel_s > 0) json["accel_s"] = report.accel_s;
-    if (m.earlier_s > 0) json["earlier_s"] = m.earlier_s;
-    json["commands"] = commands_json(m.commands, m.roofline.has_value());
-    if (!report.ranks.empty()) json["ranks"] = report.ranks;
-    if (!m.roofline) return json;
-    json["builds"] = builds_json(m.builds);
-    add_to(json, *m.roofline);
-    return json;
-}
-
-Json machine_json(const RenderReport& r) {
-    return {{"name", r.machine.name},
-            {"topology", r.machine.topology},
-            {"pes", r.machine.pes},
-            {"mapping", r.machine.mapping},
-            {"offset", r.machine.offset ? Json(*r.machine.offset) : Json()},
-            {"fold", r.machine.fold ? Json(*r.machine.fold) : Json()},
-            {"format", r.machine.format},
-            {"length_exponent", r.machine.length_exponent},
-            {"bounces", r.machine.bounces},
-            {"pe_memory_bytes", r.machine.pe_memory_bytes ? Json(r.machine.pe_memory_bytes) : Json()},
-            {"pe_memory_used_bytes", r.machine.pe_memory_used_bytes}};
-}
-
-}  // namespace
 
 std::uint64_t ray_count(const EventCounts& e) {
     return e[RAYA_PRIMARY] + e[RAYA_REFLECTED] + e[RAYA_REFRACTED] + e[RAYA_SHADOW];
@@ -249,32 +191,186 @@ std::uint64_t test_count(const EventCounts& e) {
     return 0 RAYA_OBJECT_LIST(RAYA_TESTS);
 }
 
-Json to_json(const RenderReport& r) {
-    Json json = Json::object();
-    json["kind"] = kRenderReportKind;
-    json["raya"] = r.raya;
-    json["scene"] = r.scene;
-    json["warnings"] = r.warnings;
-    json["skipped"] = skipped_json(r.skipped);
-    json["view"] = r.view;
-    json["image"] = image_json(r);
-    json["machine"] = machine_json(r);
-    json["device"] = {{"name", r.device.name},       {"platform", r.device.platform},
-                      {"version", r.device.version}, {"driver", r.device.driver},
-                      {"lanes", r.device.lanes},     {"group_size", r.device.group_size},
-                      {"tuned", r.device.tuned},     {"build_options", r.device.build_options}};
+void members_of(Members& m, const Load& load) {
+    m("unit", "cycles", "`cycles` of a PE's processor.");
+    m("mean", load.mean, "Mean over all PEs, cycles.");
+    m("max", load.max, "Load of the busiest PE, cycles.");
+    m("min", load.min, "Load of the least busy PE, cycles.");
+    m("imbalance", load.imbalance, "u = (max - mean) / mean (Kohata & Ito 1993, Fig. 8); 0 if all loads are 0.");
+    m("speedup", load.speedup, "Sum of the loads / max.");
+    m("efficiency", load.efficiency, "Speed-up / number of PEs.");
+    m("per_pe", load.per_pe, "Load of each PE, in the order of the PEs' numbers, cycles.");
+}
+
+void members_of(Members& m, const LabelSummary& c) {
+    const auto mean_ns = [&](std::uint64_t total) { return as_double(total) / as_double(c.launches); };
+    m("label", c.label, "Purpose of the command.");
+    m("kind", c.kind, "Type of the command: `kernel`, `write`, `read`, `copy` or `fill`.");
+    m("launches", c.launches, "Number of commands.");
+    m("total_ns", c.total_ns, "Total time from start to end, ns.");
+    m("min_ns", c.min_ns, "Shortest time from start to end, ns.");
+    m("mean_ns", c.mean_ns, "Mean time from start to end, ns.");
+    m("max_ns", c.max_ns, "Longest time from start to end, ns.");
+    m("queue_to_submit_mean_ns", mean_ns(c.submit_ns), "Mean time from enqueueing to submission, ns.");
+    m("submit_to_start_mean_ns", mean_ns(c.start_ns), "Mean time from submission to start, ns.");
+    m("bytes", c.bytes, "Total number of bytes moved or filled; 0 for kernels.");
+}
+
+void members_of(Members& m, const ProgramBuild& build) {
+    m("program", build.name, "Kernel file.");
+    m("seconds", build.seconds, "Build time of the program by the host's clock, s.");
+}
+
+void members_of(Members& m, const RankReport& r) {
+    m("rank", r.rank, "Number of the rank.");
+    m("host", r.host, "Host name.");
+    m.when(!r.torus, "pes", r.parts, "Number of PEs of the ring that this rank models.");
+    m.when(r.torus, "nodes", r.parts, "Number of nodes of the torus that this rank models.");
+    m("device", "OpenCL device of the rank.", [&](Members& d) {
+        d("name", r.device.name, "CL_DEVICE_NAME.");
+        d("platform", r.device.platform, "CL_PLATFORM_NAME.");
+        d("version", r.device.version, "CL_DEVICE_VERSION.");
+        d("compute_units", r.device.compute_units, "CL_DEVICE_MAX_COMPUTE_UNITS.");
+        d("lanes", r.lanes, kLanesMeaning);
+        d("group_size", r.group_size, kGroupMeaning);
+        d("bytes_taken", r.bytes_taken, "Size of all buffers ever created on the device, bytes.");
+    });
+    m("build_s", r.build_s, "Build time of the kernels by the rank's clock, s.");
+    m("render_s", r.render_s, "Time of everything after the build, by the rank's clock, s.");
+    m("messages_sent", r.messages_sent, "Number of messages sent to other ranks during the render.");
+    m("bytes_sent", r.bytes_sent, "Total size of the messages sent, bytes.");
+    m("waiting_s", r.waiting_s, "Time spent waiting for other ranks, s.");
+    m("commands", r.commands, kCommandsMeaning);
+    roofline_members(m, r.roofline);
+}
+
+namespace {
+
+void image_members(Members& m, const RenderReport& r) {
+    m("width", r.image.width, "Width in pixels.");
+    m("height", r.image.height, "Height in pixels.");
+    m("file", r.image.file, "Image file, as given to --output.");
+    m("hash", r.image.hash, kHashMeaning);
+    m("exposure", r.image.exposure, "Stops: colours of the file times 2^exposure; null: linear.");
+    const auto& preview = r.image.preview;
+    m.when(!preview.png.empty(), "preview", "Image for the report's web page, reduced if it is large.",
+           [&](Members& p) {
+               p("width", preview.width, "Width in pixels.");
+               p("height", preview.height, "Height in pixels.");
+               p("png", base64(preview.png), "PNG file in base64.");
+           });
+}
+
+void machine_members(Members& m, const RenderReport& r) {
+    const auto& machine = r.machine;
+    m("name", machine.name, "Name, as given to --machine.");
+    m("topology", machine.topology, "Connections between the PEs: `ring+bus`, `torus3d` or `torus2d`.");
+    m("pes", machine.pes, "Number of PEs; on the torus, number of nodes.");
+    m("mapping", machine.mapping, "As given to --mapping; `voxels` on the torus.");
+    m("offset", machine.offset, "Offset p of the cyclic mapping, pixels; null without an offset.");
+    m("fold", machine.fold, "Assignment of slots to PEs, `cyclic` or `block`; null without slots.");
+    m("format", machine.format, kFormatMeaning);
+    m("length_exponent", machine.length_exponent, "e: lengths of the scene were multiplied by 2^e.");
+    m("bounces", machine.bounces, "Maximum number of reflections and refractions after the primary ray.");
+    m("pe_memory_bytes", machine.pe_memory_bytes ? std::optional(machine.pe_memory_bytes) : std::nullopt,
+      "Memory of a PE in bytes; null if unlimited.");
+    m("pe_memory_used_bytes", machine.pe_memory_used_bytes, "Memory used in a PE, or in the fullest node, bytes.");
+}
+
+void device_members(Members& m, const RenderReport& r) {
+    raya::device_members(m, r.device);
+    m("lanes", r.device.lanes, kLanesMeaning);
+    m("group_size", r.device.group_size, kGroupMeaning);
+    m("tuned", r.device.tuned,
+      "Source of lanes and group size: `defaults`, `options`, or a file of raya tune and its date.");
+    m("build_options", r.device.build_options, "Options of the kernel compiler.");
+}
+
+constexpr std::array<const char*, RAYA_EVENTS> kEventMeanings = {
+    "Number of primary rays: one per pixel, and four more for each supersampled pixel.",
+    "Number of primary rays that hit an object.",
+    "Number of reflected rays, including total reflection.",
+    "Number of refracted rays.",
+    "Number of shadow rays, from hits to lights.",
+    "Number of shadow rays that hit an object.",
+    "Number of tests against spheres.",
+    "Number of tests against planes.",
+    "Number of tests against polygons and patches.",
+    "Number of tests against cones and cylinders.",
+    "Number of shaded hits of primary, reflected and refracted rays. For each hit the kernel evaluates a normal, a "
+    "surface and an ambient term.",
+    "Number of contributions of light sources to hits.",
+    "Number of evaluations of a specular highlight's power.",
+    "Number of rays that traversed the acceleration structure. Grid and torus: rays that entered the bounding box of "
+    "the voxels. BVH: rays that visited a node.",
+    "Number of traversal steps of all rays. Grid and torus: voxels entered, including the first voxel of a ray. BVH: "
+    "nodes visited.",
+    ""};
+
+static_assert(kEventMeanings.back() != nullptr);
+
+// Adds the counts of the events whose member in kEvents begins with `prefix`, without the prefix.
+void event_members(Members& m, const EventCounts& events, const std::string& prefix) {
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
         const std::string member = kEvents[event].member;
-        const std::size_t dot = member.find('.');
-        if (dot != std::string::npos)
-            (*json.emplace(member.substr(0, dot), Json::object()).first)[member.substr(dot + 1)] = r.events[event];
-        else if (!member.empty())
-            json[member] = r.events[event];
+        const bool listed =
+            prefix.empty() ? !member.empty() && member.find('.') == std::string::npos : member.starts_with(prefix);
+        if (listed) m(member.substr(prefix.size()), events[event], kEventMeanings[event]);
     }
-    json["load"] = loads_json(r);
-    json.update(r.of_machine.json);
-    json["measured"] = measured_json(r);
-    return json;
+}
+
+void load_members(Members& m, const RenderReport& r) {
+    members_of(m, r.load);
+    m("simulated", r.requests.has_value(), "True for dynamic and hybrid mappings, whose distribution is simulated.");
+    m.when(r.requests.has_value(), "requests", r.requests.value_or(0), "Requests for pixels in the simulation.");
+    for (const auto& [name, meaning] : {std::pair{"trace", "Loads of a ring's first phase, tracing."},
+                                        {"supersample", "Loads of a ring's second phase, supersampling."}}) {
+        const auto phase = std::ranges::find(r.loads, name, &std::pair<std::string, Load>::first);
+        m.when(phase != r.loads.end(), name, phase != r.loads.end() ? phase->second : Load{}, meaning);
+    }
+}
+
+void measured_members(Members& m, const RenderReport& r) {
+    const auto& measured = r.measured;
+    m("build_s", measured.build_s, "Build time of the kernels by the host's clock, s.");
+    m("render_s", measured.render_s, "Time of everything after the build, by the host's clock, s.");
+    m.when(r.accel_s > 0, "accel_s", r.accel_s, "Time to build the grid or BVH on the host, s.");
+    m.when(measured.earlier_s > 0, "earlier_s", measured.earlier_s,
+           "Part of `render_s` before --resume, without its commands, s.");
+    m("commands", measured.commands, kCommandsMeaning);
+    m.when(!r.ranks.empty(), "ranks", r.ranks, "Each MPI rank (docs/clusters.md).");
+    m.when(measured.roofline.has_value(), "builds", measured.builds, "With --profile or --page: each program.");
+    roofline_members(m, measured.roofline);
+}
+
+}  // namespace
+
+void members_of(Members& m, const RenderReport& r) {
+    m("kind", kRenderReportKind, "Identifies the report: `raya render`.");
+    m("raya", r.raya, kVersionMeaning);
+    m("scene", r.scene, kSceneMeaning);
+    m("warnings", r.warnings, kWarningsMeaning);
+    m("skipped", r.skipped, kSkippedMeaning);
+    m("view", r.view, kViewMeaning);
+    const auto part = [&](void (*list)(Members&, const RenderReport&)) {
+        return [&r, list](Members& p) { list(p, r); };
+    };
+    const auto counts = [&](const char* prefix) {
+        return [&r, prefix](Members& p) { event_members(p, r.events, prefix); };
+    };
+    m("image", part(image_members), "Rendered image.");
+    m("machine", part(machine_members), "Modelled machine.");
+    m("device", part(device_members), "OpenCL device.");
+    m("rays", counts("rays."), "Numbers of rays, counted by the kernels.");
+    m("tests", counts("tests."), "Numbers of intersection tests, counted by the kernels.");
+    m("shading", counts("shading."), "Numbers of shading events, counted by the kernels.");
+    event_members(m, r.events, "");
+    m("load", part(load_members),
+      "Modelled cycles of the PEs in all phases together, computed from the instruction budget of each event "
+      "(host/model/budget.hpp; torus: host/model/t805.hpp). If `simulated` is true, they are the loads of a simulated "
+      "distribution of pixels.");
+    m.include(r.of_machine.json);
+    m("measured", part(measured_members), "Times measured on this host and device.");
 }
 
 namespace {
@@ -304,7 +400,7 @@ std::string ranks_line(const RenderReport& r) {
     double max_waiting_s = 0;
     std::uint64_t messages = 0, bytes = 0;
     std::set<std::string> hosts;
-    for (const Json& rank : r.ranks) {
+    for (const auto& [rank] : r.ranks) {
         max_waiting_s = std::max(max_waiting_s, json_number(rank.at("waiting_s")));
         messages += json_integer(rank.at("messages_sent"));
         bytes += json_integer(rank.at("bytes_sent"));

@@ -6,12 +6,14 @@
 #include <utility>
 #include <vector>
 
-#include "host/base/json.hpp"
+#include "host/base/members.hpp"
+#include "host/cl/device.hpp"
 #include "host/cl/profile.hpp"
 #include "host/model/budget.hpp"
 #include "host/model/machine.hpp"
 #include "host/model/t805.hpp"
 #include "host/scene/nff.hpp"
+#include "host/scene/scene.hpp"
 
 namespace raya {
 
@@ -66,15 +68,15 @@ Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
 /// the columns.
 std::string roofline_table(const Roofline& roofline, bool legend = true);
 
-Json peak_json(const DevicePeak& peak);
-Json roofline_json(const Roofline& roofline);
+void members_of(Members& m, const DevicePeak& peak);
+void members_of(Members& m, const RooflineRow& row);
 
-/// Adds the members `peak` and `roofline`, or `no_roofline` with the reason, to an object of a report.
-void add_to(Json& json, const Roofline& roofline);
+/// Adds the members `peak` and `roofline`, or `no_roofline` with the reason; none of them if `roofline` is empty.
+void roofline_members(Members& m, const std::optional<Roofline>& roofline);
 
 /// The part of a report that depends on the machine.
 struct MachineReport {
-    Json json = Json::object();  // members of the report
+    Json json = Json::object();  // the members, for Members::include()
     std::string title{};         // in the summary's first line; empty: PEs and mapping
     std::string lines{};         // of the summary
     std::string memory{};        // in the summary's line about memory
@@ -86,13 +88,37 @@ struct ProgramBuild {
     double seconds = 0;
 };
 
+/// One MPI rank of a render.
+struct RankReport {
+    std::uint32_t rank = 0;
+    std::string host;
+    bool torus = false;
+    std::uint32_t parts = 0;  // number of its PEs or nodes
+    DeviceInfo device;
+    std::uint32_t lanes = 0, group_size = 0;
+    std::uint64_t bytes_taken = 0;  // size of all buffers created on the device
+    double build_s = 0, render_s = 0;
+    std::uint64_t messages_sent = 0, bytes_sent = 0;
+    double waiting_s = 0;  // time spent waiting for other ranks
+    std::vector<LabelSummary> commands;
+    std::optional<Roofline> roofline{};
+};
+
+/// Camera and lights, after command-line options have changed them.
+struct SceneView {
+    View camera;
+    Colour background;
+    std::vector<Light> lights;  // with their emitted colours
+};
+SceneView view_of(const Scene& scene);
+
 struct RenderReport {
     std::string raya;  // version of raya
     std::string scene;
     std::vector<std::string> warnings;  // the warnings on stderr
     std::vector<SceneRemark> skipped;   // entities of the scene file that were skipped
 
-    Json view;  // camera and lights after applying command-line options (view_json() in scene_report.hpp)
+    SceneView view;
 
     struct {
         int width = 0, height = 0;         // pixels
@@ -130,7 +156,7 @@ struct RenderReport {
     std::vector<std::pair<std::string, Load>> loads;  // name and load of each phase
     MachineReport of_machine;
 
-    std::vector<Json> ranks;  // device, times, messages and roofline of each MPI rank; empty for one rank
+    std::vector<Written<RankReport>> ranks;   // empty for one rank
     std::vector<std::string> rank_rooflines;  // with --profile or --page: roofline of each rank, as text
 
     double accel_s = 0;  // measured time to build the grid or BVH; 0: none
@@ -150,9 +176,34 @@ inline constexpr const char* kRenderReportKind = "raya render";
 std::uint64_t ray_count(const EventCounts& events);
 std::uint64_t test_count(const EventCounts& events);
 
-/// Returns the report as JSON. docs/schema describes the members. Later versions may add members, but do not remove
-/// or change them.
-Json to_json(const RenderReport& report);
+// Lists of the members of reports, for to_json() and schema_of(). Later versions may add members, but do not remove or
+// change them.
+
+void members_of(Members& m, const LabelSummary& commands);
+void members_of(Members& m, const ProgramBuild& build);
+void members_of(Members& m, const Load& load);
+void members_of(Members& m, const RankReport& rank);
+void members_of(Members& m, const SceneView& view);
+void members_of(Members& m, const SceneRemark& remark);
+void members_of(Members& m, const RenderReport& report);
+
+// Descriptions of members that several reports have.
+inline constexpr const char* kVersionMeaning = "Version of raya.";
+inline constexpr const char* kSceneMeaning = "Scene file, as given on the command line.";
+inline constexpr const char* kWarningsMeaning = "Warnings printed to stderr, one sentence each.";
+inline constexpr const char* kSkippedMeaning =
+    "Statements of the scene file that raya ignored or changed, one entry for each kind.";
+inline constexpr const char* kViewMeaning =
+    "Camera, lights and background. The options --from, --at, --up, --angle, --background and --light reproduce the "
+    "picture from these values.";
+inline constexpr const char* kHashMeaning =
+    "128-bit XXH3 hash of the linear pixel values. It depends only on the pixels, not on device, lanes, PEs or "
+    "mapping.";
+inline constexpr const char* kFormatMeaning =
+    "Number format: `fp32`, or `eXmY` with X exponent and Y fraction bits; `t` truncates. `e6m15` is spa22 "
+    "(kernels/number/README.md).";
+inline constexpr const char* kLanesMeaning = "Number of rays that one work-item traces at once: 1, 4, 8 or 16.";
+inline constexpr const char* kGroupMeaning = "Number of work-items in the work-group of a PE.";
 
 /// Returns a line of the summary about loads.
 std::string load_line(const std::string& label, const Load& load, const std::string& remark = {});

@@ -26,57 +26,29 @@ std::uint64_t count_checkers(const Scene& scene) {
     return std::ranges::count_if(scene.surfaces, [](const Surface& s) { return s.checker.has_value(); });
 }
 
-Json objects_json(const Scene& s) {
-#define RAYA_KIND_MEMBER(kind, kinds, KIND) {#kinds, s.kinds.size()},
-    return {{"all", s.object_count()},
-            RAYA_OBJECT_LIST(RAYA_KIND_MEMBER){"patches", count_patches(s)},
-            {"vertices", count_vertices(s)}};
+void object_members(Members& m, const Scene& s) {
+    m("all", s.object_count(), "Number of spheres, planes, polygons and cones.");
+#define RAYA_KIND_MEMBER(kind, kinds, KIND) \
+    m(#kinds, s.kinds.size(), "Number of " #kinds "; polygons include patches, cones include cylinders.");
+    RAYA_OBJECT_LIST(RAYA_KIND_MEMBER)
+    m("patches", count_patches(s), "Number of patches: polygons with a normal at each vertex.");
+    m("vertices", count_vertices(s), "Number of vertices of all polygons.");
 }
 
-Json vector_json(const Vec3& v) { return std::array{v.x, v.y, v.z}; }
+std::array<double, 3> array_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-Json extent_json(const SceneReport& r) {
-    Json box = Json::object();
-    if (!r.box.isEmpty()) box = {{"min", vector_json(r.box.min)}, {"max", vector_json(r.box.max)}};
-    return {{"box", box}, {"cube_half_side", scene_extent(r.scene)}};
+void extent_members(Members& m, const SceneReport& r) {
+    m("box", "Bounding box of the finite objects; without members if the scene has no finite objects.",
+      [&](Members& box) {
+          box.when(!r.box.isEmpty(), "min", array_of(r.box.min), "Lower corner, scene units.");
+          box.when(!r.box.isEmpty(), "max", array_of(r.box.max), "Upper corner, scene units.");
+      });
+    m("cube_half_side", scene_extent(r.scene),
+      "Maximum absolute coordinate of finite objects and camera, scene units.");
 }
 
-Json format_json(const FormatFit& f) {
-    return {{"format", f.format},
-            {"fits", f.refusal.empty()},
-            {"length_exponent", f.scale.exponent},
-            {"largest", f.scale.largest_length},
-            {"smallest", f.scale.smallest_length},
-            {"least_seen", f.scale.min_visible},
-            {"vanishing", f.scale.vanishing_count},
-            {"refusal", f.refusal.empty() ? Json() : Json(f.refusal)}};
-}
-
-Json need_json(const AccelNeed& n) {
-    return {{"accel", n.accel},
-            {"default", n.is_default},
-            {"fits", n.refusal.empty()},
-            {"job_words", n.words},
-            {"job_bytes", 4 * n.words},
-            {"accel_words", n.summary.words},
-            {"pe_memory_used_bytes", n.pe_bytes},
-            {"missing_bytes", n.missing_bytes},
-            {"refusal", n.refusal.empty() ? Json() : Json(n.refusal)}};
-}
-
-Json machine_json(const MachineNeeds& m) {
-    Json needs = Json::array();
-    for (const AccelNeed& need : m.needs) needs.push_back(need_json(need));
-    return {{"name", m.machine},  {"pes", m.pes},
-            {"format", m.format}, {"pe_memory_bytes", m.memory_bytes},
-            {"needs", needs},     {"refusal", m.refusal.empty() ? Json() : Json(m.refusal)}};
-}
-
-template <class T>
-Json list_json(const std::vector<T>& list, Json (*element_json)(const T&)) {
-    Json json = Json::array();
-    for (const T& element : list) json.push_back(element_json(element));
-    return json;
+std::optional<std::string> text_or_null(const std::string& text) {
+    return text.empty() ? std::nullopt : std::optional(text);
 }
 
 std::string objects_text(const Scene& s) {
@@ -164,23 +136,56 @@ std::string refusals_text(const std::vector<MachineNeeds>& machines) {
 
 }  // namespace
 
-Json to_json(const SceneReport& r) {
-    const Scene& s = r.scene;
-    Json json = Json::object();
-    json["kind"] = "raya info";
-    json["raya"] = r.raya;
-    json["scene"] = r.file;
-    json["warnings"] = r.warnings;
-    json["skipped"] = skipped_json(r.skipped);
-    json["objects"] = objects_json(s);
-    json["surfaces"] = s.surfaces.size();
-    json["checkers"] = count_checkers(s);
-    json["view"] = view_json(s);
-    json["resolution"] = {{"width", s.view.width}, {"height", s.view.height}};
-    json["extent"] = extent_json(r);
-    json["formats"] = list_json(r.formats, format_json);
-    json["machines"] = list_json(r.machines, machine_json);
-    return json;
+void members_of(Members& m, const FormatFit& f) {
+    m("format", f.format, kFormatMeaning);
+    m("fits", f.refusal.empty(), "True if the scene can be rendered in this format.");
+    m("length_exponent", f.scale.exponent, "Exponent e: raya multiplies all lengths by 2^e.");
+    m("largest", f.scale.largest_length, "Largest coordinate, or distance of a plane, scene units.");
+    m("smallest", f.scale.smallest_length, "Smallest radius, height or side of a square, scene units.");
+    m("least_seen", f.scale.min_visible, "Smallest visible length, scene units.");
+    m("vanishing", f.scale.vanishing_count, "Number of spheres, cones and checkers smaller than `least_seen`.");
+    m("refusal", text_or_null(f.refusal), "Error message of a render; null: accepted.");
+}
+
+void members_of(Members& m, const AccelNeed& n) {
+    m("accel", n.accel, "Acceleration structure, as given to --accel; `voxels` on the torus.");
+    m("default", n.is_default, "True if this acceleration structure is the machine's default for the scene.");
+    m("fits", n.refusal.empty(), "True if the scene can be rendered with this acceleration structure.");
+    m("job_words", n.words, "32-bit words of scene and accelerator in each PE, or in the fullest node.");
+    m("job_bytes", 4 * n.words, "Size of these words in bytes: 4 times `job_words`.");
+    m("accel_words", n.summary.words, "Part of `job_words` that belongs to the acceleration structure.");
+    m("pe_memory_used_bytes", n.pe_bytes,
+      "Memory that the render needs in a PE, bytes; 0: refused for another reason.");
+    m("missing_bytes", n.missing_bytes, "Bytes by which a PE's memory is too small; 0: it fits.");
+    m("refusal", text_or_null(n.refusal), "Error message of a render; null: accepted.");
+}
+
+void members_of(Members& m, const MachineNeeds& machine) {
+    m("name", machine.machine, "Name, as given to --machine.");
+    m("pes", machine.pes, "Number of PEs or nodes; 0: the machine refuses the options.");
+    m("format", machine.format, "Number format; empty if the machine refuses the options (`refusal`).");
+    m("pe_memory_bytes", machine.memory_bytes, "Memory of a PE in bytes; null if unlimited.");
+    m("needs", machine.needs, "Memory of a PE with each acceleration structure; empty: refused.");
+    m("refusal", text_or_null(machine.refusal), "Error message of a render; null: accepted.");
+}
+
+void members_of(Members& m, const SceneReport& r) {
+    m("kind", "raya info", "Identifies the report: `raya info`.");
+    m("raya", r.raya, kVersionMeaning);
+    m("scene", r.file, kSceneMeaning);
+    m("warnings", r.warnings, kWarningsMeaning);
+    m("skipped", r.skipped, kSkippedMeaning);
+    m("objects", "Numbers of objects of the scene.", [&](Members& o) { object_members(o, r.scene); });
+    m("surfaces", r.scene.surfaces.size(), "Number of surfaces that objects use.");
+    m("checkers", count_checkers(r.scene), "Number of surfaces with a checker.");
+    m("view", view_of(r.scene), kViewMeaning);
+    m("resolution", "Resolution in the scene file.", [&](Members& resolution) {
+        resolution("width", r.scene.view.width, "Width in pixels.");
+        resolution("height", r.scene.view.height, "Height in pixels.");
+    });
+    m("extent", "Size of the scene.", [&](Members& extent) { extent_members(extent, r); });
+    m("formats", r.formats, "Number formats of the machines.");
+    m("machines", r.machines, "All machines, or only the machine given with --machine.");
 }
 
 std::string summary_text(const SceneReport& r) {
@@ -196,30 +201,31 @@ std::string summary_text(const SceneReport& r) {
     return text + "\n" + machine_table(r.machines) + refusals_text(r.machines);
 }
 
-Json skipped_json(const std::vector<SceneRemark>& skipped) {
-    Json list = Json::array();
-    for (const SceneRemark& remark : skipped) {
-        Json json = {{"what", remark.what}, {"count", remark.count}};
-        if (remark.line > 0)
-            json["line"] = remark.line;
-        else
-            json["place"] = remark.place;
-        list.push_back(json);
-    }
-    return list;
+void members_of(Members& m, const SceneRemark& remark) {
+    m("what", remark.what, "Kind of statement, and what raya did with it.");
+    m("count", remark.count, "Number of statements of this kind.");
+    m.when(remark.line > 0, "line", remark.line, "NFF: number of the line with the first of these statements.");
+    m.when(remark.line == 0, "place", remark.place, "Mesh: mesh and face, or material; empty: the whole file.");
 }
 
-Json view_json(const Scene& scene) {
-    Json lights = Json::array();
-    for (const Light& light : scene.lights)
-        lights.push_back(
-            {{"position", vector_json(light.position)}, {"colour", vector_json(light_colour(scene, light))}});
-    return {{"from", vector_json(scene.view.from)},
-            {"at", vector_json(scene.view.at)},
-            {"up", vector_json(scene.view.up)},
-            {"angle_degrees", scene.view.angle_degrees},
-            {"background", vector_json(scene.background)},
-            {"lights", lights}};
+SceneView view_of(const Scene& scene) {
+    SceneView view{scene.view, scene.background, scene.lights};
+    for (Light& light : view.lights) light.colour = light_colour(scene, light);
+    return view;
+}
+
+void members_of(Members& m, const Light& light) {
+    m("position", array_of(light.position), "Position, scene units.");
+    m("colour", array_of(light.colour.value_or(Colour())), "Linear colour of the emitted light: red, green, blue.");
+}
+
+void members_of(Members& m, const SceneView& view) {
+    m("from", array_of(view.camera.from), "Position of the camera, scene units.");
+    m("at", array_of(view.camera.at), "Point at the centre of the image, scene units.");
+    m("up", array_of(view.camera.up), "Up direction, of any length.");
+    m("angle_degrees", view.camera.angle_degrees, "Vertical field of view, degrees.");
+    m("background", array_of(view.background), "Linear colour of rays that hit nothing; 1 is full intensity.");
+    m("lights", view.lights, "Point lights.");
 }
 
 }  // namespace raya

@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "host/base/json.hpp"
+#include "host/base/members.hpp"
 #include "host/model/machine.hpp"
+#include "host/report/render_report.hpp"
 #include "host/scene/nff.hpp"
 #include "host/scene/scene.hpp"
 
@@ -54,18 +55,12 @@ struct SceneReport {
     std::vector<MachineNeeds> machines;
 };
 
-/// Returns the report as JSON. docs/schema describes the members. Later versions may add members, but do not remove
-/// or change them.
-Json to_json(const SceneReport& report);
+void members_of(Members& m, const FormatFit& fit);
+void members_of(Members& m, const AccelNeed& need);
+void members_of(Members& m, const MachineNeeds& needs);
+void members_of(Members& m, const SceneReport& report);
 
 /// Returns the text for the terminal: objects, camera, lights, extent, formats, and a table of machines.
 std::string summary_text(const SceneReport& report);
-
-/// Returns the member `skipped` of a report.
-Json skipped_json(const std::vector<SceneRemark>& skipped);
-
-/// Returns camera, background, and lights with their emitted colours. A render with these values as --from, --at,
-/// --up, --angle, --background and --light gives the same image.
-Json view_json(const Scene& scene);
 
 }  // namespace raya

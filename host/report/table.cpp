@@ -77,28 +77,4 @@ std::string profile_table(double build_s, const std::vector<ProgramBuild>& build
            "times before the start\n";
 }
 
-Json commands_json(const std::vector<LabelSummary>& commands, bool waits) {
-    Json json = Json::array();
-    for (const LabelSummary& c : commands) {
-        json.push_back({{"label", c.label},
-                        {"kind", c.kind},
-                        {"launches", c.launches},
-                        {"total_ns", c.total_ns},
-                        {"min_ns", c.min_ns},
-                        {"mean_ns", c.mean_ns},
-                        {"max_ns", c.max_ns}});
-        if (!waits) continue;
-        json.back()["queue_to_submit_mean_ns"] = mean(c.submit_ns, c);
-        json.back()["submit_to_start_mean_ns"] = mean(c.start_ns, c);
-        json.back()["bytes"] = c.bytes;
-    }
-    return json;
-}
-
-Json builds_json(const std::vector<ProgramBuild>& builds) {
-    Json json = Json::array();
-    for (const ProgramBuild& b : builds) json.push_back({{"program", b.name}, {"seconds", b.seconds}});
-    return json;
-}
-
 }  // namespace raya

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "host/base/json.hpp"
 #include "host/cl/profile.hpp"
 #include "host/report/render_report.hpp"
 
@@ -13,19 +12,10 @@ namespace raya {
 /// only numbers and "-" are right-aligned.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
 
-// Number and times of device commands, summed by label, as a text table and as JSON.
-
 /// Returns a line about builds, which are not device commands, then a table with a row for each label and kind of
 /// command. Columns: number of launches; total, percentage of all commands' total, minimum, mean and maximum of the
 /// times from start to end; mean times from queueing to submission and from submission to start; megabytes and GB/s.
 std::string profile_table(double build_s, const std::vector<ProgramBuild>& builds,
                           const std::vector<LabelSummary>& commands);
-
-/// Returns the table as JSON. `waits`: true to include the mean times from queueing to submission and from submission
-/// to start, and the bytes transferred.
-Json commands_json(const std::vector<LabelSummary>& commands, bool waits);
-
-/// Returns the build time of each program as JSON.
-Json builds_json(const std::vector<ProgramBuild>& builds);
 
 }  // namespace raya

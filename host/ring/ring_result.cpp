@@ -247,65 +247,71 @@ double recomputed_share(const RingResult& result) {
     return static_cast<double>(result.recomputed) / (1.0 * result.image.width * result.image.height);
 }
 
-Json antialias_json(const RingSettings& settings, const RingResult& result) {
+void antialias_members(Members& m, const RingSettings& settings, const RingResult& result) {
     const Antialias& a = settings.antialias;
-    Json json = {{"method", antialias_name(a.method)}};
-    if (a.method == AntialiasMethod::kNone) return json;
-    json["exchange"] = exchange_name(a.exchange);
-    json["band_pixels"] = result.pe_memory.band_pixels;
-    if (a.method == AntialiasMethod::kFilter) return json;
-    json["threshold"] = a.threshold;
-    json["points"] = points_name(a.points);
-    json["recomputed_pixels"] = result.recomputed;
-    json["recomputed_share"] = recomputed_share(result);
-    return json;
+    const bool smooths = a.method != AntialiasMethod::kNone, supersamples = a.method == AntialiasMethod::kSupersample;
+    m("method", antialias_name(a.method), "Method, as given to --antialias.");
+    m.when(smooths, "exchange", exchange_name(a.exchange), "Way of neighbouring pixels to a PE (--exchange).");
+    m.when(smooths, "band_pixels", result.pe_memory.band_pixels, "Number of pixels that a PE sends in one transfer.");
+    m.when(supersamples, "threshold", a.threshold, "Difference of colours from which on a pixel is supersampled.");
+    m.when(supersamples, "points", points_name(a.points),
+           "Positions of the additional samples: `axes` or `diagonals`.");
+    m.when(supersamples, "recomputed_pixels", result.recomputed, "Number of supersampled pixels.");
+    m.when(supersamples, "recomputed_share", recomputed_share(result), "Supersampled pixels / all pixels.");
 }
 
-Json communication_json(const Communication& c) {
-    return {{"broadcasts", c.broadcasts},
-            {"broadcast_words", c.broadcast_words},
-            {"rotations", c.rotations},
-            {"rotation_words", c.rotation_words},
-            {"transfers", c.transfers},
-            {"transfer_words", c.transfer_words},
-            {"pe_broadcasts", c.pe_broadcasts},
-            {"pe_broadcast_words", c.pe_broadcast_words},
-            {"gathers", c.gathers},
-            {"gather_words", c.gather_words}};
+void communication_members(Members& m, const Communication& c) {
+    m("broadcasts", c.broadcasts, "Number of broadcasts from the host to all PEs.");
+    m("broadcast_words", c.broadcast_words, "Number of words in these broadcasts.");
+    m("rotations", c.rotations, "Number of rotations. In a rotation every PE sends its block to its neighbour.");
+    m("rotation_words", c.rotation_words, "Number of words that all PEs together sent in these rotations.");
+    m("transfers", c.transfers, "Number of transfers from one PE to another PE over the bus.");
+    m("transfer_words", c.transfer_words, "Number of words in these transfers.");
+    m("pe_broadcasts", c.pe_broadcasts, "Number of broadcasts from one PE to all other PEs over the bus.");
+    m("pe_broadcast_words", c.pe_broadcast_words, "Number of words in these broadcasts.");
+    m("gathers", c.gathers, "Number of gathers from all PEs to the host.");
+    m("gather_words", c.gather_words, "Number of words in these gathers.");
 }
 
-Json accel_json(const std::optional<AccelSummary>& a) {
-    if (!a) return {{"kind", "none"}};
-    if (a->kind == AccelKind::kBvh)
-        return {{"kind", "bvh"},     {"nodes", a->nodes}, {"leaves", a->leaves},
-                {"depth", a->depth}, {"words", a->words}, {"apart", a->separate}};
-    return {{"kind", "grid"},
-            {"divisions", a->divisions},
-            {"copies", a->copies},
-            {"words", a->words},
-            {"apart", a->separate}};
+void accel_members(Members& m, const std::optional<AccelSummary>& accel) {
+    const AccelSummary a = accel.value_or(AccelSummary{});
+    const bool grid = a.kind == AccelKind::kGrid, bvh = a.kind == AccelKind::kBvh;
+    m("kind",
+      bvh    ? "bvh"
+      : grid ? "grid"
+             : "none",
+      "`none` (every ray is tested against all objects), `grid` (uniform), or `bvh` (bounding volume hierarchy).");
+    m.when(grid, "divisions", a.divisions, "Numbers of voxels along x, y and z.");
+    m.when(grid, "copies", a.copies, "Number of entries in voxel lists beyond the first entry of each object.");
+    m.when(bvh, "nodes", a.nodes, "Number of nodes.");
+    m.when(bvh, "leaves", a.leaves, "Number of leaves.");
+    m.when(bvh, "depth", a.depth, "Number of nodes on the longest path from the BVH's root node to a leaf.");
+    m.when(grid || bvh, "words", a.words, "Size of the acceleration structure in 32-bit words.");
+    m.when(grid || bvh, "apart", a.separate, "Separate objects, against which every ray is tested.");
 }
 
-// Returns the numbers of operations of all events, according to the instruction budget of the modelled PEs.
-Json budget_json(const EventCounts& events) {
+// The numbers of operations of all events, according to the instruction budget of the modelled PEs.
+void budget_members(Members& m, const EventCounts& events) {
     const Operations sum = operations_of(events);
-    return {{"multiply_accumulates", sum.multiply_accumulates},
-            {"divisions", sum.divisions},
-            {"roots", sum.roots},
-            {"moves", sum.moves},
-            {"branches", sum.branches}};
+    m("multiply_accumulates", sum.multiply_accumulates,
+      "Additions, multiplications, comparisons, multiply-accumulates.");
+    m("divisions", sum.divisions, "Number of divisions.");
+    m("roots", sum.roots, "Number of square roots.");
+    m("moves", sum.moves, "Number of moves that cost a cycle because no arithmetic runs in parallel.");
+    m("branches", sum.branches, "Number of conditional branches, calls and returns.");
 }
 
-Json modelled_json(const ModelledTime& time) {
-    return {{"objects", time.objects_ms},
-            {"compute", time.compute_ms},
-            {"filter", time.filter_ms},
-            {"compare", time.compare_ms},
-            {"communication", time.communication_ms},
-            {"image", time.image_ms},
-            {"display", time.display_ms},
-            {"total", time.total_ms},
-            {"factor", time.factor}};
+void time_members(Members& m, const ModelledTime& time) {
+    m("objects", time.objects_ms, "Time of the broadcast of the scene, ms.");
+    m("compute", time.compute_ms, "Computation time of the busiest PE, summed over the phases, ms.");
+    m("filter", time.filter_ms, "Part of `compute` in which the PEs average neighbouring pixels, ms.");
+    m("compare", time.compare_ms, "Part of `compute` in which the PEs compare neighbouring pixels, ms.");
+    m("communication", time.communication_ms,
+      "Time of the rotations of the ring and of the transfers and broadcasts between PEs over the bus, ms.");
+    m("image", time.image_ms, "Time of the transfer of the image to the host, ms.");
+    m("display", time.display_ms, "Time of the display of the image, ms.");
+    m("total", time.total_ms, "objects + compute + communication + image + display, ms.");
+    m("factor", time.factor, "Number of the machine's cycles per cycle of the budgets, included in the compute times.");
 }
 
 std::string antialias_lines(const RingSettings& settings, const RingResult& result) {
@@ -364,13 +370,30 @@ ModelledTime ring_time(const RingSettings& settings, const RingResult& result) {
 MachineReport ring_report(const RingSettings& settings, const RingResult& result) {
     const ModelledTime time = ring_time(settings, result);
     const bool all_counted = !settings.packets;
-    return {.json = {{"accel", accel_json(result.accel)},
-                     {"antialias", antialias_json(settings, result)},
-                     {"communication", communication_json(result.communication)},
-                     {"budget", budget_json(result.events)},
-                     {"modelled_ms", modelled_json(time)}},
+    Members members(Members::Mode::kWrite);
+    ring_members(members, settings, result, time);
+    return {.json = members.json(),
             .lines = antialias_lines(settings, result) + (all_counted ? model_line(time, settings.machine.name) : "") +
                      accel_line(result, all_counted)};
+}
+
+void ring_members(Members& m, const RingSettings& settings, const RingResult& result, const ModelledTime& time) {
+    m("accel", "Ring machines: acceleration structure.", [&](Members& accel) { accel_members(accel, result.accel); });
+    m("antialias", "Ring machines: anti-aliasing between neighbouring pixels.",
+      [&](Members& antialias) { antialias_members(antialias, settings, result); });
+    m("communication",
+      "Ring machines: transfers over bus and ring, counted when raya executes them. A word has 32 bits; a number "
+      "takes "
+      "one word, also in a format of fewer bits.",
+      [&](Members& c) { communication_members(c, result.communication); });
+    m("budget",
+      "Numbers of operations of all counted events: on a ring from the instruction budget of a DSP "
+      "(host/model/budget.hpp), on the torus of a T805 (host/model/t805.hpp).",
+      [&](Members& budget) { budget_members(budget, result.events); });
+    m("modelled_ms",
+      "Modelled time of the machine in ms, from its clock (docs/clock.md). Torus: a real machine is between "
+      "`overlapped` and `stepwise` (host/torus/torus_result.hpp).",
+      [&](Members& ms) { time_members(ms, time); });
 }
 
 }  // namespace raya

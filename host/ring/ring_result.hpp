@@ -75,4 +75,7 @@ void add_ring_machine(TraceFile& trace, const RingSettings& settings, const Ring
 /// Returns accelerator, anti-aliasing, communication, operations and modelled time.
 MachineReport ring_report(const RingSettings& settings, const RingResult& result);
 
+/// Lists the members of the ring machine's part of a render report.
+void ring_members(Members& m, const RingSettings& settings, const RingResult& result, const ModelledTime& time);
+
 }  // namespace raya

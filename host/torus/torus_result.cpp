@@ -151,44 +151,73 @@ struct LinkBytes {
     double mean() const { return links > 0 ? static_cast<double>(total) / static_cast<double>(links) : 0; }
 };
 
-Json torus_json(const TorusSettings& settings, const TorusResult& result, const LinkBytes& bytes) {
-    Json packets = Json::object();
+void packet_members(Members& m, const TorusResult& result) {
     for (const Kind& kind : kKinds)
-        packets[kind.name] = {{"made", result.made[kind.number]}, {"ended", result.ended[kind.number]}};
-    std::uint64_t live_max = 0;
-    for (const Superstep& step : result.supersteps) live_max = std::max(live_max, step.live);
-    return {{"nodes", settings.torus.nodes},
-            {"voxels", settings.voxels},
-            {"links", links_name(settings.links)},
-            {"inject", settings.inject == Injection::kRoot ? "root" : "all"},
-            {"discarded", result.events[RAYA_DISCARDED]},
-            {"returns", {{"of", returns_name(settings.packets)}, {"messages", result.returns}}},
-            {"message_words", {{"ray", settings.packets.ray_words}, {"return", settings.packets.return_words()}}},
-            {"supersteps", result.supersteps.size()},
-            {"packets", packets},
-            {"live_max", live_max},
-            {"hops", result.hops},
-            {"bytes_per_link",
-             {{"links", bytes.links},
-              {"max", bytes.max},
-              {"mean", bytes.mean()},
-              {"total", bytes.total},
-              {"by_direction", bytes.by_direction},
-              {"sent_by_node", bytes.sent}}},
-            {"queue", result.buffers.queue},
-            {"queue_max", result.queue_max},
-            {"box", result.buffers.box},
-            {"copies", result.copies}};
+        m(kind.name, "Numbers of packets of this kind.", [&](Members& packets) {
+            packets("made", result.made[kind.number], "Number of packets that nodes created.");
+            packets("ended", result.ended[kind.number], "Number of packets that ended; equal to `made`.");
+        });
 }
 
-Json time_json(const TorusTime& time) {
-    Json json = {{"compute", time.compute_ms}, {"messages", time.messages_ms},     {"processor", time.processor_ms},
-                 {"links", time.links_ms},     {"overlapped", time.overlapped_ms}, {"stepwise", time.stepwise_ms}};
-    if (const auto& async = time.asynchronous)
-        json["asynchronous"] = {{"finish", async->finish_ms},    {"processor", async->processor_ms},
-                                {"links", async->links_ms},      {"port", async->port_ms},
-                                {"delivered", async->delivered}, {"queue_max", async->queue_max}};
-    return json;
+void link_members(Members& m, const LinkBytes& bytes) {
+    m("links", bytes.links, "Number of links between different nodes.");
+    m("max", bytes.max, "Traffic of the busiest link, bytes.");
+    m("mean", bytes.mean(), "Mean traffic of a link, bytes.");
+    m("total", bytes.total, "Traffic of all links, bytes.");
+    m("by_direction", bytes.by_direction, "Numbers of bytes over the +x, -x, +y, -y, +z and -z links of all nodes.");
+    m("sent_by_node", bytes.sent, "Number of bytes that each node sent.");
+}
+
+void torus_part_members(Members& m, const TorusSettings& settings, const TorusResult& result, const LinkBytes& bytes) {
+    std::uint64_t live_max = 0;
+    for (const Superstep& step : result.supersteps) live_max = std::max(live_max, step.live);
+    m("nodes", std::to_array(settings.torus.nodes), "Numbers of nodes along x, y and z.");
+    m("voxels", settings.voxels, "Numbers of voxels of the scene's bounding box along x, y and z.");
+    m("links", links_name(settings.links), "`torus3d`: six links per node. `torus2d`: four links per node.");
+    m("inject", settings.inject == Injection::kRoot ? "root" : "all", "Nodes that make primary rays: `root` or `all`.");
+    m("discarded", result.events[RAYA_DISCARDED], "Primary rays that nodes made for other nodes and discarded.");
+    m("returns", "Modelled messages that carry contributions to the root (--returns).", [&](Members& returns) {
+        returns("of", returns_name(settings.packets),
+                "`terms`: each contribution of a ray is a message. `rays`: all of a ray are one.");
+        returns("messages", result.returns, "Number of return messages.");
+    });
+    m("message_words", "Modelled size of messages in 32-bit words (--packet-words).", [&](Members& words) {
+        words("ray", settings.packets.ray_words, "Number of words of a ray.");
+        words("return", settings.packets.return_words(), "Number of words of a return.");
+    });
+    m("supersteps", result.supersteps.size(), "Number of supersteps until no packet was left.");
+    m("packets", "Numbers of packets by kind.", [&](Members& packets) { packet_members(packets, result); });
+    m("live_max", live_max, "Maximum number of packets in all queues and mailboxes at the end of a superstep.");
+    m("hops", result.hops, "Number of messages over links, once for each link that a message crosses.");
+    m("bytes_per_link", "Modelled traffic of the links. Each direction of a connection counts as one link.",
+      [&](Members& links) { link_members(links, bytes); });
+    m("queue", result.buffers.queue, "Capacity of a node's queue, packets.");
+    m("queue_max", result.queue_max, "Maximum number of packets in a node's queue.");
+    m("box", result.buffers.box, "Capacity of each outbox and inbox, packets.");
+    m("copies", result.copies, "Number of additional copies of objects that lie in several voxels.");
+}
+
+void asynchronous_members(Members& m, const AsynchronousTime& time) {
+    m("finish", time.finish_ms, "Time at which all tasks and all deliveries have ended, ms.");
+    m("processor", time.processor_ms, "Busy time of the busiest node, ms.");
+    m("links", time.links_ms, "Busy time of the busiest direction of a link, ms.");
+    m("port", time.port_ms, "Longest time for which full buffers blocked a node's main task, ms.");
+    m("delivered", time.delivered, "Number of delivered messages, including messages from a node to itself.");
+    m("queue_max", time.queue_max, "Maximum number of rays in the queue of a node's main task.");
+}
+
+void time_members(Members& m, const TorusTime& time) {
+    m("compute", time.compute_ms, "Processor time for computation, maximum over the nodes, ms.");
+    m("messages", time.messages_ms, "Processor time for sending and receiving messages, maximum over the nodes, ms.");
+    m("processor", time.processor_ms, "Processor time for computation and messages, maximum over the nodes, ms.");
+    m("links", time.links_ms, "Transfer time in both directions, maximum over the links, ms.");
+    m("overlapped", time.overlapped_ms, "Lower bound: no processor and no link ever waits, ms.");
+    m("stepwise", time.stepwise_ms,
+      "Upper bound: each superstep waits for its busiest node, then for its busiest link, ms.");
+    m.when(time.asynchronous.has_value(), "asynchronous",
+           "With --async: times of the machine without supersteps, simulated packet by packet "
+           "(host/torus/async_machine.hpp).",
+           [&](Members& ms) { asynchronous_members(ms, time.asynchronous.value_or(AsynchronousTime{})); });
 }
 
 std::string lines(const TorusSettings& settings, const TorusResult& result, const LinkBytes& bytes,
@@ -222,7 +251,7 @@ std::string lines(const TorusSettings& settings, const TorusResult& result, cons
 
 }  // namespace
 
-Json t805_budget_json(const EventCounts& events, const PacketCharge& packets) {
+void t805_members(Members& m, const EventCounts& events, const PacketCharge& packets) {
     const Operations operations = operations_of(events);
     std::uint64_t additions = 0, multiplications = 0, words = 0;
     for (std::size_t event = 0; event < events.size(); ++event) {
@@ -231,9 +260,21 @@ Json t805_budget_json(const EventCounts& events, const PacketCharge& packets) {
         multiplications += events[event] * work.multiplications;
         words += events[event] * packets.words_of(work.creates);
     }
-    return {{"additions", additions},         {"multiplications", multiplications}, {"divisions", operations.divisions},
-            {"roots", operations.roots},      {"moves", operations.moves},          {"packet_words", words},
-            {"branches", operations.branches}};
+    m("additions", additions, "Number of additions, subtractions and comparisons.");
+    m("multiplications", multiplications, "Number of multiplications.");
+    m("divisions", operations.divisions, "Number of divisions.");
+    m("roots", operations.roots, "Number of square roots.");
+    m("moves", operations.moves, "Number of moves. A move is a load and a store.");
+    m("packet_words", words, "Number of words stored to create packets.");
+    m("branches", operations.branches, "Number of branches.");
+}
+
+void torus_members(Members& m, const TorusSettings& settings, const TorusResult& result, const TorusTime& time) {
+    const LinkBytes bytes(settings.torus, result.link_words);
+    m("torus", "Torus: nodes, packets and links (Yoshitani & Yamazaki, about 1995).",
+      [&](Members& torus) { torus_part_members(torus, settings, result, bytes); });
+    m("budget", "", [&](Members& budget) { t805_members(budget, result.events, settings.packets); });
+    m("modelled_ms", "", [&](Members& ms) { time_members(ms, time); });
 }
 
 MachineReport torus_report(const TorusSettings& settings, const TorusResult& result,
@@ -241,10 +282,10 @@ MachineReport torus_report(const TorusSettings& settings, const TorusResult& res
     const LinkBytes bytes(settings.torus, result.link_words);
     TorusTime time = torus_time(settings.torus, result);
     time.asynchronous = asynchronous;
+    Members members(Members::Mode::kWrite);
+    torus_members(members, settings, result, time);
     return {
-        .json = {{"torus", torus_json(settings, result, bytes)},
-                 {"budget", t805_budget_json(result.events, settings.packets)},
-                 {"modelled_ms", time_json(time)}},
+        .json = members.json(),
         .title = fmt::format("{} nodes, {}, {} voxels", fmt::join(settings.torus.nodes, "x"),
                              links_name(settings.links), fmt::join(settings.voxels, "x")),
         .lines = lines(settings, result, bytes, time),

@@ -149,7 +149,10 @@ struct TorusRun {
 MachineReport torus_report(const TorusSettings& settings, const TorusResult& result,
                            const std::optional<AsynchronousTime>& asynchronous);
 
-/// Returns the numbers of operations of all counted events on T805s (host/model/t805.hpp).
-Json t805_budget_json(const EventCounts& events, const PacketCharge& packets);
+/// Lists the members of the torus's part of a render report.
+void torus_members(Members& m, const TorusSettings& settings, const TorusResult& result, const TorusTime& time);
+
+/// Lists the numbers of operations of all counted events on T805s (host/model/t805.hpp).
+void t805_members(Members& m, const EventCounts& events, const PacketCharge& packets);
 
 }  // namespace raya

@@ -152,12 +152,7 @@ void add_rooflines(BenchReport& report, const std::vector<BenchRow>& rows, const
 }
 
 BenchReport bench_report(const std::vector<BenchRow>& rows, const DeviceInfo& device) {
-    BenchReport report{.raya = raya_version(),
-                       .device = device.name,
-                       .platform = device.platform,
-                       .version = device.version,
-                       .driver = device.driver,
-                       .rows = {}};
+    BenchReport report{.raya = raya_version(), .device = device};
     for (const BenchRow& row : rows) report.rows.push_back(row.result);
     return report;
 }

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstdlib>
 #include <map>
@@ -13,6 +12,7 @@
 #include "host/base/module.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
+#include "host/report/render_report.hpp"
 #include "host/version.hpp"
 
 namespace raya {
@@ -22,40 +22,12 @@ namespace fs = std::filesystem;
 
 constexpr const char* kKind = "raya tune";
 constexpr std::uint64_t kFileFormatVersion = 2;
-constexpr std::array<const char*, 3> kAccelNames = {"none", "grid", "bvh"};  // index: RAYA_ACCEL_*
 
-Json to_json(const TunedEntry& entry) {
-    return {{"machine", entry.key.torus ? "torus" : "ring"},
-            {"accel", kAccelNames.at(entry.key.accel)},
-            {"format", entry.key.fp32 ? "fp32" : "reduced"},
-            {"values", to_json(entry.values)},
-            {"speedup", entry.speedup},
-            {"scene", entry.scene}};
-}
-
-// Returns the index in `names` of the text of member `key`. Throws UserError if `names` does not contain the text.
-std::uint32_t choice_of(const Json& json, const char* key, const std::vector<std::string>& names) {
-    const auto found = std::find(names.begin(), names.end(), json_text(json.at(key)));
-    if (found == names.end()) throw UserError(fmt::format("unknown {} \"{:.40}\"", key, json_text(json.at(key))));
+// Returns the index in `names` of the text. Throws UserError if `names` does not contain the text.
+std::uint32_t choice_of(const std::string& text, const char* member, const std::vector<std::string>& names) {
+    const auto found = std::ranges::find(names, text);
+    if (found == names.end()) throw UserError(fmt::format("unknown {} \"{:.40}\"", member, text));
     return static_cast<std::uint32_t>(found - names.begin());
-}
-
-TunedEntry entry_of(const Json& json, const DeviceInfo& device) {
-    TunedEntry entry{.key = {.torus = choice_of(json, "machine", {"ring", "torus"}) == 1,
-                             .accel = choice_of(json, "accel", {kAccelNames.begin(), kAccelNames.end()}),
-                             .fp32 = choice_of(json, "format", {"fp32", "reduced"}) == 0},
-                     .values = values_of(json.at("values")),
-                     .speedup = json_number(json.at("speedup")),
-                     .scene = json_text(json.at("scene"))};
-    const KernelChoice kernels = with_values({}, entry.values);
-    check_kernel_options(
-        {.lanes = kernels.lanes, .group_size = kernels.group_size, .sphere_batch = kernels.sphere_batch}, device);
-    return entry;
-}
-
-Json device_json(const DeviceInfo& device) {
-    return {
-        {"name", device.name}, {"platform", device.platform}, {"version", device.version}, {"driver", device.driver}};
 }
 
 // Throws UserError unless raya tune wrote the file for this device and driver, with this version of raya and of the
@@ -70,16 +42,22 @@ void check_origin(const Json& json, const DeviceInfo& device) {
     check(std::to_string(json_integer(json.at("version"))), std::to_string(kFileFormatVersion),
           "version of the file format");
     check(json_text(json.at("raya")), raya_version(), "version of raya");
-    const Json current = device_json(device), &stored = json.at("device");
-    for (const auto& [key, value] : current.items())
-        check(json_text(stored.at(key)), json_text(value), ("device's " + key).c_str());
+    const Json& stored = json.at("device");
+    check(json_text(stored.at("name")), device.name, "device's name");
+    check(json_text(stored.at("platform")), device.platform, "device's platform");
+    check(json_text(stored.at("version")), device.version, "device's version");
+    check(json_text(stored.at("driver")), device.driver, "device's driver");
 }
 
 TunedFile file_of(const Json& json, const DeviceInfo& device) {
     check_origin(json, device);
-    TunedFile file{.date = json_text(json.at("date")), .entries = {}};
-    for (const Json& entry : json_array(json.at("tuned"))) file.entries.push_back(entry_of(entry, device));
-    return file;
+    const auto stored = from_json<StoredTuning>(json);
+    for (const TunedEntry& entry : stored.file.entries) {
+        const KernelChoice kernels = with_values({}, entry.values);
+        check_kernel_options(
+            {.lanes = kernels.lanes, .group_size = kernels.group_size, .sphere_batch = kernels.sphere_batch}, device);
+    }
+    return stored.file;
 }
 
 constexpr std::uint64_t kMaxFileBytes = 1 << 20;
@@ -116,17 +94,36 @@ std::optional<fs::path> folder_of_variable(const char* variable) {
 
 }  // namespace
 
-Json to_json(const TunedValues& values) {
-    Json json = Json::object();
-    for (const auto& [name, value] : kTunedNames) json[name] = values.*value;
-    return json;
+void members_of(Members& m, TunedValues& values) {
+    m("lanes", values.lanes, kLanesMeaning);
+    m("group", values.group, kGroupMeaning);
+    m("local_words", values.local_words, "1 if PEs copy the scene's words into local memory.");
+    m("batch", values.batch, "Number of spheres tested before their hits are processed; 0: default.");
 }
 
-TunedValues values_of(const Json& json) {
-    TunedValues values;
-    for (const auto& [name, value] : kTunedNames)
-        values.*value = static_cast<std::uint32_t>(json_integer(json.at(name), UINT32_MAX));
-    return values;
+void members_of(Members& m, TunedEntry& entry) {
+    const std::vector<std::string> machines = {"ring", "torus"}, formats = {"fp32", "reduced"};
+    const std::vector<std::string> accels = {"none", "grid", "bvh"};  // index: RAYA_ACCEL_*
+    std::string machine = machines.at(entry.key.torus), accel = accels.at(entry.key.accel),
+                format = formats.at(!entry.key.fp32);
+    m("machine", machine, "Machine whose kernels were tuned: `ring` or `torus`.");
+    m("accel", accel, "Acceleration structure of a ring.");
+    m("format", format, "Class of number format: `fp32`, or `reduced` for any `eXmY`.");
+    entry.key = {.torus = choice_of(machine, "machine", machines) == 1,
+                 .accel = choice_of(accel, "accel", accels),
+                 .fp32 = choice_of(format, "format", formats) == 0};
+    m("values", entry.values, "Values of the tuned parameters.");
+    m("speedup", entry.speedup, "Measured speed-up over the defaults; 1 if the defaults were best.");
+    m("scene", entry.scene, "Scene with which the speed-up was measured.");
+}
+
+void members_of(Members& m, StoredTuning& stored) {
+    m("kind", kKind, "Identifies the file: `raya tune`.");
+    m("version", kFileFormatVersion, "Version of the file format.");
+    m("raya", raya_version(), kVersionMeaning);
+    m("date", stored.file.date, "Date of the latest search, UTC.");
+    m("device", "OpenCL device.", [&](Members& device) { device_members(device, stored.device); });
+    m("tuned", stored.file.entries, "One entry for each machine, accelerator and class of format.");
 }
 
 std::optional<fs::path> tuned_folder() {
@@ -141,12 +138,7 @@ std::string tuned_file_name(const DeviceInfo& device) {
 }
 
 std::string tuned_text(const DeviceInfo& device, const TunedFile& file) {
-    Json entries = Json::array();
-    for (const TunedEntry& entry : file.entries) entries.push_back(to_json(entry));
-    return Json{{"kind", kKind},     {"version", kFileFormatVersion}, {"raya", raya_version()},
-                {"date", file.date}, {"device", device_json(device)}, {"tuned", entries}}
-               .dump(2) +
-           "\n";
+    return to_json(StoredTuning{device, file}).dump(2) + "\n";
 }
 
 TunedFile read_tuned(const std::string& text, const std::string& name, const DeviceInfo& device) {

@@ -6,16 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "host/base/json.hpp"
+#include "host/base/members.hpp"
+#include "host/cl/device.hpp"
 #include "host/cl/kernel_options.hpp"
 
 namespace raya {
 
-/// Returns the JSON form of tuned values, for files and for messages between processes.
-Json to_json(const TunedValues& values);
-
-/// Inverse of to_json(). Throws Json::exception if a value is missing or not an unsigned 32-bit integer.
-TunedValues values_of(const Json& json);
+/// Lists the tuned values, for files and for messages between processes.
+void members_of(Members& m, TunedValues& values);
 
 /// Tuned values of one kind of render.
 struct TunedEntry {
@@ -29,6 +27,14 @@ struct TunedFile {
     std::string date;  // date of tuning: "2026-11-22"
     std::vector<TunedEntry> entries;
 };
+
+/// The file of a device, for to_json(), from_json() and schema_of().
+struct StoredTuning {
+    DeviceInfo device;
+    TunedFile file;
+};
+void members_of(Members& m, TunedEntry& entry);
+void members_of(Members& m, StoredTuning& stored);
 
 /// Returns the folder of the files of tuned values: $XDG_CACHE_HOME/raya, or, if that variable is not an absolute path,
 /// $HOME/.cache/raya. Empty if neither is absolute.

@@ -336,7 +336,8 @@ void run_trial(int lines, const Json& request) {
     const Json& candidates = json_array(request.at("candidates"));
     for (const Json& values : candidates) {
         const int check_lines = renders.size() + 1 == candidates.size() ? lines : -1;
-        const KernelChoice kernels = with_values({.sources = {.folder = setup.kernel_dir}}, values_of(values));
+        const KernelChoice kernels =
+            with_values({.sources = {.folder = setup.kernel_dir}}, from_json<TunedValues>(values));
         const auto render_with = [&]<class Renderer>(std::shared_ptr<Renderer> renderer) {
             send_line(lines, {{"built", renders.size() + 1}});
             renders.push_back(first_image(check_lines, std::move(renderer)));

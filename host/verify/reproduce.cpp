@@ -49,7 +49,7 @@ void take_line(Observation& seen, const Json& line) {
     if (find_member(line, "step")) seen.steps.push_back({json_text(line.at("name"))});
     if (find_member(line, "expected")) seen.expected = json_integer(line.at("expected"));
     if (const Json* check = find_member(line, "check"))
-        seen.passed = check_of(*check).verdict.outcome == Outcome::kPass;
+        seen.passed = from_json<Check>(*check).verdict.outcome == Outcome::kPass;
     if (!find_member(line, "done") || seen.steps.empty()) return;
     seen.steps.back().done = true;
     const Json& outputs = line.at("outputs");

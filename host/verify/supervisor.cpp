@@ -120,14 +120,14 @@ class Supervision {
             running_ = Check{json_text(started->at("layer")), json_text(started->at("name")), 0, {}};
             start_ = Clock::now();
         }
-        if (const Json* check = find_member(line, "check")) finish(check_of(*check));
+        if (const Json* check = find_member(line, "check")) finish(from_json<Check>(*check));
         ended_ = ended_ || find_member(line, "ended");
     }
 
     void take_device(const Json& line) {
         if (devices_ > 0) return;  // already reported by the first process
         devices_ = json_integer(line.at("devices"));
-        all_ = device_checks_of(line.at("device"));
+        all_ = from_json<DeviceChecks>(line.at("device"));
         all_.names = json_strings(line.at("names"));
         if (sink_.device) sink_.device(all_, json_strings(line.at("left_out")), devices_);
     }

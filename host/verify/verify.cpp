@@ -144,29 +144,23 @@ std::string check_lines(const Check& c) {
     return lines;
 }
 
-Json to_json(const Check& c) {
-    Json json = {{"layer", c.layer},
-                 {"name", c.name},
-                 {"status", outcome_name(c.verdict.outcome)},
-                 {"seconds", c.seconds},
-                 {"result", c.verdict.result}};
-    if (!has_failed(c.verdict.outcome)) return json;
-    const Fault& f = c.verdict.fault;
-    for (const auto& [name, text] : kFaultTexts) json[name] = f.*text;
-    json["remedies"] = f.remedies;
-    return json;
-}
-
-Check check_of(const Json& json) {
-    const auto text = [&](const char* key) { return json_text(json.at(key)); };
-    Check check{text("layer"), text("name"), json_number(json.at("seconds")), {Outcome::kPass, text("result"), {}}};
-    const auto outcome = std::ranges::find(kOutcomeNames, text("status"));
-    if (outcome == std::end(kOutcomeNames)) throw UserError("no status of a check: " + text("status"));
-    check.verdict.outcome = static_cast<Outcome>(outcome - kOutcomeNames);
-    if (!has_failed(check.verdict.outcome)) return check;
-    for (const auto& [name, member] : kFaultTexts) check.verdict.fault.*member = text(name);
-    check.verdict.fault.remedies = json_strings(json.at("remedies"));
-    return check;
+void members_of(Members& m, Check& c) {
+    std::string status = outcome_name(c.verdict.outcome);
+    m("layer", c.layer, "number, geometry, machine or image; `device` if it crashed while no check ran.");
+    m("name", c.name, "Name of the check. `--only \"LAYER NAME\"` runs it alone.");
+    m("status", status,
+      "`PASS`, `FAIL`, `SKIP`, or with --expect `XFAIL` (failed as listed), `XPASS` (passed although listed).");
+    m("seconds", c.seconds, "Time of the check, including kernel builds, s.");
+    m("result", c.verdict.result, "One line: what was compared, why it was skipped, or what is wrong.");
+    for (const Outcome outcome : {Outcome::kFail, Outcome::kSkip, Outcome::kExpectedFail, Outcome::kUnexpectedPass})
+        if (status == outcome_name(outcome)) c.verdict.outcome = outcome;
+    const bool failed = has_failed(c.verdict.outcome);
+    Fault& f = c.verdict.fault;
+    m.when(failed, "where", f.where, "Failed check: first wrong operation, ray, word or pixel, or empty.");
+    m.when(failed, "expected", f.expected, "Bits of the expected result, and their meaning.");
+    m.when(failed, "got", f.got, "Bits of the computed result, and their meaning.");
+    m.when(failed, "build_options", f.options, "Options of the kernel compiler.");
+    m.when(failed, "remedies", f.remedies, "Remedies to try, the most promising first.");
 }
 
 const char* depth_name(Depth depth) { return std::array{"brief", "quick", "full"}[static_cast<std::size_t>(depth)]; }
@@ -250,32 +244,18 @@ DeviceChecks device_checks_of(const DeviceInfo& info) {
     return {info.name, info.platform, info.version, info.driver, info.pci_address};
 }
 
-Json to_json(const DeviceChecks& device) {
-    Json json = Json::object();
-    json["name"] = device.name;
-    json["platform"] = device.platform;
-    json["version"] = device.version;
-    json["driver"] = device.driver;
-    if (!device.pci_address.empty()) json["pci_address"] = device.pci_address;
-    json["right"] = device.all_passed();
-    json["passed"] = count_of(device.checks, Outcome::kPass);
-    json["failed"] = count_of(device.checks, Outcome::kFail);
-    json["skipped"] = count_of(device.checks, Outcome::kSkip);
-    json["failed_as_expected"] = count_of(device.checks, Outcome::kExpectedFail);
-    json["passed_unexpectedly"] = count_of(device.checks, Outcome::kUnexpectedPass);
-    json["seconds"] = device.seconds;
-    json["checks"] = Json::array();
-    for (const Check& check : device.checks) json["checks"].push_back(to_json(check));
-    return json;
-}
-
-DeviceChecks device_checks_of(const Json& json) {
-    const auto text = [&](const char* key) { return json_text(json.at(key)); };
-    DeviceChecks device{text("name"), text("platform"), text("version"), text("driver")};
-    if (find_member(json, "pci_address")) device.pci_address = text("pci_address");
-    device.seconds = json_number(json.at("seconds"));
-    for (const Json& check : json_array(json.at("checks"))) device.checks.push_back(check_of(check));
-    return device;
+void members_of(Members& m, DeviceChecks& device) {
+    const auto count = [&](Outcome outcome) { return count_of(device.checks, outcome); };
+    device_members(m, device);
+    m.when(!device.pci_address.empty(), "pci_address", device.pci_address, "With cl_khr_pci_bus_info.");
+    m("right", device.all_passed(), "True if each check had the expected outcome.");
+    m("passed", count(Outcome::kPass), "Number of passed checks.");
+    m("failed", count(Outcome::kFail), "Number of failed checks.");
+    m("skipped", count(Outcome::kSkip), "Number of checks that the device does not support.");
+    m("failed_as_expected", count(Outcome::kExpectedFail), "Number of checks that failed as --expect says.");
+    m("passed_unexpectedly", count(Outcome::kUnexpectedPass), "Number of passed checks that --expect lists.");
+    m("seconds", device.seconds, "Sum of the times of all checks, s.");
+    m("checks", device.checks, "Checks in the order of execution.");
 }
 
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/base/json.hpp"
+#include "host/base/members.hpp"
 #include "host/cl/commands.hpp"
 #include "host/cl/device.hpp"
 #include "host/cl/kernel_options.hpp"
@@ -36,12 +36,8 @@ std::size_t count_of(const std::vector<Check>& checks, Outcome outcome);
 /// its details follow.
 std::string check_lines(const Check& check);
 
-/// Returns an object with members layer, name, status, seconds and result; for a failure, expected or not, also where,
-/// expected, got, build_options and remedies.
-Json to_json(const Check& check);
-
-/// Inverse of to_json(Check).
-Check check_of(const Json& json);
+/// Lists the members of a check, for to_json(), schema_of() and from_json().
+void members_of(Members& m, Check& check);
 
 enum class Depth {
     kBrief,  // few kernels and rays: for simulated devices, and for compilers that take a minute per kernel
@@ -177,9 +173,8 @@ struct DeviceChecks {
 /// Returns the properties of a device, without checks.
 DeviceChecks device_checks_of(const DeviceInfo& info);
 
-/// Returns the device's object in the report of `raya verify`; device_checks_of() is the inverse.
-Json to_json(const DeviceChecks& device);
-DeviceChecks device_checks_of(const Json& json);
+/// Lists the members of a device, for to_json(), schema_of() and from_json().
+void members_of(Members& m, DeviceChecks& device);
 
 // Files for continuous integration (CI): results of checks as JUnit XML, and the list of expected failures.
 

@@ -4,7 +4,6 @@
 
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
-#include "tests/cli/report_keys.hpp"
 #include "tests/document.hpp"
 #include "tests/image/read_image.hpp"
 
@@ -43,16 +42,6 @@ void check_rotations(const Document& report) {
     CHECK(rotations > 0);
     CHECK(communication["rotation_words"] == rotations * pes * 3 * band);
     CHECK(launches_of(report, "ring.rotate_up") + launches_of(report, "ring.rotate_down") == 2 * rotations);
-}
-
-TEST_CASE("render --antialias: the report has the keys of the method", "[cli]") {
-    std::set<std::string> keys = default_report_keys();
-    keys.insert({"antialias.band_pixels count", "antialias.exchange string"});
-    CHECK(keys_of(RenderFiles("planes", {"--antialias", "filter"}).report()) == keys);
-    keys.insert({"antialias.threshold number", "antialias.points string", "antialias.recomputed_pixels count",
-                 "antialias.recomputed_share number"});
-    keys.merge(load_keys("load.supersample."));
-    CHECK(keys_of(RenderFiles("planes", supersample_options()).report()) == keys);
 }
 
 TEST_CASE("render --antialias none: the report has no rotations; the image equals that without the option", "[cli]") {

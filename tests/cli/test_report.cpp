@@ -5,7 +5,6 @@
 
 #include "host/scene/nff.hpp"
 #include "tests/cli/render_files.hpp"
-#include "tests/cli/report_keys.hpp"
 #include "tests/document.hpp"
 #include "tests/image/read_image.hpp"
 
@@ -80,20 +79,6 @@ void check_measured(const Document& report) {
         if (command["label"] == "bus.gather") CHECK(launches == report["communication"]["gathers"]);
     }
     for (const char* label : {"bus.broadcast", "trace", "bus.gather"}) CHECK(labels.count(label) == 1);
-}
-
-TEST_CASE("report: has exactly the expected keys, each with its type", "[cli]") {
-    CHECK(keys_of(RenderFiles("planes").report()) == default_report_keys());
-    std::set<std::string> without_limit = default_report_keys();
-    without_limit.erase("machine.pe_memory_bytes count");
-    without_limit.insert("machine.pe_memory_bytes null");
-    CHECK(keys_of(RenderFiles("planes", {"--machine", "grande"}).report()) == without_limit);
-    std::set<std::string> without_slots = default_report_keys();
-    for (const std::string key : {"machine.offset", "machine.fold"}) {
-        without_slots.erase(key + (key == "machine.fold" ? " string" : " count"));
-        without_slots.insert(key + " null");
-    }
-    CHECK(keys_of(RenderFiles("planes", {"--mapping", "rows"}).report()) == without_slots);
 }
 
 TEST_CASE("report: numbers agree with each other and with the scene", "[cli]") {

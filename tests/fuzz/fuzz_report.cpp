@@ -23,7 +23,7 @@ void check_page(std::string_view text) try {
 /// Checks that a comparison reports another device, another image and lower rates.
 void check_other_run(const BenchReport& report, BenchReport now) {
     BenchMeasurement& row = now.rows.front();
-    now.device += "x";
+    now.device.name += "x";
     row.hash += "x";
     BenchComparison comparison = compare_bench(report, now, 1e-6);
     if (comparison.remarks.size() != 1 || comparison.other_images != 1)

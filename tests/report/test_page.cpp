@@ -50,11 +50,11 @@ std::string decoded(const std::string& base64) {
     return bytes;
 }
 
-TEST_CASE("cost_json: the cycles can be decoded exactly", "[page]") {
+TEST_CASE("cost_planes: the cycles can be decoded exactly", "[page]") {
     for (const std::uint32_t bits : {0u, 1u, 7u, 8u, 9u, 16u, 31u, 33u, 52u, 64u}) {
         std::vector<std::uint64_t> cycles = {0, bits == 0 ? 0 : ~std::uint64_t{0} >> (64 - bits)};
         for (std::uint64_t i = 0; i < 209; ++i) cycles.push_back(bits == 0 ? 0 : i * 0x9e3779b97f4a7c15 >> (64 - bits));
-        const Json json = cost_json(cycles);
+        const Json json = to_json(cost_planes(cycles));
         const std::string bytes = gunzip(decoded(json_text(json.at("gzip"))));
         const std::size_t pixels = cycles.size(), byte_planes = json_integer(json.at("bytes"));
         CAPTURE(bits);

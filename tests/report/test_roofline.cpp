@@ -87,17 +87,12 @@ TEST_CASE("roofline_table: contains the bound of each kernel and its percentage 
         {kernel("trace", 100), kernel("route", 100)});
     const std::string table = roofline_table(all);
     CAPTURE(table);
-    CHECK_THAT(table,
-               Contains("trace: compute bound, 10.00 % of the fp32 multiply-add rate, 100.00 % of the rates of e6m15"));
-    CHECK_THAT(table, Contains("route: bandwidth bound, 50.00 % of the copy bandwidth\n"));
-    CHECK_THAT(table,
-               Contains("100.00 Gop/s multiply-adds in fp32; in e6m15: 10.00 multiply-adds, 1.00 divisions, 2.00"));
-    CHECK_THAT(table, Contains("compute above 5.00 op/byte"));
-    const Document json = read_back(roofline_json(all));
-    CHECK(json[0]["rays_per_s"] == Approx(5e7));
-    CHECK(json[0]["operations_per_s"] == Approx(1e10));
-    CHECK(json[0]["share_of_roof"] == Approx(0.1));
-    CHECK(json[1]["share_of_format"].is_null());
+    CHECK_THAT(table, Contains("trace: compute bound, 10.00 % of the fp32 multiply-add rate") &&
+                          Contains("route: bandwidth bound, 50.00 % of the copy bandwidth\n") &&
+                          Contains("compute above 5.00 op/byte"));
+    CHECK(json_number(to_json(all.rows[0]).at("rays_per_s")) == Approx(5e7));
+    CHECK(json_number(to_json(all.rows[0]).at("operations_per_s")) == Approx(1e10));
+    CHECK(to_json(all.rows[1]).at("share_of_format").is_null());
 }
 
 TEST_CASE("profile_table: lists builds and waiting times separately from commands", "[report]") {
@@ -110,11 +105,8 @@ TEST_CASE("profile_table: lists builds and waiting times separately from command
     CHECK_THAT(table, Catch::StartsWith("kernel build 1.500 s, not among the commands: ring/trace.cl 1.250 s;"));
     CHECK_THAT(table, Contains("2.000    100.0"));
     CHECK_THAT(table, Contains("1.500             2.500  0.000  0.000\n"));
-    const auto row = [&](bool waits) { return read_back(commands_json({c}, waits))[0]; };
-    CHECK(row(false).size() == 7);
-    CHECK(row(true)["queue_to_submit_mean_ns"] == 1.5e6);
-    CHECK(row(true)["submit_to_start_mean_ns"] == 2.5e6);
-    CHECK(row(true)["bytes"] == 7);
+    CHECK(json_number(to_json(c).at("queue_to_submit_mean_ns")) == 1.5e6);
+    CHECK(json_number(to_json(c).at("submit_to_start_mean_ns")) == 2.5e6);
 }
 
 }  // namespace raya

@@ -1,7 +1,5 @@
-// Tests of TraceFile: TraceSchema finds no errors in its traces. Tests of TraceSchema: it finds the errors of invalid
-// traces.
+// Tests of TraceFile: TraceSchema finds no errors in its traces.
 #include <catch2/catch.hpp>
-#include <functional>
 
 #include "host/report/trace_file.hpp"
 #include "host/scene/split_mix.hpp"
@@ -77,25 +75,6 @@ TEST_CASE("TraceFile: leaves out and counts events beyond the limit, both ends o
     }
 }
 
-TEST_CASE("TraceFile: writes the expected text of a small trace", "[report]") {
-    TraceFile trace(10);
-    trace.name_process(1, "host");
-    trace.name_track({1, 7}, "steps");
-    trace.slice({1, 7}, "render", 1'234'567'890, 1'234'567'895, {{"bytes", 4}});
-    trace.counter(1, "u", 1000, {{"u", 0.5}});
-    CHECK(trace.finish(false) ==
-          R"({"displayTimeUnit":"ms","traceEvents":[
-{"ph":"M","name":"process_name","pid":1,"tid":0,"args":{"name":"host"}},
-{"ph":"M","name":"process_sort_index","pid":1,"tid":0,"args":{"sort_index":1}},
-{"ph":"M","name":"thread_name","pid":1,"tid":7,"args":{"name":"steps"}},
-{"ph":"M","name":"thread_sort_index","pid":1,"tid":7,"args":{"sort_index":7}},
-{"ph":"X","name":"render","pid":1,"tid":7,"ts":1234567.890,"dur":0.005,"args":{"bytes":4}},
-{"ph":"C","name":"u","pid":1,"ts":1.000,"args":{"u":0.5}}
-],"otherData":{"events":2,"events_left_out":0}}
-)");
-    CHECK(TraceSchema(Document::parse(TraceFile(1).finish(false))).faults().empty());  // a trace without events
-}
-
 TEST_CASE("TraceFile: refuses events that readers would misinterpret", "[report]") {
     TraceFile trace(100);
     trace.name_process(1, "host");
@@ -110,58 +89,6 @@ TEST_CASE("TraceFile: refuses events that readers would misinterpret", "[report]
     CHECK_THROWS_AS(trace.flow("f", {1, 1}, 12, {1, 1}, 11), std::logic_error);
     CHECK_THROWS_AS(trace.flow("f", {1, 1}, 12, {2, 1}, 13), std::logic_error);
     CHECK_THROWS_AS(trace.counter(1, "c", 0, {{"a", std::nan("")}}), std::logic_error);
-}
-
-TEST_CASE("TraceSchema: finds each broken rule", "[report]") {
-    struct Defect {
-        std::string fault;                     // text of the expected fault
-        std::function<void(Document&)> apply;  // changes the trace's list of events
-    };
-    const auto first = [](Document& events, const char* phase) -> Document& {
-        return *std::find_if(events.begin(), events.end(), [&](const Document& e) { return e["ph"] == phase; });
-    };
-    const Document slice = {{"ph", "X"}, {"name", "x"}, {"pid", 1}, {"tid", 1}, {"ts", 999'999'999.5}, {"dur", 2.0}};
-    const std::vector<Defect> defects = {
-        {"unknown phase", [&](Document& e) { first(e, "X")["ph"] = "Z"; }},
-        {"no name", [&](Document& e) { first(e, "X").erase("name"); }},
-        {"pid is not an integer", [&](Document& e) { first(e, "X")["pid"] = "1"; }},
-        {"tid is not an integer", [&](Document& e) { first(e, "X")["tid"] = 1.5; }},
-        {"no time ts", [&](Document& e) { first(e, "X")["ts"] = "0"; }},
-        {"no time ts", [&](Document& e) { first(e, "C").erase("ts"); }},
-        {"no time dur", [&](Document& e) { first(e, "X")["dur"] = -1; }},
-        {"args are not an object", [&](Document& e) { first(e, "X")["args"] = 5; }},
-        {"a name after other events", [&](Document& e) { std::swap(e.front(), e.back()); }},
-        {"has no process_name", [&](Document& e) { e.erase(0); }},
-        {"has no process_sort_index", [&](Document& e) { e.erase(1); }},
-        {"has no thread_name", [&](Document& e) { e.erase(2); }},
-        {"has no thread_sort_index", [&](Document& e) { e.erase(3); }},
-        {"named twice", [&](Document& e) { e.insert(e.begin(), Document(e.front())); }},
-        {"a name without its value", [&](Document& e) { e[0]["args"].clear(); }},
-        {"a name of the wrong kind", [&](Document& e) { e[1]["args"]["sort_index"] = "1"; }},
-        {"slices cross", [&](Document& e) { e.push_back(slice); }},
-        {"a counter without values", [&](Document& e) { first(e, "C")["args"] = Document::object(); }},
-        {"a counter that is not a number", [&](Document& e) { first(e, "C")["args"]["a"] = "much"; }},
-        {"a flow without id", [&](Document& e) { first(e, "s").erase("id"); }},
-        {"binds to the next slice", [&](Document& e) { first(e, "f").erase("bp"); }},
-        {"two beginnings or two ends", [&](Document& e) { e.push_back(Document(first(e, "s"))); }},
-        {"has no end", [&](Document& e) { first(e, "f")["id"] = 4711; }},
-        {"has no beginning", [&](Document& e) { first(e, "f")["id"] = 4711; }},
-        {"ends do not agree", [&](Document& e) { first(e, "f")["ts"] = 0; }},
-        {"ends do not agree", [&](Document& e) { first(e, "f")["name"] = "g"; }},
-        {"outside all slices", [&](Document& e) { first(e, "f")["ts"] = 1e12; }},
-        {"does not count the events", [&](Document& e) { e.erase(e.size() - 1); }},
-    };
-    for (const Defect& defect : defects) {
-        CAPTURE(defect.fault);
-        Document json = json_of(random_trace(3, 1'000'000));
-        REQUIRE(TraceSchema(json).faults().empty());
-        defect.apply(json["traceEvents"]);
-        std::string all;
-        const TraceSchema schema(json);
-        for (const std::string& fault : schema.faults()) all += fault + "\n";
-        CHECK_THAT(all, Catch::Contains(defect.fault));
-    }
-    CHECK(TraceSchema(Document::array()).faults() == std::vector<std::string>{"no traceEvents"});
 }
 
 }  // namespace raya

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Follows docs/how-to/primitive.md in a copy of the sources, and builds raya. Adds disks, of which the image must be the same on the torus and with each
+"""Follows docs/extend.md (a primitive) in a copy of the sources, and builds raya. Adds disks, of which the image must be the same on the torus and with each
 accelerator, and nearly that of polygons of 96 corners.
   test_how_to.py ROOT FOLDER     FOLDER: for the copy and its build, which later runs reuse"""
 import json, math, subprocess, sys
@@ -113,12 +113,7 @@ HitRegion HitRegions::disk(std::size_t at) const {
 """),
     ("host/model/budget.cpp", 'The 40 operations hide the loads of its 10 words"},\n',
      '    {.event = RAYA_DISK_TESTS, .multiply_accumulates = 7 + 6 + 3, .divisions = 1, .branches = 2, .additions = 14, .multiplications = 12, .work = "all"},\n'),
-    ("docs/schema/render.json", '"description": "Number of tests against cones and cylinders."}',
-     ',\n        "disk": {"type": "integer", "minimum": 0, "description": "Number of tests against disks."}'),
-    ("docs/schema/render.json", '"required": ["sphere", "plane", "polygon", "cone"', ', "disk"'),
-    ("docs/schema/info.json", '"vertices", "cones"', ', "disks"'),
-    ("docs/schema/info.json", '"description": "Number of cones and cylinders."}',
-     ',\n        "disks": {"type": "integer", "minimum": 0, "description": "Number of disks."}'),
+    ("host/report/render_report.cpp", '    "Number of tests against cones and cylinders.",\n', '    "Number of tests against disks.",\n'),
 ]
 
 

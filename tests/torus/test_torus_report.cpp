@@ -85,11 +85,13 @@ TEST_CASE("torus_report: has the figures of settings and result", "[report]") {
 
 // A reflected ray costs 1 multiplication, 10 moves, 2 branches and 16 packet words; a sphere test costs 11 additions,
 // 9 multiplications and 1 branch.
-TEST_CASE("t805_budget_json: contains the operations of a T805", "[report]") {
+TEST_CASE("t805_members: lists the operations of a T805", "[report]") {
     EventCounts events{};
     events[RAYA_REFLECTED] = 3;
     events[RAYA_SPHERE_TESTS] = 2;
-    CHECK(read_back(t805_budget_json(events, {})) ==
+    Members members(Members::Mode::kWrite);
+    t805_members(members, events, {});
+    CHECK(read_back(members.json()) ==
           Document::parse(R"({"additions": 22, "multiplications": 21, "divisions": 0, "roots": 0, "moves": 30,
               "packet_words": 48, "branches": 8})"));
 }

@@ -56,12 +56,12 @@ TEST_CASE("check_names: a greater depth has all checks of the smaller depths, an
     }
 }
 
-TEST_CASE("check_of: inverts to_json", "[verify]") {
+TEST_CASE("from_json<Check>: inverts to_json", "[verify]") {
     const Fault fault{.where = "there", .expected = "1", .got = "2", .options = "-w", .remedies = {"this", "that"}};
     for (const Verdict& verdict : {passed("3 answers"), skipped("no reason"), failed("wrong", fault)}) {
         const Check check{"layer", "name", 1.5, verdict};
-        CHECK(to_json(check_of(to_json(check))).dump() == to_json(check).dump());
-        CHECK(check_lines(check_of(to_json(check))) == check_lines(check));
+        CHECK(to_json(from_json<Check>(to_json(check))).dump() == to_json(check).dump());
+        CHECK(check_lines(from_json<Check>(to_json(check))) == check_lines(check));
     }
 }
 

@@ -1,7 +1,6 @@
-// Computes owners, loads and other figures of a setting. The results equal raya's in every digit
-// (kernels/shared/mapping.h, host/ring/mapping.cpp, host/model/); tests/tools/test_pages.py compares them. JavaScript's
-// numbers are exact for integers below 2^53; products of 32-bit integers use Math.imul. This file does not depend on
-// the page.
+// Computes owners, loads and other figures of a setting. The results equal raya's in every digit (host/ring/mapping.cpp,
+// host/model/); tests/tools/test_pages.py compares them. JavaScript's numbers are exact for integers below 2^53. This
+// file does not depend on the page, except on the functions of kernels/shared/mapping.h that page.cpp translates.
 //
 // A setting is {kind, offset, fold, pes, a, b, seed}. kind: "slots", "rows", "blocks", "grid", "tiles" or "random". a
 // and b: numbers of rows and columns of a grid, or width and height of a tile in pixels.
@@ -9,71 +8,19 @@
 
 // --- Owners of pixels
 
-// Returns floor(n / d) of integers, n < 2^53. The result is exact: a quotient that is not an integer is at least 1 / d
-// below the next integer, and the rounding error of a double is smaller.
-const floorRatio = (n, d) => Math.floor(n / d);
-// Returns the number of integers first, first + step, ... below `end`.
-const stepsBelow = (first, step, end) => first < end ? floorRatio(end - first - 1, step) + 1 : 0;
-
-// Returns the function that maps (row, slot) to a PE, for a mapping with slots. If P > W, several PEs share a slot:
-// they own its rows in turn (cyclic fold) or contiguous parts of it (block fold).
-function slotOwner({fold, pes}, {width, height}) {
-  if (fold === "cyclic")
-    return pes <= width ? (row, slot) => slot % pes :
-                          (row, slot) => slot + width * (row % stepsBelow(slot, width, pes));
-  if (pes <= width) return (row, slot) => floorRatio(slot * pes, width);
-  return (row, slot) => {
-    const first = floorRatio(slot * pes, width), sharers = floorRatio((slot + 1) * pes, width) - first;
-    return first + floorRatio(row * sharers, height);
-  };
-}
-
-// Returns x after the finaliser of MurmurHash3 (A. Appleby, public domain).
-function mixed(x) {
-  x = Math.imul(x ^ x >>> 16, 0x85ebca6b);
-  x = Math.imul(x ^ x >>> 13, 0xc2b2ae35);
-  return (x ^ x >>> 16) >>> 0;
-}
-
-// Returns the bijection of 0 .. count - 1 in kernels/shared/scramble.h, a Feistel network of six rounds.
-function scrambler(count, seed) {
-  let bits = 0;
-  while (2 ** bits < count) ++bits;
-  const lowBits = bits - (bits >> 1), lowMask = 2 ** lowBits - 1, highMask = 2 ** (bits >> 1) - 1;
-  const keys = [1, 2, 3, 4, 5, 6].map((round) => mixed(seed + Math.imul(round, 0x9e3779b9) | 0));
-  return (number) => {
-    do {
-      for (let round = 0; round < 6; ++round)
-        if (round & 1) number = (number ^ (mixed(keys[round] ^ number >>> lowBits) & lowMask)) >>> 0;
-        else
-          number = (number ^ (mixed(keys[round] ^ (number & lowMask)) & highMask) << lowBits) >>> 0;
-    } while (number >= count);
-    return number;
-  };
-}
-
-// Returns the function that maps (row, column) to a PE, for a mapping without slots.
-function plainOwner({kind, pes, a, b, seed}, {width, height}) {
-  if (kind === "rows") return (row) => row % pes;
-  if (kind === "blocks") return (row) => floorRatio(row * pes, height);
-  if (kind === "grid") return (row, column) => row % a * b + column % b;
-  if (kind === "tiles")
-    return (row, column) => (floorRatio(row, b) * floorRatio(width, a) + floorRatio(column, a)) % pes;
-  const scrambled = scrambler(width * height, seed);
-  return (row, column) => scrambled(row * width + column) % pes;
+// Returns the mapping of a setting for the functions of kernels/shared/mapping.h, which are in the page as JavaScript.
+function mappingOf({kind, offset, fold, pes, a, b, seed}, {width, height}) {
+  const kinds = {slots: fold === "block" ? RAYA_FOLD_BLOCK : RAYA_FOLD_CYCLIC, rows: RAYA_ROWS, blocks: RAYA_BLOCKS,
+                 grid: RAYA_GRID, tiles: RAYA_TILES, random: RAYA_RANDOM};
+  const parameters = {slots: offset, grid: raya_pair(a, b), tiles: raya_pair(a, b), random: seed};
+  return {width, height, pes, kind: kinds[kind], parameter: parameters[kind] || 0};
 }
 
 // Returns the PE of each pixel, row by row.
 function ownersOf(setting, size) {
-  const {width, height} = size, owners = new Int32Array(width * height);
-  const slots = setting.kind === "slots", owner = slots ? slotOwner(setting, size) : plainOwner(setting, size);
-  for (let row = 0, at = 0; row < height; ++row) {
-    let slot = slots ? (width - row * setting.offset % width) % width : 0;
-    for (let column = 0; column < width; ++column, ++at) {
-      owners[at] = owner(row, slot);
-      if (++slot === width) slot = 0;
-    }
-  }
+  const {width, height} = size, mapping = mappingOf(setting, size), owners = new Int32Array(width * height);
+  for (let row = 0, at = 0; row < height; ++row)
+    for (let column = 0; column < width; ++column, ++at) owners[at] = raya_owner(mapping, row, column);
   return owners;
 }
 
@@ -110,9 +57,9 @@ function balanceOf(loads) {
 // Computes the imbalance u of the offsets from `first` on until time `deadline`, and writes the values to the members
 // of `curves`: cyclic, and block if it exists. Returns the first offset that is not computed.
 function addToCurves(curves, costs, size, pes, first, deadline) {
-  const {width, height} = size, folds = Object.keys(curves);
-  const owner = folds.map((fold) => slotOwner({fold, pes}, size));
-  const loads = new Float64Array(pes), slots = new Float64Array(width);
+  const {width, height} = size, settings = Object.keys(curves).map((fold) => ({kind: "slots", offset: 0, fold, pes}));
+  const ownersOfSlots = settings.map((setting) => ownersOf(setting, {width, height: 1}));
+  const slots = new Float64Array(width);
   let offset = first;
   for (; offset < width && performance.now() < deadline; ++offset) {
     // If P <= W, every PE owns whole slots, so the PEs' loads are sums of the slots' loads for both folds.
@@ -124,17 +71,10 @@ function addToCurves(curves, costs, size, pes, first, deadline) {
         begin = (begin + offset) % width;
       }
     }
-    folds.forEach((fold, k) => {
-      loads.fill(0);
-      if (pes <= width)
-        for (let slot = 0; slot < width; ++slot) loads[owner[k](0, slot)] += slots[slot];
-      else
-        for (let row = 0, at = 0; row < height; ++row)
-          for (let column = 0, slot = (width - row * offset % width) % width; column < width; ++column, ++at) {
-            loads[owner[k](row, slot)] += costs[at];
-            if (++slot === width) slot = 0;
-          }
-      curves[fold][offset] = balanceOf(loads).imbalance;
+    settings.forEach((setting, k) => {
+      const loads = pes <= width ? loadsOf(ownersOfSlots[k], slots, pes) :
+                                   loadsOf(ownersOf({...setting, offset}, size), costs, pes);
+      curves[setting.fold][offset] = balanceOf(loads).imbalance;
     });
   }
   return offset;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "host/base/json.hpp"
+#include "host/base/members.hpp"
 
 namespace raya {
 
@@ -17,9 +17,14 @@ std::string report_page(const Json& report);
 /// represent integers exactly up to this limit.
 inline constexpr std::uint64_t kExactCycles = std::uint64_t{1} << 53;
 
-/// Encodes the costs of pixels for the explorer's script: {"bytes": B, "gzip": base64}. The gzip data has B planes, one
-/// for each byte of a cost, from the lowest to the highest byte. A plane has one byte per pixel, row by row. Planes
-/// compress better than interleaved bytes, because adjacent pixels rarely differ in the high bytes of their costs.
-Json cost_json(const std::vector<std::uint64_t>& cycles);
+/// The costs of pixels for the explorer's script. The gzip data has a plane for each byte of a cost, from the lowest to
+/// the highest byte. A plane has one byte per pixel, row by row. Planes compress better than interleaved bytes, because
+/// adjacent pixels rarely differ in the high bytes of their costs.
+struct CostPlanes {
+    std::uint32_t bytes = 1;  // of a cost
+    std::string gzip;
+};
+void members_of(Members& m, const CostPlanes& cost);
+CostPlanes cost_planes(const std::vector<std::uint64_t>& cycles);
 
 }  // namespace raya

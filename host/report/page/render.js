@@ -91,7 +91,7 @@ function nodeNumbers([I, J, K], flat) {
   const sideDifference = (c) => Math.abs(I * c - J * (K / c));
   for (let c = 2; c <= K; ++c)
     if (K % c === 0 && sideDifference(c) < sideDifference(slabs)) slabs = c;
-  return flat ? (i, j, k) => i + I * (k % slabs) + I * slabs * (j + J * floorRatio(k, slabs)) :
+  return flat ? (i, j, k) => i + I * (k % slabs) + I * slabs * (j + J * Math.floor(k / slabs)) :
                 (i, j, k) => i + I * (j + J * k);
 }
 
@@ -104,7 +104,7 @@ function nodeMap(r, values, description) {
     throw new Error("a list does not have one value for each node");
   const number = nodeNumbers(nodes, str(r, "torus.links") === "torus2d"), colour = diverging(values);
   return pixelMap(slices * (I + 1) - 1, Math.ceil(K / slices) * (J + 1) - 1, description, (y, x) => {
-    const k = floorRatio(y, J + 1) * slices + floorRatio(x, I + 1), i = x % (I + 1), j = y % (J + 1);
+    const k = Math.floor(y / (J + 1)) * slices + Math.floor(x / (I + 1)), i = x % (I + 1), j = y % (J + 1);
     return i < I && j < J && k < K ? colour(values[number(i, j, k)]) : wordOf(rgbOf(0.45, 0, 0));
   });
 }
