@@ -19,20 +19,16 @@
 namespace raya {
 namespace {
 
-using OptionalNumber = std::optional<std::uint32_t>;
-
-// Returns the mapping that these options of `raya render` select. Throws UserError with the messages of `raya render`.
-raya_mapping mapping_of(const ImageSize& size, const std::string& mapping, OptionalNumber offset,
-                        const std::string& fold, OptionalNumber pes) {
-    if (is_dynamic(mapping))
-        throw UserError(fmt::format("--mapping {}: not a static mapping; use schedule()", mapping));
+// Returns the mapping that the keyword arguments, options of `raya render`, select. Throws UserError.
+raya_mapping mapping_of(const ImageSize& size, const py::kwargs& keywords) {
     RenderOptions options;
+    CLI::App app;
+    add_render_options(app, options);
     options.machine = "grande";
+    parse_keywords(app, keywords);
+    if (is_dynamic(options.mapping))
+        throw UserError(fmt::format("--mapping {}: not a static mapping; use schedule()", options.mapping));
     options.size = fmt::format("{}x{}", size.width, size.height);
-    options.mapping = mapping;
-    if (!fold.empty()) options.fold = parse_choice("--fold", fold, kFoldChoices);
-    options.offset = offset;
-    options.pes = pes;
     return ring_settings(options, {}).mapping;
 }
 
@@ -47,10 +43,9 @@ py::array owners(const raya_mapping& mapping) {
     return array;
 }
 
-py::array loads(const py::array& costs, const std::string& mapping, OptionalNumber offset, const std::string& fold,
-                OptionalNumber pes) {
+py::array loads(const py::array& costs, const py::kwargs& options) {
     const CostImage cost = cost_image_of(costs);
-    return copy_of(static_load(cost, mapping_of(size_of(cost), mapping, offset, fold, pes)).per_pe);
+    return copy_of(static_load(cost, mapping_of(size_of(cost), options)).per_pe);
 }
 
 py::array imbalances(const py::array& costs, std::uint32_t pes, const std::vector<std::uint32_t>& offsets,
@@ -76,7 +71,7 @@ py::array speedups(const py::array& costs, const std::vector<std::uint32_t>& pes
     const Fold fold_kind = parse_choice("--fold", fold, kFoldChoices);
     std::vector<double> speedup_by_pes;
     CostImage slot_loads{cost.width, 1, {}};
-    OptionalNumber slot_offset;  // offset for which slot_loads was computed
+    std::optional<std::uint32_t> slot_offset;  // offset for which slot_loads was computed
     for (std::size_t i = 0; i < pes.size(); ++i) {
         const std::uint32_t offset = offsets[offsets.size() == 1 ? 0 : i];
         const auto mapping = [&](const ImageSize& size, std::uint32_t count, std::uint32_t p) {
@@ -94,11 +89,9 @@ py::array speedups(const py::array& costs, const std::vector<std::uint32_t>& pes
     return copy_of(speedup_by_pes);
 }
 
-py::dict schedule(const py::array& costs, const std::string& plan, const std::string& mapping, OptionalNumber offset,
-                  const std::string& fold, OptionalNumber pes) {
+py::dict schedule(const py::array& costs, const std::string& plan, const py::kwargs& options) {
     const CostImage cost = cost_image_of(costs);
-    const Schedule run =
-        dynamic_schedule(cost, mapping_of(size_of(cost), mapping, offset, fold, pes), parse_dynamic(plan));
+    const Schedule run = dynamic_schedule(cost, mapping_of(size_of(cost), options), parse_dynamic(plan));
     py::dict results;
     results["loads"] = copy_of(run.load.per_pe);
     results["requests"] = run.requests;
@@ -233,28 +226,21 @@ void add_loads(py::module_& module) {
     const auto add_mapping_function = [&](const char* name, auto function, const char* help) {
         module.def(
             name,
-            [function](std::uint32_t width, std::uint32_t height, const std::string& mapping, OptionalNumber offset,
-                       const std::string& fold, OptionalNumber pes) {
-                return function(mapping_of({width, height}, mapping, offset, fold, pes));
+            [function](std::uint32_t width, std::uint32_t height, const py::kwargs& options) {
+                return function(mapping_of({width, height}, options));
             },
-            py::arg("width"), py::arg("height"), py::arg("mapping") = "", py::arg("offset") = py::none(),
-            py::arg("fold") = "", py::arg("pes") = py::none(), help);
+            py::arg("width"), py::arg("height"), help);
     };
     add_mapping_function(
         "owners", owners,
-        "uint32 [height, width]: the PE that owns each pixel. mapping, offset, fold and pes: as the options of raya "
-        "render --machine grande. Raises ValueError.");
+        "uint32 [height, width]: the PE that owns each pixel. Keyword arguments of this and the other functions of "
+        "mappings: the options of raya render --machine grande, such as mapping, offset, fold and pes. Raises "
+        "ValueError.");
     add_mapping_function("rotations", neighbour_rotations,
                          "Number of rotations of the ring that bring each PE the neighbours of its pixels from all "
                          "four sides, if every PE sends all its pixels in each rotation.");
-    add_mapping_function(
-        "exchange_rotations",
-        [](const raya_mapping& mapping) { return sum_of(exchange_moves(mapping, ExchangeMethod::kRing, false)); },
-        "Returns the same number as rotations(), but counts it with the renderer's function over all "
-        "rows of the image.");
     add_mapping_function("largest_share", largest_share, "Number of pixels of the PE that owns the most pixels.");
-    module.def("loads", loads, py::arg("cost"), py::arg("mapping") = "", py::arg("offset") = py::none(),
-               py::arg("fold") = "", py::arg("pes") = py::none(),
+    module.def("loads", loads, py::arg("cost"),
                "uint64 [P]: the load of each PE in modelled cycles, the sum of its pixels' costs. cost: integers "
                "[H, W], the cost of each pixel.");
     module.def("imbalances", imbalances, py::arg("cost"), py::arg("pes"), py::arg("offsets"),
@@ -265,21 +251,16 @@ void add_loads(py::module_& module) {
         "float64 [n]: sum / max of the loads with the cyclic mapping, for each number of PEs pes[i] with the offset "
         "offsets[i]. If offsets has one element, it is the offset for all numbers of PEs.");
     module.def(
-        "schedule", schedule, py::arg("cost"), py::arg("plan"), py::arg("mapping") = "", py::arg("offset") = py::none(),
-        py::arg("fold") = "", py::arg("pes") = py::none(),
+        "schedule", schedule, py::arg("cost"), py::arg("plan"),
         "Simulates a dynamic or hybrid distribution of pixels. plan: 'dynamic:CHUNK[,OVERHEAD[,ROOT]]' or "
         "'hybrid:CHUNK[,OVERHEAD[,SHARE[,ROOT]]]' with CHUNK in pixels per request, OVERHEAD in cycles of the PE per "
         "request, SHARE as the fraction of each PE's pixels that is assigned statically, and ROOT in cycles of the "
-        "root, which answers one request at a time. mapping, offset, fold: the mapping of the static part. Returns a "
+        "root, which answers one request at a time. Keyword arguments: the mapping of the static part. Returns a "
         "dict: loads (uint64 [P]: finishing time of each PE in cycles), requests (number of requests to the root), "
         "makespan (cycles), speedup (total cycles / makespan).");
     module.def(
         "lower_bound", [](const py::array& costs, std::uint32_t pes) { return lower_bound(cost_image_of(costs), pes); },
         py::arg("cost"), py::arg("pes"), "Lower bound in cycles of any distribution of whole pixels over P PEs.");
-    module.def("filter_cycles", filter_cycles, py::arg("pixels"),
-               "Modelled cycles that one PE takes to filter `pixels` pixels with the 3 x 3 filter.");
-    module.def("compare_cycles", compare_cycles, py::arg("pixels"),
-               "Modelled cycles that one PE takes to compare `pixels` pixels with their neighbours.");
     module.def(
         "offset_times", offset_times, py::arg("cost"), py::arg("pes"), py::arg("antialias") = "none",
         py::arg("supersample") = py::none(),

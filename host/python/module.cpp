@@ -37,20 +37,6 @@ Scene loaded(const std::filesystem::path& file, bool strict) {
 using Point = std::array<double, 3>;
 Point point_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-Scene with_view(Scene scene, const py::kwargs& options) {
-    ViewOptions view;
-    CLI::App app;
-    add_view_options(app, view);
-    std::vector<std::string> arguments = option_arguments(options);
-    try {
-        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    } catch (const CLI::ParseError& error) {
-        throw UserError(error.what());
-    }
-    change_view(view, scene);
-    return scene;
-}
-
 Scene turned_scene(Scene scene, double degrees) {
     scene.view = turned(scene.view, degrees);
     return scene;
@@ -129,9 +115,6 @@ void add_scenes(py::module_& module) {
                 return s;
             },
             py::arg("name"), "Returns the scene with another name.")
-        .def("with_view", with_view,
-             "Returns the scene with another camera, background or lights. Keyword arguments: the options from_, at, "
-             "up, angle, background and light of raya render. Raises ValueError.")
         .def(
             "random_view", random_view, py::arg("seed"),
             "Returns the scene seen from a random eye, at the same distance from the point `at`, 5 to 75 degrees above "

@@ -164,9 +164,6 @@ void add_torus_results(py::module_& module, ResultClass& result) {
             "uint64 [nodes, 6]: number of 32-bit words that each node sends over each of its links +x, -x, +y, -y, +z, "
             "-z.")
         .def_property_readonly(
-            "link_packets", [](const py::object& self) { return links_of(self, &TorusResult::link_packets); },
-            "uint64 [nodes, 6]: number of packets that each node sends over each link.")
-        .def_property_readonly(
             "copied_words", [](const Result& r) { return torus_of(*r, "copied_words").copied_words; },
             "Number of 32-bit words that all nodes together copy to local memory in each kernel launch; 0 if the "
             "kernels read the scene in global memory.")
@@ -302,7 +299,7 @@ void add_result(py::module_& module) {
             "speedup", [](const Result& r) { return load_of(*r).speedup; }, "Sum / max of the loads.")
         .def_property_readonly(
             "efficiency", [](const Result& r) { return load_of(*r).efficiency; }, "Speed-up / P.")
-        .def_property_readonly("report", report_of, "dict: the JSON of raya render --report (docs/schema).")
+        .def_property_readonly("report", report_of, "dict: the JSON of raya render --report.")
         .def_property_readonly(
             "job_words", [](const Result& r) { return ring_of(*r, "job_words").pe_memory.job_words; },
             "Number of 32-bit words that the scene takes in each PE.")
@@ -337,15 +334,6 @@ Result render_shared(const Scene& scene, const py::object& progress, py::kwargs 
     return render_in(PythonSession::shared(device), scene, progress, options);
 }
 
-py::dict device_dict(const DeviceInfo& info) {
-    py::dict fields;
-    fields["name"] = info.name;
-    fields["platform"] = info.platform;
-    fields["version"] = info.version;
-    fields["driver"] = info.driver;
-    return fields;
-}
-
 }  // namespace
 
 void add_renders(py::module_& module) {
@@ -355,7 +343,12 @@ void add_renders(py::module_& module) {
                               "device: as in raya render --device; default: a GPU, else a CPU. Raises DeviceError.")
         .def(py::init<const std::string&>(), py::arg("device") = "")
         .def_property_readonly(
-            "device", [](const PythonSession& s) { return device_dict(s.info()); },
+            "device",
+            [](const PythonSession& s) {
+                Members members(Members::Mode::kWrite);
+                device_members(members, s.info());
+                return python_of(members.json());
+            },
             "dict: name, platform, version and driver of the device, as reported by OpenCL.")
         .def("render", render_in, py::arg("scene"), py::arg("progress") = py::none(),
              "Renders a scene on this device; see raya.render().");

@@ -45,8 +45,9 @@ bool holds_sequences(const py::handle& value) {
 
 }  // namespace
 
-std::vector<std::string> option_arguments(const py::dict& options) {
+void parse_keywords(CLI::App& program, const py::dict& options, const std::string& command) {
     std::vector<std::string> arguments;
+    if (!command.empty()) arguments.push_back(command);
     for (const auto& [key, value] : options) {
         std::string name = py::str(key);
         while (name.ends_with('_')) name.pop_back();  // from_ sets --from, because `from` is a Python keyword
@@ -62,7 +63,7 @@ std::vector<std::string> option_arguments(const py::dict& options) {
             arguments.push_back(option + '=' +
                                 (name == "size" ? replaced(text_of(option, value), ",", "x") : text_of(option, value)));
     }
-    return arguments;
+    parse_arguments(program, arguments);
 }
 
 void forbid_new(const py::object& type, const char* remedy) {
@@ -138,9 +139,7 @@ RenderCommand parse_options(CLI::App& program, const py::dict& options) {
         check_files(*render);
         check_render(command);
     });
-    std::vector<std::string> arguments = {"render"};
-    for (const std::string& argument : option_arguments(options)) arguments.push_back(argument);
-    parse_arguments(program, arguments);
+    parse_keywords(program, options, "render");
     return command;
 }
 

@@ -25,10 +25,10 @@ namespace py = pybind11;
 
 using CostArray = py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast>;
 
-/// Converts keyword arguments to command-line arguments: offset=16 to "--offset=16", strict=True to "--strict",
-/// from_=(1, 2, 3) to "--from=1,2,3", and a list of lights to one --light per element. Omits arguments with the value
-/// False or None. Raises ValueError for True or False in a sequence.
-std::vector<std::string> option_arguments(const py::dict& options);
+/// Parses keyword arguments as options of `program`, or of its command `command`: offset=16 as "--offset=16",
+/// strict=True as "--strict", from_=(1, 2, 3) as "--from=1,2,3", and a list of lights as one --light per element. Omits
+/// arguments with the value False or None. Raises ValueError for True or False in a sequence. Throws UserError.
+void parse_keywords(CLI::App& program, const py::dict& options, const std::string& command = {});
 
 /// Makes TYPE.__new__(), whose result would be without contents, raise TypeError with `remedy`. `type`: a class whose
 /// objects only functions make.

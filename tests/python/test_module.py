@@ -3,6 +3,7 @@ import json
 import os
 import pickle
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -77,6 +78,30 @@ def test_owners_of_the_cyclic_mapping():
                 break
         else:
             pytest.fail(f"{width} x {height}, p = {p}, {pes} PEs, seed {SEED}")
+
+
+@pytest.mark.skipif(not shutil.which("node"), reason="no node (Debian: nodejs)")
+def test_owners_of_random_mappings_on_the_page(tmp_path):
+    """The page's script has the owners of the engine."""
+    (tmp_path / "r.json").write_text('{"kind": "raya render"}')
+    subprocess.run([raya.program(), "page", "r.json", "-q", "-o", "r.html"], cwd=tmp_path, check=True)
+    scripts = re.findall(r"<script>(.*?)</script>", (tmp_path / "r.html").read_text(), re.DOTALL)
+    random, cases, wanted = np.random.default_rng(SEED), [], []
+    for i in range(120):
+        a, b, across, down = map(int, random.integers(1, 9, 4))
+        width, height = a * across, b * down
+        pes, offset, seed = int(random.integers(1, width * height + 1)), int(random.integers(width)), int(random.integers(2**32))
+        kind = ("slots", "rows", "blocks", "grid", "tiles", "random")[i % 6]
+        fold, text = ("cyclic", "block")[i // 6 % 2], {"slots": "cyclic", "grid": f"grid:{a}x{b}", "tiles": f"tiles:{a}x{b}", "random": f"random:{seed}"}
+        if kind == "grid":
+            pes = a * b
+        options = {"offset": offset, "fold": fold} if kind == "slots" else {}
+        wanted.append(raya.owners(width, height, mapping=text.get(kind, kind), pes=pes, **options).ravel().tolist())
+        cases.append([{"kind": kind, "offset": offset, "fold": fold, "pes": pes, "a": a, "b": b, "seed": seed}, {"width": width, "height": height}])
+    script = next(text for text in scripts if "raya_owner" in text) + f"console.log(JSON.stringify({json.dumps(cases)}.map((c) => [...ownersOf(...c)])))"
+    found = json.loads(subprocess.run(["node", "-e", script], check=True, capture_output=True, text=True).stdout)
+    for case, answer, right in zip(cases, found, wanted):
+        assert answer == right, f"{case}, seed {SEED}"
 
 
 def test_imbalances_agree_with_loads():

@@ -33,7 +33,7 @@ class RingModel:
             offset = (round(pes**0.5) if ranks > size else 16) % size
             loads = np.bincount(raya.ranks_of_pes(pes, ranks), raya.loads(costs.trace, pes=pes, offset=offset))
             self.counts.append({"pes": pes, "u": loads.max() / loads.mean() - 1,
-                                "rotations": raya.exchange_rotations(size, size, pes=pes, offset=offset),
+                                "rotations": raya.rotations(size, size, pes=pes, offset=offset),
                                 "block": 12 * raya.largest_share(size, size, pes=pes, offset=offset),
                                 "image": 12 * size * size, "scene": 4 * costs.job_words})
         self.arrays = [f"{counts['pes']} PEs" for counts in self.counts]

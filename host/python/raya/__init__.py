@@ -16,45 +16,13 @@ import sys
 from pathlib import Path
 
 from raya import _engine
-from raya._engine import (
-    PACKET_KINDS,
-    STATUS_WORDS,
-    DeviceError,
-    DoesNotFit,
-    InputError,
-    Result,
-    Scene,
-    Session,
-    __version__,
-    compare_cycles,
-    example,
-    exchange_rotations,
-    filter_cycles,
-    generate,
-    imbalances,
-    job_words,
-    largest_share,
-    link_ends,
-    load,
-    loads,
-    lower_bound,
-    machines,
-    offset_times,
-    owners,
-    parse,
-    ranks_of_nodes,
-    ranks_of_pes,
-    reference,
-    rotations,
-    schedule,
-    speedups,
-    t805_ms,
-)
+from raya._engine import *  # noqa: F403
+from raya._engine import __version__  # noqa: F401
 
 
 def _unpickled(text, name):
     """Returns a pickled scene. pickle cannot name functions of the engine."""
-    return parse(text, name)
+    return _engine.parse(text, name)
 
 
 @contextlib.contextmanager
@@ -78,8 +46,8 @@ def render(scene, *, progress=False, session=None, **options):
     fraction of the work, 0..1. session: a Session; by default, all renders on the same device use one session. Raises
     ValueError, DeviceError.
     """
-    if not isinstance(scene, Scene):
-        scene = load(scene)
+    if not isinstance(scene, _engine.Scene):
+        scene = _engine.load(scene)
     with _callback(progress) as callback:
         if session is not None:
             return session.render(scene, progress=callback, **options)
