@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 raya = pytest.importorskip("raya", reason="the module is not built; configure with -DRAYA_PYTHON=ON")
-from raya.lab import Comparison, Page, Plot, Series, Table, document, plots, worker  # noqa: E402
+from raya.lab import Page, Plot, Series, Table, document, plots, worker  # noqa: E402
 from raya.lab.document import write_page  # noqa: E402
 
 OPTIONS = SimpleNamespace(size=None, network=None, views=None, seed=1, device=None, no_tuned=True, verbosity=0, shard=None, merge=[], version="")
@@ -22,7 +22,7 @@ What becomes of them?
 """
 import numpy as np
 import pandas as pd
-from raya.lab import Comparison, Page, Plot, Series, Table, above, estimate, judged
+from raya.lab import Page, Plot, Series, Table, above, estimate, judged
 
 
 def run(lab, scenes):
@@ -68,11 +68,6 @@ def test_error_names_the_damage(folder, damage):
         assert part in str(error.value)
 
 
-def test_rows_without_damage_give_a_page(folder):
-    page = worker.run_study(study_with(folder, "pass"), [], folder, OPTIONS)
-    assert (page.title, page.question, page.method) == ("Damaged rows", "What becomes of them?", ["Of 3 rows."])
-
-
 def test_program_with_damaged_rows_writes_no_files(folder):
     path = os.pathsep.join([str(Path(raya.__file__).absolute().parents[1]), os.environ.get("PYTHONPATH", "")])
     run = subprocess.run([sys.executable, "-m", "raya.lab", study_with(folder, next(iter(DAMAGES))), "-o", str(folder / "made/x"), "--no-tuned"],
@@ -116,15 +111,3 @@ def test_missing_and_infinite_values_are_shown(tmp_path):
     assert (tmp_path / "loads.csv").read_text() == "p,u\n0,-\n1,inf\n"
     assert json.loads((tmp_path / "loads.json").read_text())["tables"][0]["rows"] == [[0, None], [1, "inf"]]
     assert "| 0 | - |\n| 1 | inf |\n" in (tmp_path / "loads.md").read_text()
-
-
-@pytest.mark.parametrize("ours", [None, "much", float("nan")])
-def test_comparison_needs_a_number(ours):
-    with pytest.raises(ValueError, match=r"comparison 'u'"):
-        Comparison("u", "", None, ours)
-
-
-@pytest.mark.parametrize("half_widths, y", [([0.1], [1, 2]), ([], [1])])
-def test_series_needs_equal_lengths(half_widths, y):
-    with pytest.raises(ValueError, match="series u: .*differ in length"):
-        Series("u", [0, 1], y, half_widths=half_widths)

@@ -4,7 +4,6 @@ import filecmp
 import hashlib
 import json
 import os
-import re
 import shutil
 import signal
 import subprocess
@@ -126,10 +125,6 @@ def test_each_damage_of_a_result_is_detected(tmp_path):
     assert Store(tmp_path).get("request", lambda: VALUE)["count"] == VALUE["count"] and file.read_bytes() == data
 
 
-def test_results_of_other_programs_are_not_read(tmp_path):
-    assert [Store(tmp_path, version=version).get("request", lambda: {"count": version})["count"] for version in ("1", "2", "1")] == ["1", "2", "1"]
-
-
 def test_a_failed_write_leaves_no_file(tmp_path, monkeypatch):
     def fail(*_):
         raise OSError("injected")
@@ -162,6 +157,13 @@ def flip(file):
     file.write_bytes(data)
 
 
+def forge(file, header):
+    """Writes a result with a valid digest."""
+    body = json.dumps(header).encode()
+    body = len(body).to_bytes(8, "little") + body + bytes(64)
+    file.write_bytes(hashlib.sha256(file.name.encode() + body).digest() + body)
+
+
 DAMAGES = {
     "no folder": (lambda: shutil.rmtree("s2"), "absent", 3),
     "no shard.json": (lambda: Path("s2/shard.json").unlink(), "absent", 0),
@@ -170,7 +172,9 @@ DAMAGES = {
     "lost result": (lambda: results(2)[0].unlink(), "damaged: s2/", 1),
     "truncated result": (lambda: truncate(results(2)[1]), "damaged: s2/", 1),
     "empty result": (lambda: results(2)[1].write_bytes(b""), "damaged: s2/", 1),
-    "damaged results": (lambda: [flip(file) for file in results(2)], "damaged: s2/", 3)}
+    "damaged results": (lambda: [flip(file) for file in results(2)], "damaged: s2/", 3),
+    "exchanged result": (lambda: results(2)[0].write_bytes(results(2)[1].read_bytes()), "damaged: s2/", 1),
+    "huge result": (lambda: forge(results(2)[0], {"square": {"type": "<u8", "shape": [10**12]}}), "damaged: s2/", 1)}
 
 
 @pytest.mark.parametrize("name", DAMAGES)
@@ -229,12 +233,6 @@ def test_shards_of_different_runs_are_refused(study):
     assert not Path("t").exists()
 
 
-def test_document_names_the_studies_that_shards_divide():
-    text = " ".join((Path(__file__).parents[2] / "docs/clusters.md").read_text().split())
-    names = re.search(r"Shards can divide the studies (.*?), all of them", text)[1].replace(" and ", ", ").split(", ")
-    assert sorted(names) == sorted(study.name for study in program.studies().values() if study.prepare)
-
-
 def test_merge_refuses_another_program_study_or_scene(study, monkeypatch):
     shutil.copy(Path(__file__).parents[2] / "scenes/glass.nff", "a.nff")
     shard(study, 1, 1, "a.nff")
@@ -290,32 +288,6 @@ def test_a_foreign_shard_is_data(study, members):
     assert sorted(os.listdir()) == before and computed() == 0
 
 
-def test_exchanged_and_unpacked_results_are_damaged(study):
-    for number in (1, 2, 3):
-        shard(study, number)
-    one, other = results(2)[:2]
-    content = one.read_bytes()
-    one.write_bytes(other.read_bytes())
-    with pytest.raises(ValueError, match=f"damaged: s2/{one.name}"):
-        run(study, "--merge", "s1", "s2", "s3", "-o", "merged")
-    body = json.dumps({"square": {"type": "<u8", "shape": [10**12]}}).encode()
-    for body in (len(body).to_bytes(8, "little") + body + bytes(64), b"", bytes(8), b"\xff" * 64, (2).to_bytes(8, "little") + b"[]"):
-        one.write_bytes(hashlib.sha256(one.name.encode() + body).digest() + body)
-        with pytest.raises(ValueError, match=f"damaged: s2/{one.name}"):
-            run(study, "--merge", "s1", "s2", "s3", "-o", "merged")
-    one.unlink()
-    os.mkfifo(one)
-    with pytest.raises(ValueError, match=f"damaged: s2/{one.name}"):
-        run(study, "--merge", "s1", "s2", "s3", "-o", "merged")
-    one.unlink()
-    one.write_bytes(content)
-    assert run(study, "--merge", "s1", "s2", "s3", "-o", "merged") == 0
-    Path("s2/shard.json").unlink()
-    os.mkfifo("s2/shard.json")
-    with pytest.raises(ValueError, match="s2/shard.json: is not a regular file"):
-        run(study, "--merge", "s1", "s2", "s3", "-o", "merged")
-
-
 def test_manifest_is_complete_and_has_no_path_or_time(study):
     run(study, "-o", "one")
     Path("deeper").mkdir()
@@ -354,27 +326,14 @@ def change(**members):
 def test_check_names_what_differs(study, capsys):
     run(study, "-o", "out")
     recorded = json.loads(Path("out/manifest.json").read_text())
-    change(packages={**recorded["packages"], "numpy": "0.1"}, devices=["another device"])
+    change(devices=["another device"])
     assert run("--check", "out/manifest.json") == 0  # another machine, the same results
-    lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == 3 and lines[0].endswith(" instead of another device") and lines[1].endswith(" instead of 0.1")
-    Path("out/squares.csv").write_text(Path("out/squares.csv").read_text().replace("3,9", "3,8"))
-    change(**recorded)
+    assert capsys.readouterr().out.startswith("devices: ")
+    outputs = [{**one, "sha256": "0"} if one["name"] == "squares.csv" else one for one in recorded["outputs"][:-1]]
+    change(**{**recorded, "outputs": [*outputs, {"name": "lost.csv", "sha256": "0"}]})
     assert run("--check", "out/manifest.json") == 4
-    assert capsys.readouterr().out.splitlines() == ["out/squares.csv: has changed since the manifest was written",
-                                                   "out/manifest.json: other results: of the data files, 2 equal, 1 different"]
-    csv_hash = program.manifest.hash_of(Path("out/squares.csv"))
-    change(**{**recorded, "outputs": [{**one, "sha256": csv_hash} if one["name"] == "squares.csv" else one for one in recorded["outputs"]]})
-    assert run("--check", "out/manifest.json") == 4
-    assert capsys.readouterr().out.splitlines() == ["squares.csv: line 4, square: 9 instead of 8",
-                                                   "out/manifest.json: other results: of the data files, 1 equal, 1 different"]
-    change(**{**recorded, "settings": {**recorded["settings"], "seed": 2}})
-    assert run("--check", "out/manifest.json") == 4
-    lines = capsys.readouterr().out.splitlines()
-    assert "squares.json: settings.first: 2 instead of 1" in lines[2] and lines[3].startswith("drawings and documents that differ: ")
-    change(**{**recorded, "outputs": recorded["outputs"][:-1] + [{"name": "lost.csv", "sha256": "0"}]})
-    assert run("--check", "out/manifest.json") == 4
-    assert capsys.readouterr().out.splitlines()[1:3] == ["lost.csv: absent", "squares.md: not in the manifest"]
+    assert capsys.readouterr().out.splitlines() == ["lost.csv: absent", "squares.csv: differs", "squares.md: not in the manifest",
+                                                   "out/manifest.json: other results: of the data files, 1 equal, 2 different"]
 
 
 def test_check_refuses_damaged_manifests_and_other_inputs(study):

@@ -135,16 +135,14 @@ def print_missing(options):
 
 def check_manifest(options, recorded, chosen, skip_notes, scenes):
     """Runs the study of a manifest again and prints the differences. Returns the exit code."""
-    changed = manifest.changed_files(recorded, Path(options.check).parent)
     with tempfile.TemporaryDirectory(prefix="raya-check-") as temporary:
         folder = Path(options.output or temporary)
         code = run_all(SimpleNamespace(**{**vars(options), "output": str(folder), "verbosity": min(-1, options.verbosity)}), chosen, skip_notes,
                        scenes)
         if not (folder / manifest.NAME).exists():
             return code
-        lines, counts = manifest.compare(recorded, manifest.read_manifest(folder / manifest.NAME), Path(options.check).parent, folder)
-    counts["different"] += len(changed)
-    for line in changed + lines:
+        lines, counts = manifest.compare(recorded, manifest.read_manifest(folder / manifest.NAME))
+    for line in lines:
         print(line)
     measured = f", {counts['measured']} with measured times not compared" if counts["measured"] else ""
     print(f"{options.check}: {'other' if counts['different'] else 'the same'} results: of the data files, {counts['equal']} equal, "

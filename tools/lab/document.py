@@ -82,7 +82,7 @@ def rows_of(table):
 
 
 def json_of(page):
-    """Returns the page as a JSON value, described by docs/schema/study.json."""
+    """Returns the page as a JSON value, described by study.schema.json."""
     tables = [{"name": t.name, "title": t.title, "columns": list(t.rows.columns), "rows": rows_of(t)}
               for t in page.tables]
     pictures = [{"name": p.name, "title": p.title, "words": p.words} for p in page.pictures]

@@ -1,9 +1,7 @@
-"""manifest.json: what identifies the results of `raya study` and where they come from, without times and paths (docs/schema/manifest.json).
+"""manifest.json: what identifies the results of `raya study` and where they come from, without times and paths (manifest.schema.json).
 `raya study --check` repeats a study and compares the two manifests."""
-import csv
 import hashlib
 import json
-import re
 import subprocess
 from functools import lru_cache
 from importlib import metadata
@@ -17,7 +15,6 @@ SETTINGS = "size", "views", "seed", "network", "strict"  # options that change r
 MODULES = "numpy", "scipy", "pandas", "matplotlib", "Jinja2"
 # Debian packages of OpenCL drivers, their compilers, and the loader.
 DEBIAN = "*-opencl-icd", "ocl-icd-libopencl1", "libpocl2", "libllvm[0-9]*", "libclang-cpp[0-9]*", "libc6", "python3"
-DATA, ABSENT = (".csv", ".json"), "absent"  # DATA: files with the results; the other files show them
 
 
 @lru_cache(maxsize=None)
@@ -62,12 +59,8 @@ def hash_of(file):
     """Returns the SHA-256 of a file; of a study's JSON, that of the contents without `run`, which names the device."""
     content = file.read_bytes()
     if file.suffix == ".json":
-        content = json.dumps(results_of(file), sort_keys=True).encode()
+        content = json.dumps({name: member for name, member in json.loads(content).items() if name != "run"}, sort_keys=True).encode()
     return hashlib.sha256(content).hexdigest()
-
-
-def results_of(file):
-    return {name: member for name, member in json.loads(file.read_bytes()).items() if name != "run"}
 
 
 def write_manifest(folder, options, files, devices, inputs):
@@ -77,20 +70,6 @@ def write_manifest(folder, options, files, devices, inputs):
                 "packages": packages(), "devices": sorted(devices), "inputs": inputs,
                 "outputs": [{"name": name, "sha256": hash_of(folder / name) if files[name] else None} for name in sorted(files)]}
     write_atomically(folder / NAME, json.dumps(manifest, indent=2, ensure_ascii=False) + "\n")
-
-
-def changed_files(manifest, folder):
-    """Returns a line for each file beside a manifest that is not the one that the manifest describes."""
-    lines = []
-    for one in manifest["outputs"]:
-        file = folder / Path(one["name"]).name
-        try:
-            changed = one["sha256"] and file.is_file() and hash_of(file) != one["sha256"]
-        except (ValueError, AttributeError):  # not the JSON of a study
-            changed = True
-        if changed:
-            lines.append(f"{file}: has changed since the manifest was written")
-    return lines
 
 
 def read_manifest(path):
@@ -124,62 +103,15 @@ def arguments_of(manifest, study, scenes):
     return arguments + ["--strict"] * bool(settings["strict"])
 
 
-def first_difference(file, original):
-    """Returns the first difference of two result files: the cell of a table or the member of a JSON. Empty if `original` cannot be read."""
-    try:
-        if file.suffix == ".json":
-            return next(member_differences(results_of(file), results_of(original)), "")
-        rows, original_rows = (list(csv.reader(one.read_text().splitlines())) for one in (file, original))
-        if len(rows) != len(original_rows) or rows[0] != original_rows[0]:
-            return f"{len(rows)} x {len(rows[0])} cells instead of {len(original_rows)} x {len(original_rows[0])}, or other columns"
-        return next((f"line {number}, {column}: {a} instead of {b}" for number, (row, other) in enumerate(zip(rows, original_rows), 1)
-                     for column, a, b in zip(rows[0], row, other) if a != b), "")
-    except (OSError, ValueError, IndexError):
-        return ""
-
-
-def member_differences(value, original, place=""):
-    kind = dict if isinstance(value, dict) else list if isinstance(value, list) else None
-    if kind and isinstance(original, kind) and len(value) == len(original):
-        for key, member in value.items() if kind is dict else enumerate(value):
-            other = original.get(key) if kind is dict else original[key]
-            yield from member_differences(member, other, f"{place}.{key}" if kind is dict else f"{place}[{key}]")
-    elif value != original:
-        yield f"{place.lstrip('.')}: {json.dumps(value)[:60]} instead of {json.dumps(original)[:60]}"
-
-
-def compare(recorded, current, recorded_folder, folder):
-    """Returns (lines that describe the differences of two manifests, {outcome: number of data files}). The folders contain the outputs."""
-    lines = []
-    for name in ("version", "devices"):
-        if recorded[name] != current[name]:
-            lines.append(f"{name}: {text_of(current[name])} instead of {text_of(recorded[name])}")
-    for name in sorted({*recorded["packages"], *current["packages"]}):
-        here, there = current["packages"].get(name, "none"), recorded["packages"].get(name, "none")
-        if here != there:
-            lines.append(f"package {name}: {here} instead of {there}")
+def compare(recorded, current):
+    """Returns (lines that describe the differences of two manifests, {outcome: number of data files}). Drawings and documents may differ."""
+    lines = [f"{name}: {current[name]} instead of {recorded[name]}" for name in ("version", "devices", "packages") if recorded[name] != current[name]]
     hashes, recorded_hashes = ({one["name"]: one["sha256"] for one in manifest["outputs"]} for manifest in (current, recorded))
-    counts, drawings = {"equal": 0, "different": 0, "measured": 0}, []
+    counts = {"equal": 0, "different": 0, "measured": 0}
     for name in sorted({*hashes, *recorded_hashes}):
-        here, there = hashes.get(name, ABSENT), recorded_hashes.get(name, ABSENT)
-        is_data = Path(name).suffix in DATA
-        if ABSENT in (here, there):
-            text = "absent" if here == ABSENT else "not in the manifest"
-        elif None in (here, there):
-            counts["measured"] += is_data
-            continue
-        elif here == there:
-            counts["equal"] += is_data
-            continue
-        elif is_data:
-            text = first_difference(folder / name, recorded_folder / name) or "differs"
-        else:
-            drawings.append(name)
-            continue
-        counts["different"] += is_data
-        lines.append(f"{name}: {text}")
-    return lines + [f"drawings and documents that differ: {', '.join(drawings)}"] * bool(drawings), counts
-
-
-def text_of(value):
-    return value if isinstance(value, str) else "; ".join(value)
+        both = hashes.get(name, "absent"), recorded_hashes.get(name, "absent")
+        outcome = "measured" if None in both else "equal" if both[0] == both[1] else "different"
+        counts[outcome] += Path(name).suffix in (".csv", ".json")
+        if outcome == "different":
+            lines.append(f"{name}: differs" if "absent" not in both else f"{name}: absent" if both[0] == "absent" else f"{name}: not in the manifest")
+    return lines, counts

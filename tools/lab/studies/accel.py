@@ -28,7 +28,7 @@ import math
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Estimate, Page, Plot, Table, estimate, fitted_exponent, mean_seconds, series_by, study
+from raya.lab import Page, Plot, Table, estimate, fitted_exponent, mean_seconds, series_by, study
 from raya.lab.laboratory import rays_of, tests_of
 from raya.lab.programs import output_of, sibling_program
 
@@ -167,9 +167,7 @@ def accel(lab, scenes):
     runs, skipped, failures = measure(lab, size, measured_scenes)
     rows, growth = rows_of(runs), growth_of(runs)
     series = [(name, one) for name, one in runs.groupby("series", sort=False)]
-    findings = [*(finding_of_threshold(one, name) for name, one in series), finding_of_faster(runs, GRID, BVH),
-                *(finding_of_growth(growth, one) for one in (growth["scenes"].unique() if len(growth) else [])),
-                *(finding_of_memory(one) for _, one in series)]
+    findings = [*(finding_of_threshold(one, name) for name, one in series), finding_of_faster(runs, GRID, BVH)]
     findings += [f"Not rendered without an accelerator: {', '.join(skipped)}."] if skipped else []
     findings += findings_of_embree(runs, failures)
     each = runs[list(EACH)].fillna(0).astype(
@@ -246,28 +244,6 @@ def finding_of_faster(runs, method, other):
     rest = len(ratio_list) - faster - slower
     return (f"{other} is faster than {method} in {faster} of {len(ratio_list)} groups of scenes and slower in {slower}"
             f"{f'; in {rest} the difference is not significant' if rest else ''}. Time of {method} / time of {other}: {ratios_text(ratio_list)}.")
-
-
-def finding_of_growth(growth, series):
-    series_growth = growth[growth["scenes"] == series]
-    exponents = ", ".join(f"{Estimate(row['time'], row['time +-'], None).text(2)} ({row['method']}, "
-                          f"{row['from (objects)']} to {row['to (objects)']} objects)" for _, row in series_growth.iterrows())
-    tens = ", ".join(f"{10**row['time']:.2f} ({row['method']})" for _, row in series_growth.iterrows())
-    return (f"{series}: the time per ray grows as the number of objects to the power of {exponents}; with ten times the objects it is "
-            f"{tens} times as long.")
-
-
-def finding_of_memory(runs):
-    """Returns a sentence on memory and build time of grid and BVH for the largest scenes of a series."""
-    made = runs[runs["method"].isin([GRID, BVH])]
-    group = made["scene"][made["objects"].idxmax()]
-    texts, scene = [], 0
-    for method, method_rows in made[made["scene"] == group].groupby("method", sort=False):
-        count, build = method_rows["objects"].iloc[0], method_rows["build"].mean()
-        scene = 4 * method_rows["scene_words"].mean() / count
-        texts.append(f"{method} takes {4 * method_rows['accel_words'].mean() / count:.1f} bytes per object and {build:.3g} ms to build, as long as "
-                     f"{build / method_rows['best'].mean():.2g} renders")
-    return f"{group}: {', '.join(texts)}; the scene itself takes {scene:.1f} bytes per object."
 
 
 def findings_of_embree(runs, failures):

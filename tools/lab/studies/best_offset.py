@@ -97,7 +97,7 @@ def best_offset(lab, scenes):
     scene_settings = [{"scene": choices[0].scene, "size": choices[0].size, "format": format_for(scene), "fold": "cyclic"}
                       for choices, scene in zip(by_scene, chosen_scenes)]
     return Page({"scenes": scene_settings, "factor": FACTOR, "views": 2 * VIEWS, "rule": MAX_LOSS},
-                [*map(finding_of_best, by_scene), *map(finding_of_views, all_choices), *map(finding_of_choice, all_choices)],
+                [*map(finding_of_best, by_scene), *map(finding_of_views, all_choices)],
                 [Comparison(f"best p, {c.pes} PEs, {c.antialias}", "", None, int(c.best["offset"]),
                             f"u of the first pass is {c.best['imbalance']:.3f}; Kohata & Ito's p = sqrt(P) is {c.root}")
                  for c in first],
@@ -126,18 +126,6 @@ def finding_of_views(c):
     return (f"{c.scene}, {c.pes} PEs, {c.method}: {len(c.chosen_by)} views choose p = {c.chosen}, and p = {c.chosen_near} of the offsets "
             f"0..sqrt(P). In {len(c.judged_by)} other views p = {c.chosen} takes {c.time.text(1)} ms; p = {c.chosen_near} takes {near} % longer, "
             f"p = sqrt(P) = {c.root} {root} %, p = 0 {zero} %, and p = {picture}, the best for the scene's own view, {of_picture} %.")
-
-
-def finding_of_choice(c):
-    total, root, zero = c.best["total_ms"], c.times["total_ms"][c.root], c.times["total_ms"][0]
-    near = (f"no offset above sqrt(P) = {c.root} is faster" if c.best_near["offset"] == c.best["offset"] else
-            f"the best of 0..sqrt(P) is p = {c.best_near['offset']:.0f}, {c.loss(c.best_near['total_ms']):.1f} % "
-            "slower")
-    of_root = "" if c.root == c.best["offset"] else f"p = {c.root} takes {c.loss(root):.1f} % longer, "
-    ring = 100 * c.best["ring_ms"] / total if total > 0 else 0
-    return (f"{c.scene} in its own view, {c.pes} PEs, {c.method}: the best offset p = {c.best['offset']:.0f} takes {total:.1f} ms, {ring:.1f} % "
-            f"of it on the ring; u of the first pass is {c.best['imbalance']:.3f}; {near}; {of_root}p = 0 takes {c.loss(zero):.1f} % longer. "
-            f"With clock factors of 1 to 8 the best offsets are p = {c.factors}.")
 
 
 def ensembles_of_claim(lab):

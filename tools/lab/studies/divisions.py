@@ -12,7 +12,7 @@ Into how many voxels should one machine divide space, for a given number of obje
 import numpy as np
 import raya
 from raya.lab import Comparison, Page, Plot, Table, above, below, estimate, every, judged, next_value_within, papers, range_text, series_by, study
-from raya.lab.laboratory import TESTS, tests_of
+from raya.lab.laboratory import tests_of
 from raya.lab.voxels import near_cube, powers_of_two, run_cases, run_in_one_pe, sides_text
 
 DIVISIONS = powers_of_two(8192)
@@ -37,7 +37,7 @@ def divisions(lab, scenes):
     by_scene = [scene_rows for _, scene_rows in rows.groupby("scene", sort=False)]
     settings = [scene_rows[["scene", "objects"]].iloc[0].to_dict() for scene_rows in by_scene]
     findings = [finding_of_optimum(name, by_scene) for name in SUBJECTS]
-    findings += [finding_of_loss(by_scene), finding_of_rise(by_scene), finding_of_parts(list(by_scene[-1]["run"]))]
+    findings.append(finding_of_rise(by_scene))
     largest_scene = by_scene[-1]
     if from_paper:
         falls = {name: fall_of(largest_scene, name) for name in SUBJECTS}
@@ -63,12 +63,6 @@ def divisions(lab, scenes):
 
 def row_of_minimum(scene_rows, name):
     return scene_rows.loc[scene_rows[SUBJECTS[name][2]].idxmin()]
-
-
-def row_at_object_count(scene_rows):
-    """Returns the row with as many divisions as objects; None if there is none."""
-    found = scene_rows[scene_rows["divisions"] == scene_rows["objects"]]
-    return found.iloc[0] if len(found) else None
 
 
 def ratio_to_minimum(scene_rows, row, name):
@@ -108,34 +102,10 @@ def finding_of_optimum(name, by_scene):
             f"{len(best)} scenes{more}.")
 
 
-def finding_of_loss(by_scene):
-    tried = [(scene_rows, row) for scene_rows in by_scene for row in [row_at_object_count(scene_rows)] if row is not None]
-    if not tried:
-        return "No scene was divided into as many voxels as it has objects."
-    times = ", ".join(f"{ratio_to_minimum(scene_rows, row, 'modelled'):.2f} ({row['scene']})" for scene_rows, row in tried)
-    tests = ", ".join(f"{ratio_to_minimum(scene_rows, row, 'tests'):.2f}" for scene_rows, row in tried)
-    voxels = ", ".join(f"{row['voxels of an object']:.2f}" for _, row in tried)
-    return (f"With divisions = objects the modelled time is {times} times its minimum, and the number of tests {tests} times its minimum. "
-            f"An object then lies in {voxels} voxels on average.")
-
-
 def finding_of_rise(by_scene):
     rises = ", ".join(f"{ratio_to_minimum(scene_rows, scene_rows.iloc[-1], 'modelled'):.2f} "
                       f"({scene_rows['scene'].iloc[0]})" for scene_rows in by_scene)
     return f"At {by_scene[0]['divisions'].iloc[-1]} divisions the modelled time is {rises} times its minimum."
-
-
-def finding_of_parts(runs):
-    """Returns a sentence on the percentages of the modelled time that object tests and grid traversal take."""
-    at = [run for run in runs if run.voxels in (papers.FEW_DIVISIONS, papers.MANY_DIVISIONS)] + [runs[-1]]
-
-    def shares(events):
-        return ", ".join(f"{100 * raya.t805_ms({e: run.events[e] for e in events}) / raya.t805_ms(run.events):.0f}"
-                         for run in at)
-
-    return (f"{runs[0].scene}: at {', '.join(str(run.voxels) for run in at)} divisions, object tests take {shares(TESTS)} % "
-            f"of the modelled time and grid traversal takes {shares(('walks', 'steps'))} %. At the largest number of divisions an object "
-            f"lies in {runs[-1].voxels_of_object:.1f} voxels on average.")
 
 
 RADII, VIEWS = (0.5, 1.0, 1.5, 2.0), 3  # layouts of the claims: radii relative to the even scene; random views of each

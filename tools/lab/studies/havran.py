@@ -47,9 +47,7 @@ def havran(lab, scenes):
     known = rows.dropna(subset="their tests")
     published = [Series("Havran & Sixta", known["their steps"], known["their tests"], "paper")] if len(known) else []
     return Page({"size": size, "bounces": BOUNCES, "sampling": "corners", "format": "fp32"},
-                [*(finding_of(known, what) for what in ("tests", "steps")),
-                 *(finding_of_finer(a, b) for (_, a), (_, b) in zip(rows.iterrows(), rows[1:].iterrows())
-                   if a["scene"] == b["scene"])],
+                [finding_of(known, what) for what in ("tests", "steps")],
                 [c for _, row in rows.iterrows() for c in comparisons_of(row)],
                 tables=[Table("havran", "Counts for each scene and grid", table)],
                 plots=[Plot("havran", "Tests per ray against steps per ray", "steps per ray", "tests per ray",
@@ -77,13 +75,3 @@ def finding_of(known, what):
     ratios = ", ".join(f"{row[what] / row[f'their {what}']:.2f} ({row['scene']} {row['sides']})"
                        for _, row in known.iterrows())
     return f"{what.capitalize()} per ray are {ratios} times those of Havran & Sixta."
-
-
-def finding_of_finer(coarse, fine):
-    """Returns a sentence on the changes of tests and steps from a coarser to a finer grid of one scene. These ratios do not depend on how rays and
-    tests are counted."""
-    tests, steps, *others = (f"{fine[name] / coarse[name]:.2f}" for name in ("tests", "steps", "their tests",
-                                                                             "their steps"))
-    theirs = "" if "nan" in others else f"; theirs by factors of {others[0]} and {others[1]}"
-    return (f"{fine['scene']}, from {coarse['sides']} to {fine['sides']} voxels: tests change by a factor of {tests} and steps by a "
-            f"factor of {steps}{theirs}.")

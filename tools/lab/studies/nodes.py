@@ -72,8 +72,7 @@ def nodes(lab, scenes):
             comparisons.append(Comparison(f"best speed-up, {best['scene']}, voxels: {best['voxels']}", "", None,
                                           best["speed-up, overlapped"], f"modelled, overlapped, {best['nodes']} nodes; "
                                           "Yoshitani & Yamazaki print no speed-up"))
-        findings += [*findings_of_speedup(three, fixed), finding_of_links(three, two),
-                     *findings_of_balance(three, fixed)]
+        findings += findings_of_speedup(three, fixed)
     fixed = by_scene[0][-1]
     best_fixed = fixed.loc[fixed["overlapped (ms)"].idxmin()]
     rows = pd.concat(sum(by_scene, ()), ignore_index=True).drop(columns=["run", "balance"])
@@ -95,34 +94,6 @@ def findings_of_speedup(one, fixed):
             f"one node has no grid and makes {first['tests a ray'] / max(1e-9, fastest['tests a ray']):.1f} times as many tests per ray: "
             f"{first['tests a ray']:.1f} instead of {fastest['tests a ray']:.1f}. With {best['voxels']} voxels, one node is already "
             f"{first['overlapped (ms)'] / fixed['overlapped (ms)'][0]:.0f} times as fast as with one voxel."]
-
-
-def finding_of_links(three, two):
-    count = min(len(three), len(two))
-    ratios = two["overlapped (ms)"][:count] / three["overlapped (ms)"][:count]
-    a, b = three.iloc[count - 1], two.iloc[count - 1]
-    bytes_ratio = b["busiest link (bytes)"] / max(1, a["busiest link (bytes)"])
-    return (f"{a['scene']}, 2-D torus compared with 3-D torus, {a['nodes']} nodes: {b['hops a packet']:.2f} hops per packet instead of "
-            f"{a['hops a packet']:.2f}, {b['supersteps']} supersteps instead of {a['supersteps']}, and {bytes_ratio:.2f} times "
-            f"the bytes over the busiest link. The overlapped time is {ratios.iloc[-1]:.2f} times as long. Over all numbers of nodes "
-            f"this ratio lies between {ratios.min():.2f} and {ratios.max():.2f}.")
-
-
-def findings_of_balance(one, fixed):
-    a, b = ((rows[rows["nodes"] == 64] if (rows["nodes"] == 64).any() else rows).iloc[-1] for rows in (one, fixed))
-    last = fixed.iloc[-1]
-
-    def text(rows):
-        most = rows.loc[rows["rays discarded"].idxmax()]
-        discarded = most["rays discarded"] / most["run"].events["primary"]
-        how = "one voxel per node" if most["voxels"] == "one a node" else f"{most['voxels']} voxels"
-        return f"{1 + discarded:.1f} with {how} (on {most['nodes']} nodes)"
-
-    return [f"{a['scene']}, load imbalance: with one voxel per node, u of {a['nodes']} nodes is {a['u']:.2f}. With {b['voxels']} voxels dealt "
-            f"cyclically, u is {b['u']:.2f} on {b['nodes']} nodes ({SIDES**3 // b['nodes']} voxels per node) and {last['u']:.2f} on "
-            f"{last['nodes']} nodes.",
-            f"{a['scene']}: for each primary ray that the nodes keep, they make up to {text(one)} and up to "
-            f"{text(fixed)}. The model charges all of these rays."]
 
 
 def plots_of(by_scene):

@@ -128,7 +128,7 @@ def objects(lab, scenes):
             ] if scenes else []
     return Page({"nodes": "4x4x4", "voxels": "4x4x4", "links": "torus2d", "size": size, "bounces": 0, "format": "fp32",
                  "words": papers.RAY_WORDS, "variants": VARIANTS, "seed": lab.seed, "objects": list(COUNTS)},
-                findings_of(runs, rows, ratios, growth, depths, words) + [finding_of_sweep(sweep)] + more,
+                findings_of(runs, rows, ratios, depths, words) + [finding_of_sweep(sweep)] + more,
                 claims=claims_of(runs, ratios, growth, f"{VARIANTS} variants of each scene, seeds {seeds[0]}..{seeds[-1]}"),
                 tables=[*tables_of(rows, ratios, growth, depths, words),
                         Table("objects-sweep", "Time of random / time of even, asynchronous, protocol of Yoshitani & Yamazaki", sweep)],
@@ -216,7 +216,7 @@ def claims_of(runs, ratios, growth, about):
                    f"{100 * log_fractions[1].mean():.0f} % of the logarithm.")]
 
 
-def findings_of(runs, rows, ratios, growth, depths, words):
+def findings_of(runs, rows, ratios, depths, words):
     random = select(rows, RANDOM, RAYA)
     first, last = random.iloc[0], random.iloc[-1]
     copies = (f"Straddling objects: a random object is registered in {1 + first['copies'] / first['objects']:.2f} voxels in the mean with "
@@ -230,8 +230,7 @@ def findings_of(runs, rows, ratios, growth, depths, words):
     times_longer = words["overlapped (ms)"].values / even["overlapped (ms)"][words["objects"]].values
     more = ", ".join(f"with {w['words a ray']:.0f} words {times:.2f} times ({w['objects']:.0f} objects)"
                      for times, (_, w) in zip(times_longer, words.iterrows()))
-    return [*findings_of_protocol(rows, ratios, PAPER), *findings_of_protocol(rows, ratios, RAYA), copies,
-            *(finding_of_growth(*one) for one in growth),
+    return [copies,
             f"A primary ray in the scene's box visits {va:.2f} voxels in the mean with {a['objects']} even objects and {vb:.2f} with "
             f"{b['objects']}, a ratio of {va / vb:.2f}. {a[end]:.0f} % and {b[end]:.0f} % of these rays end in their first voxel.",
             f"With {COUNTS[0]} even objects, {theirs.events['primary']} primary rays cause {theirs.returns} returns under the protocol of {PAPER} "
@@ -240,29 +239,9 @@ def findings_of(runs, rows, ratios, growth, depths, words):
             f"Overlapped time with larger ray packets, compared with the {papers.RAY_WORDS} words of Table 1: {more}."]
 
 
-def findings_of_protocol(rows, ratios, protocol):
-    random_ratios, even = select(ratios, RANDOM, protocol), select(rows, EVEN, protocol)
-    yield (f"Protocol of {protocol}: time of random / time of even objects is {texts_of(random_ratios, 'asynchronous')} asynchronous, "
-           f"{texts_of(random_ratios, 'overlapped')} overlapped, {texts_of(random_ratios, 'stepwise')} stepwise (number of objects in brackets).")
-    bound = even[even["the root alone (ms)"] >= even["overlapped (ms)"]]
-    ms = bound["the root alone (ms)"]
-    yield (f"Protocol of {protocol}: the root is not the bottleneck in any even scene." if not len(bound) else
-           f"Protocol of {protocol}: with {', '.join(map(str, bound['objects']))} even objects the root is the bottleneck and takes "
-           f"{ms.min():.0f} to {ms.max():.0f} ms. This time is spent on making rays and receiving returns, not on the objects.")
-
-
 def geometric_means(rows):
     """Returns the geometric mean of each column: unlike means, those of factors multiply to that of their product."""
     return np.exp(np.log(rows).mean())
-
-
-def finding_of_growth(kind, protocol, rows):
-    mean = geometric_means(rows)
-    return (f"Protocol of {protocol}, {kind}: {mean['objects']:.0f} times as many objects take {estimate(rows['time']).text(2)} times as long "
-            f"(overlapped). Growth of objects / growth of time is {mean['objects / time']:.2f} (geometric mean of the variants). "
-            f"Its factors are {mean['fewer voxels a ray']:.2f} because rays visit fewer voxels, "
-            f"{mean['tests a voxel grow less']:.2f} because the tests in a voxel grow less than the objects, {mean['fixed costs']:.2f} for "
-            f"costs that do not depend on objects, and {mean.iloc[-1]:.2f} for the busiest node or link.")
 
 
 def tables_of(rows, ratios, growth, depths, words):

@@ -45,15 +45,8 @@ MAX_OTHER_LOAD = 0.05  # fraction of the processor time used by other programs, 
 
 def measurable_ranks():
     """Returns ({number of ranks to measure: number of cores that these ranks have together}, report of `raya ping` on two ranks)."""
-    available_cores, ping = {1: 1}, None
-    for ranks in powers_of_two(min(max(2 * os.cpu_count(), 4), 16))[1:]:
-        result = json.loads(run_on_ranks(ranks, ["ping"]))
-        ping = ping or result
-        hosts = {}
-        for place in result["ranks"]:
-            hosts.setdefault(place["host"], [0, place["cores"]])[0] += place["threads"]
-        available_cores[ranks] = sum(min(threads, cores) for threads, cores in hosts.values())
-    return available_cores, ping
+    counts = powers_of_two(min(max(2 * os.cpu_count(), 4), 16))
+    return {ranks: min(ranks, os.cpu_count()) for ranks in counts}, json.loads(run_on_ranks(2, ["ping"]))
 
 
 def parts_of(machine, report):

@@ -66,7 +66,7 @@ def scale(lab, scenes):
                  "views": len(view_tables)},
                 [f"Number of PEs up to which the efficiency is at least 50 %: {'; '.join(texts)}; upper bound for all mappings that give "
                  f"each pixel to one PE: {halves.iloc[0, 1]}.",
-                 finding_of_2d(rows[between]), finding_of_resonance(rows[between], side),
+                 finding_of_2d(rows[between]),
                  f"The most expensive pixel costs {largest:.1f} times the mean, so no mapping that gives each pixel to one PE has a speed-up of "
                  f"more than {side * side / largest:.0f}. With a PE for each pixel every mapping has this speed-up, at an efficiency of "
                  f"{1 / largest:.3f}."],
@@ -110,18 +110,6 @@ def finding_of_2d(between):
     counts = "; ".join(f"{name}: {len(pes)}" for name, pes in kept.items())
     return (f"For more PEs than columns Kohata & Ito propose a 2-D mapping \"or the like\". Of {len(between)} numbers of PEs greater than W, each "
             f"mapping keeps up with the 2-D mapping for this many: {counts}. {need}")
-
-
-def finding_of_resonance(between, side):
-    """Returns a sentence on offsets without effect. The rows of a PE are s = P / W apart, so the offset shifts its pixel by s p columns from one to
-    the next. If s p is a multiple of W, all pixels of the PE are in one column."""
-    lost = {name: [str(p) for p in between["P"] if p % side == 0 and p // side * OFFSETS[name](side, p) % side == 0]
-            for name in (FIXED, ROOT, ADAPTED)}
-    texts = [f"{name} for P = {', '.join(pes)}" for name, pes in lost.items() if pes]
-    if not texts:
-        return "If P / W PEs share a slot, the loads with each of these offsets differ from those of the column split."
-    return ("An offset is without effect if P / W PEs share a slot and its shift after P / W rows is a multiple of W: the loads are then "
-            f"those of the column split. This happens with {'; '.join(texts)}.")
 
 
 def claim_of_2d(between, view_tables, ensemble):

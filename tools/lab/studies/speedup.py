@@ -71,7 +71,7 @@ def fig9(lab, scenes):
     grid_ratios, half_side_speedups = zip(*((g[large_side] / g[large_side // 2], g[large_side // 2]) for _, g in tables))
     sides = pd.DataFrame([row for image in sizes for row in rows_of_size(image)])
     return Page({"scene": scene.name, "size": size, "pes": size, "offset": OFFSET % size, "pictures": len(tables)},
-                findings_of(rows, grids, sides, in_paper),
+                findings_of(rows, sides, in_paper),
                 with_paper(in_paper, comparisons_of(rows, grids, means.iloc[-1], grid_ratios, half_side_speedups, large_side, ensemble.families))
                 + (comparisons_of_machines(lab, scene, size) if in_paper else []),
                 claims_of(lab, tables, ensemble) if size == 256 and not scenes else [], tables_of(rows, grids, means, sides),
@@ -170,9 +170,9 @@ def claims_of(lab, tables, ensemble):
                    + ", ".join(estimate(values, one.families).text(3) for values, one in zip(efficiencies_by_size, ensembles)) + ".")]
 
 
-def findings_of(rows, grids, sides, in_paper):
-    w, half = len(rows), len(rows) // 2
-    p16, p0, root = (rows[f"{name}, cyclic fold"] for name in ("p = 16", "p = 0", "p = round(sqrt(P))"))
+def findings_of(rows, sides, in_paper):
+    w = len(rows)
+    p16, p0 = (rows[f"{name}, cyclic fold"] for name in ("p = 16", "p = 0"))
     whole = f"On {w} PEs the speed-up of the picture is {p16[w - 1]:.1f} with p = 16 and {p0[w - 1]:.1f} with p = 0"
     if in_paper:
         ratio = p16[w - 1] / papers.SPEEDUP_16
@@ -186,28 +186,7 @@ def findings_of(rows, grids, sides, in_paper):
              ": the array can grow to one PE for each column, as Kohata & Ito conclude. The lowest efficiency on "
              f"1, 2, 4, ... PEs, up to one for each column, is {worst['its efficiency']:.2f}, on {worst['P']:.0f} PEs at "
              f"{worst['side (pixels)']:.0f} x {worst['side (pixels)']:.0f}.")
-    best = p16[half:w - 1].max()
-    gain = 100 * (best / p16[half - 1] - 1)
-    a = max(a for a in grids if a * a < w)
-    stairs = (f"PEs own whole slots, so the speed-up rises in steps: on {half + 1} to {w - 1} PEs some PE has two of the {w} slots. p = 16 "
-              f"gains {f'at most {gain:.1f} %' if gain > 0.5 else 'nothing'} over {half} PEs. On {a * a} PEs the speed-up is "
-              f"{p16[a * a - 1]:.1f} with p = 16, and {grids[a]:.1f} with {a} x {a} PEs in two dimensions.")
-    mean = {c: (rows[c] / rows["P"]).mean() for c in rows.columns[1:]}
-
-    def better(name):
-        c, b = mean[f"{name}, cyclic fold"], mean[f"{name}, block fold"]
-        return "the cyclic fold" if c > b else "the block fold" if b > c else "neither"
-
-    folds = (f"The mean efficiency over all P is {mean['p = 0, cyclic fold']:.3f} with the cyclic fold and "
-             f"{mean['p = 0, block fold']:.3f} with the block fold for the column split, {mean['p = 16, cyclic fold']:.3f} and "
-             f"{mean['p = 16, block fold']:.3f} for p = 16. The better fold is {better('p = 0')} for the column split and "
-             f"{better('p = 16')} for p = 16.")
-    offset = (f"p = round(sqrt(P)) is better than p = 16 for {(root > p16)[1:].sum()} of {w - 1} numbers of PEs. Its mean "
-              f"efficiency over all P is {mean['p = round(sqrt(P)), cyclic fold']:.3f}, that of p = 16 is {mean['p = 16, cyclic fold']:.3f}")
-    idle = rows["P"][(rows["P"] > 1) & (p16 == p0)]
-    if len(idle):
-        offset += f". p = 16 has the same speed-up as the column split for P = {', '.join(map(str, idle))}"
-    return [whole + ".", sized, stairs, folds, offset + "."]
+    return [whole + ".", sized]
 
 
 def plots_of(rows, grids, means, in_paper):

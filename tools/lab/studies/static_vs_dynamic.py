@@ -150,15 +150,6 @@ def root_rows(images):
     return pd.DataFrame(rows)
 
 
-def finding_of_root(rows):
-    texts = []
-    for (name, pes), group in rows.groupby(["scene", "P"], sort=False):
-        first, best = group.iloc[0], group.loc[group["efficiency, one at a time"].idxmax()]
-        texts.append(f"{name} on {pes} PEs {100 * first['efficiency, one at a time']:.0f} % with one pixel a request and at most "
-                     f"{100 * best['efficiency, one at a time']:.0f} %, with {best['pixels a request']} pixels a request")
-    return f"Efficiency if a root answers one request at a time, as in LINKS-1: {'; '.join(texts)}."
-
-
 def news_of_root(rows):
     rows = rows[(rows["scene"] == rows["scene"].iloc[0]) & (rows["P"] == ROOT_PES[1])]
     first, best = rows.iloc[0], rows.loc[rows["efficiency, one at a time"].idxmax()]
@@ -219,8 +210,7 @@ def static_vs_dynamic(lab, scenes):
                        for pes, group in of_root[of_root["scene"] == outcomes["scene"][0]].groupby("P")], "x"))
     return Page({"size": size, "pes": sizes, "factor": FACTOR, "request_cycles": request_cycles(FACTOR),
                  "random_seed": 1, "scenes": list(images)},
-                [*findings_of(tables_by_scene, counts_of(tables_by_scene), size), finding_of_root(of_root),
-                 finding_of_classes(classes)],
+                [finding_of(tables_by_scene, counts_of(tables_by_scene)), finding_of_classes(classes)],
                 claims=claims_of(of_claims) if of_claims else [],
                 tables=tables + [Table(f"{NAME}-limits", "The first P at which the efficiency is below 90 % and below "
                                        "50 %", limits),
@@ -239,10 +229,6 @@ def first_below(rows, limit):
     """Returns the smallest number of PEs at which the efficiency is below the limit; 0 if there is none."""
     below = rows["P"][rows["efficiency"] < limit]
     return below.iloc[0] if len(below) else 0
-
-
-def from_text(pes):
-    return f"at P = {pes}" if pes else "at no P"
 
 
 CLAIM_SIZE, CLAIM_PES, CLAIM_VIEWS = 256, (128, 256, 1024, 4096), 36
@@ -273,59 +259,13 @@ def claims_of(ensemble):
                    f"p = 16. It takes at least {sent_requests.min()} requests for an image; a static mapping takes none.")]
 
 
-def findings_of(scenes, counts, size):
+def finding_of(scenes, counts):
     inadequate, cases = counts["no static one near the bound"], counts["cases"]
     how = "holds" if inadequate == cases else "holds in part" if inadequate else "does not hold"
-    findings = [f"The statement that static strategies are inadequate from {scenes[0]['P'].min()} PEs on {how} here: in {inadequate} "
-                f"of {cases} cases (a scene on one number of PEs) no static strategy is within 10 % of the lower bound. The best hybrid, "
-                f"including the cost of requests, is within 10 % in {counts['hybrid near the bound']} cases. It is faster than every static "
-                f"strategy in {counts['hybrid beats all static ones']} cases."]
-    for rows in scenes:
-        findings += [static_finding(rows), hybrid_finding(rows)]
-    collapse = collapse_finding(scenes[0], size)
-    return findings + ([collapse] if collapse else [])
-
-
-def static_finding(rows):
-    best = best_of(rows, "static")
-    first, last = best.iloc[0], best.iloc[-1]
-
-    def limits(name):
-        strategy_rows = rows[rows["strategy"] == name]
-        return f"{from_text(first_below(strategy_rows, 0.9))} and {from_text(first_below(strategy_rows, 0.5))}"
-
-    return (f"{rows['scene'][0]}, static strategies: the best one at P = {first['P']} is {first['strategy']}, with an efficiency of "
-            f"{100 * first['efficiency']:.0f} %; at P = {last['P']} it is {last['strategy']}, with "
-            f"{100 * last['efficiency']:.0f} % (upper bound {100 * last['bound']:.0f} %). The efficiency of the best one falls below "
-            f"90 % {from_text(first_below(best, 0.9))} and below 50 % {from_text(first_below(best, 0.5))}; that of the column "
-            f"split {limits('column split')}; that of the cyclic mapping with p = sqrt(P) {limits(SQUARE_ROOT)}.")
-
-
-def hybrid_finding(rows):
-    paid = best_of(rows, "hybrid")["makespan / lower bound"]
-    free = rows[(rows["kind"] == "hybrid") & ~rows["pays"]]["makespan / lower bound"].groupby(rows["P"]).min()
-    near, sizes = int((paid <= NEAR_OPTIMAL).cummin().sum()), sorted(rows["P"].unique())
-    up_to = (f"at P = {sizes[0]}" if near == 0 else "for every P" if near == len(sizes) else
-             f"up to P = {sizes[near - 1]}")
-    return (f"{rows['scene'][0]}, hybrid strategies: the best one is {'' if near else 'not '}within 10 % of the lower bound {up_to}. "
-            f"Over all P its makespan is at most {max(1, paid.max()):.2f} times the lower bound, and {max(1, free.max()):.2f} times with "
-            "free requests.")
-
-
-def collapse_finding(rows, size):
-    """Returns a sentence on the cyclic mappings with which each PE's pixels lie in one column, because the shift by p repeats with the number of
-    PEs that share a slot; empty if there are none."""
-    texts = []
-    for name in ("cyclic, p = 16", SQUARE_ROOT):
-        for pes in sorted(rows["P"].unique()):
-            owners = raya.owners(size, size, pes=int(pes), **static_mappings(size, int(pes))[name])
-            pairs = owners.astype(np.int64) * size + np.arange(size)  # PE and column
-            if len(np.unique(pairs)) == len(np.unique(owners)):
-                texts.append(f"{name} at P = {pes}")
-    if not texts:
-        return ""
-    return (f"No better than a column split: {'; '.join(texts)}. There, each PE's pixels lie in one column: the PEs that share a slot (a "
-            "column that moves by p in each row) take its rows in turn, and the slot returns to the same column after as many rows.")
+    return (f"The statement that static strategies are inadequate from {scenes[0]['P'].min()} PEs on {how} here: in {inadequate} "
+            f"of {cases} cases (a scene on one number of PEs) no static strategy is within 10 % of the lower bound. The best hybrid, "
+            f"including the cost of requests, is within 10 % in {counts['hybrid near the bound']} cases. It is faster than every static "
+            f"strategy in {counts['hybrid beats all static ones']} cases.")
 
 
 def plots_of(rows, percent, number):
