@@ -124,7 +124,7 @@ TorusResult render_without_deadlock(const RenderCommand& command, const TorusSet
             return render_with_progress(renderer, run.progress, outputs, checkpointing);
         } catch (const TorusDeadlock& deadlock) {
             if (checkpointing != nullptr) throw;  // a checkpoint belongs to one length
-            const std::uint32_t queue = 2 * deadlock.figures.queue;
+            const std::uint32_t queue = 2 * deadlock.queue;
             renderer.set_queue(queue);
             std::destroy_at(&outputs);
             std::construct_at(&outputs, command, run.recorder, settings);

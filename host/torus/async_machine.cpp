@@ -6,7 +6,6 @@
 #include <array>
 #include <deque>
 #include <functional>
-#include <iterator>
 #include <optional>
 #include <queue>
 #include <set>
@@ -20,11 +19,49 @@
 namespace raya {
 namespace {
 
+// Returns the link by which a message leaves a node other than its destination.
+std::uint32_t link_of(const raya_torus& torus, const HistoryMessage& message, std::uint32_t node) {
+    return message.kind == RAYA_KIND_RETURN ? raya_return_link(torus, node)
+                                            : raya_next_link(torus, node, message.destination);
+}
+
+constexpr double kBytesPerWord = 4, kNsPerS = 1e9;
+
 /// Runs one simulation. The constructor's arguments must be valid and outlive this object.
 class AsyncSimulation {
   public:
-    AsyncSimulation(const raya_torus& torus, const History& history, const AsyncMachine& machine);
-    AsyncResult run();
+    AsyncSimulation(const raya_torus& torus, const History& history, const AsyncMachine& machine)
+        : torus_(torus),
+          history_(history),
+          machine_(machine),
+          task_of_message_(tasks_of_messages(history)),
+          nodes_(raya_nodes(torus)),
+          channels_(nodes_.size() * RAYA_LINKS) {
+        for (std::uint32_t i = 0; i < channels_.size(); ++i) {
+            Channel& channel = channels_[i];
+            channel.start = i / RAYA_LINKS;
+            channel.end = raya_link_end(torus, channel.start, i % RAYA_LINKS);
+            channel.opposite = channel.end * RAYA_LINKS + (i % RAYA_LINKS ^ 1u);
+        }
+        for (std::uint32_t task = 0; task < history.tasks.size(); ++task)
+            if (history.tasks[task].cause == HistoryTask::kNoCause)
+                nodes_[history.tasks[task].node].injection_tasks.push_back(task);
+        result_.nodes.resize(nodes_.size());
+        result_.links.resize(channels_.size());
+    }
+
+    AsyncResult run() {
+        for (std::uint32_t node = 0; node < nodes_.size(); ++node) start_next_task(node);
+        while (!events_.empty()) {
+            const Event event = events_.top();
+            events_.pop();
+            handle(event);
+        }
+        if (finished_tasks_ < history_.tasks.size() || result_.delivered < history_.messages.size())
+            throw std::runtime_error(fmt::format("deadlock of the asynchronous torus: {} of {} messages delivered",
+                                                 result_.delivered, history_.messages.size()));
+        return std::move(result_);
+    }
 
   private:
     static constexpr std::uint32_t kNone = UINT32_MAX;
@@ -83,38 +120,248 @@ class AsyncSimulation {
         std::uint32_t version = 0;    // number of starts and preemptions of the computation
     };
 
-    void schedule(double delay_ns, EventKind kind, std::uint32_t location, std::uint32_t version);
-    void handle(const Event& event);
-
-    // The processors.
-    void add_job(std::uint32_t node, const MessageJob& job);
-    void run_processor(std::uint32_t node);
-    void preempt_main(Node& n);
-    void finish_job(std::uint32_t node);
-    void finish_task(std::uint32_t node);
-    void start_next_task(std::uint32_t node);
-    void send_outputs(std::uint32_t node);
-    void deliver(std::uint32_t message);
-
-    // The links.
     std::uint32_t class_of(std::uint32_t message) const {
         return history_.messages[message].kind == RAYA_KIND_RETURN ? 0 : 1;
     }
-    std::uint32_t next_channel(std::uint32_t node, std::uint32_t message) const;
-    bool enqueue(std::uint32_t channel_index, const BlockedMessage& blocked_message);
-    void admit_blocked(std::uint32_t channel_index, std::uint32_t message_class);
-    void start_sending(std::uint32_t channel_index);
-    void begin_transfer(std::uint32_t channel_index);
-    void set_rate(std::uint32_t channel_index);
-    void end_transfer(std::uint32_t channel_index);
-    void receive(std::uint32_t channel_index, std::uint32_t message);
-    void free_input(std::uint32_t channel_index, std::uint32_t message_class);
+
+    // Adds a job of the communication task. The job preempts the main task.
+    void add_job(std::uint32_t node, const MessageJob& job) {
+        nodes_[node].jobs.push_back(job);
+        run_processor(node);
+    }
+
+    void preempt_main(Node& n) {
+        if (n.task == kNone || !n.computing) return;
+        n.remaining_ns -= now_ - n.remaining_since_ns;
+        n.computing = false;
+        ++n.version;
+    }
+
+    void run_processor(std::uint32_t node) {
+        Node& n = nodes_[node];
+        if (n.in_job) return;
+        if (!n.jobs.empty()) {
+            preempt_main(n);
+            n.in_job = true;
+            const std::uint32_t words = history_.messages[n.jobs.front().message].words;
+            const double ns = machine_.cycle_ns * (machine_.message_cycles + machine_.word_cycles * words);
+            result_.nodes[node].messages_ms += ns * kMsPerNs;
+            return schedule(ns, EventKind::kJobDone, node, 0);
+        }
+        if (n.task == kNone || n.computing || n.sent_count != kNone) return;
+        n.computing = true;
+        n.remaining_since_ns = now_;
+        schedule(std::max(0.0, n.remaining_ns), EventKind::kTaskDone, node, ++n.version);
+    }
+
+    void finish_job(std::uint32_t node) {
+        Node& n = nodes_[node];
+        const MessageJob job = n.jobs.front();
+        n.jobs.pop_front();
+        n.in_job = false;
+        if (job.receiving)
+            receive(job.channel, job.message);
+        else
+            begin_transfer(job.channel);
+        run_processor(node);
+    }
+
+    // Starts the task of the first ray in the queue or, if the queue is empty, the node's next task without a cause.
+    void start_next_task(std::uint32_t node) {
+        Node& n = nodes_[node];
+        if (n.task != kNone || (n.queue.empty() && n.injection_tasks.empty())) return;
+        if (!n.queue.empty()) {
+            n.task = task_of_message_[n.queue.front()];
+            n.queue.pop_front();
+        } else {
+            n.task = n.injection_tasks.front();
+            n.injection_tasks.pop_front();
+        }
+        n.sent_count = kNone;
+        n.remaining_ns = machine_.cycle_ns * static_cast<double>(history_.tasks[n.task].cycles);
+        result_.nodes[node].compute_ms += n.remaining_ns * kMsPerNs;
+        run_processor(node);
+    }
+
+    void finish_task(std::uint32_t node) {
+        Node& n = nodes_[node];
+        n.computing = false;
+        n.sent_count = 0;
+        ++finished_tasks_;
+        send_outputs(node);
+    }
+
+    // Sends the remaining messages of the current task until a port is full.
+    void send_outputs(std::uint32_t node) {
+        Node& n = nodes_[node];
+        const std::span<const HistoryMessage> messages = history_.sent_by(n.task);
+        while (n.sent_count < messages.size()) {
+            const std::uint32_t message = history_.tasks[n.task].first_message + n.sent_count;
+            const std::uint32_t channel_index = next_channel(node, message);
+            if (channel_index == kNone) {
+                ++n.sent_count;
+                deliver(message);
+                continue;
+            }
+            const std::uint32_t slots = class_of(message) == 1 ? machine_.entry_slots : 1;
+            if (!enqueue(channel_index, {kNone, message, slots})) {
+                n.blocked_since_ns = now_;
+                return;
+            }
+            ++n.sent_count;
+        }
+        n.task = kNone;
+        start_next_task(node);
+    }
+
+    void deliver(std::uint32_t message) {
+        ++result_.delivered;
+        if (task_of_message_[message] == HistoryTask::kNoCause) return;
+        const std::uint32_t node = history_.messages[message].destination;
+        auto& queue = nodes_[node].queue;
+        queue.push_back(message);
+        result_.nodes[node].queue_max = std::max<std::uint64_t>(result_.nodes[node].queue_max, queue.size());
+        start_next_task(node);
+    }
+
+    // Returns the channel by which the message leaves the node; kNone if the node is the message's destination.
+    std::uint32_t next_channel(std::uint32_t node, std::uint32_t message) const {
+        const HistoryMessage& m = history_.messages[message];
+        return node == m.destination ? kNone : node * RAYA_LINKS + link_of(torus_, m, node);
+    }
+
+    // Puts the message into the channel's port and returns true. If too few slots are free, adds the message to the
+    // blocked messages instead and returns false.
+    bool enqueue(std::uint32_t channel_index, const BlockedMessage& blocked_message) {
+        const std::uint32_t message_class = class_of(blocked_message.message);
+        Channel& channel = channels_[channel_index];
+        if (channel.port[message_class].size() + blocked_message.slots_needed > machine_.buffer) {
+            channel.blocked[message_class].push_back(blocked_message);
+            return false;
+        }
+        channel.port[message_class].push_back(blocked_message.message);
+        start_sending(channel_index);
+        return true;
+    }
+
+    // Called when a slot of a port has become free. Repeatedly moves a message into the port: the first blocked message
+    // for which enough slots are free. So a ray that stays in its ring can overtake a ray that waits to enter the ring.
+    void admit_blocked(std::uint32_t channel_index, std::uint32_t message_class) {
+        Channel& channel = channels_[channel_index];
+        for (;;) {
+            auto& blocked = channel.blocked[message_class];
+            const auto fits = [&](const BlockedMessage& b) {
+                return channel.port[message_class].size() + b.slots_needed <= machine_.buffer;
+            };
+            const auto first = std::ranges::find_if(blocked, fits);
+            if (first == blocked.end()) return;
+            const BlockedMessage next = *first;
+            blocked.erase(first);
+            channel.port[message_class].push_back(next.message);
+            start_sending(channel_index);
+            if (next.channel != kNone) {
+                free_input(next.channel, message_class);
+            } else {
+                Node& n = nodes_[channel.start];
+                result_.nodes[channel.start].port_ms += (now_ - n.blocked_since_ns) * kMsPerNs;
+                ++n.sent_count;
+                send_outputs(channel.start);
+            }
+        }
+    }
+
+    // Sends the port's first message of a class for which the input thread has a free slot. Returns have priority over
+    // rays, because returns are short.
+    void start_sending(std::uint32_t channel_index) {
+        Channel& channel = channels_[channel_index];
+        if (channel.sending) return;
+        for (std::uint32_t message_class = 0; message_class < kClasses; ++message_class) {
+            if (channel.port[message_class].empty() || channel.input_occupied[message_class]) continue;
+            channel.sending = channel.port[message_class].front();
+            channel.sent_class = message_class;
+            channel.input_occupied[message_class] = true;
+            return add_job(channel.start, {channel_index, *channel.sending, false});
+        }
+    }
+
+    void begin_transfer(std::uint32_t channel_index) {
+        Channel& channel = channels_[channel_index];
+        channel.transferring = true;
+        channel.words_left = history_.messages[*channel.sending].words;
+        channel.rate = 0;
+        channel.transfer_start = now_;
+        set_rate(channel_index);
+        if (channels_[channel.opposite].transferring) set_rate(channel.opposite);
+    }
+
+    // Sets the rate of the channel's transfer to the rate that is now available, and reschedules the end of the
+    // transfer.
+    void set_rate(std::uint32_t channel_index) {
+        Channel& channel = channels_[channel_index];
+        channel.words_left -= channel.rate * (now_ - channel.rate_since);
+        channel.rate_since = now_;
+        double ns = 0;
+        if (machine_.one_way > 0) {
+            channel.rate = (channels_[channel.opposite].transferring ? machine_.both_ways / 2 : machine_.one_way) /
+                           (kBytesPerWord * kNsPerS);
+            ns = channel.words_left / channel.rate;
+        }
+        schedule(std::max(0.0, ns), EventKind::kTransferDone, channel_index, ++channel.version);
+    }
+
+    void end_transfer(std::uint32_t channel_index) {
+        Channel& channel = channels_[channel_index];
+        const std::uint32_t message = *channel.sending, message_class = channel.sent_class;
+        AsyncLink& link = result_.links[channel_index];
+        link.busy_ms += (now_ - channel.transfer_start) * kMsPerNs;
+        ++link.messages;
+        link.words += history_.messages[message].words;
+        channel.transferring = false;
+        channel.sending.reset();
+        channel.port[message_class].pop_front();
+        if (channels_[channel.opposite].transferring) set_rate(channel.opposite);
+        add_job(channel.end, {channel_index, message, true});
+        admit_blocked(channel_index, message_class);
+        start_sending(channel_index);
+    }
+
+    // Called when the communication task has received a message: delivers or forwards the message.
+    void receive(std::uint32_t channel_index, std::uint32_t message) {
+        const std::uint32_t node = channels_[channel_index].end, next = next_channel(node, message);
+        if (next == kNone) {
+            deliver(message);
+            return free_input(channel_index, class_of(message));
+        }
+        const bool same_ring = next % RAYA_LINKS == channel_index % RAYA_LINKS;
+        const std::uint32_t slots = class_of(message) == 0 || same_ring ? 1 : machine_.entry_slots;
+        if (enqueue(next, {channel_index, message, slots})) free_input(channel_index, class_of(message));
+    }
+
+    void free_input(std::uint32_t channel_index, std::uint32_t message_class) {
+        channels_[channel_index].input_occupied[message_class] = false;
+        start_sending(channel_index);
+    }
+
+    void schedule(double delay_ns, EventKind kind, std::uint32_t location, std::uint32_t version) {
+        events_.push({now_ + delay_ns, event_count_++, kind, location, version});
+    }
+
+    void handle(const Event& event) {
+        const bool valid = event.kind == EventKind::kJobDone ||
+                           event.version == (event.kind == EventKind::kTaskDone ? nodes_[event.location].version
+                                                                                : channels_[event.location].version);
+        if (!valid) return;  // the event is obsolete
+        now_ = event.time;
+        result_.finish_ms = now_ * kMsPerNs;
+        if (event.kind == EventKind::kJobDone) finish_job(event.location);
+        if (event.kind == EventKind::kTaskDone) finish_task(event.location);
+        if (event.kind == EventKind::kTransferDone) end_transfer(event.location);
+    }
 
     const raya_torus& torus_;
     const History& history_;
     const AsyncMachine& machine_;
     std::vector<std::uint32_t> task_of_message_;
-    std::vector<bool> delivered_;
     std::vector<Node> nodes_;
     std::vector<Channel> channels_;
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
@@ -123,281 +370,7 @@ class AsyncSimulation {
     AsyncResult result_;
 };
 
-constexpr double kBytesPerWord = 4, kNsPerS = 1e9;
-
-// Adds a job of the communication task. The job preempts the main task.
-void AsyncSimulation::add_job(std::uint32_t node, const MessageJob& job) {
-    nodes_[node].jobs.push_back(job);
-    run_processor(node);
-}
-
-void AsyncSimulation::preempt_main(Node& n) {
-    if (n.task == kNone || !n.computing) return;
-    n.remaining_ns -= now_ - n.remaining_since_ns;
-    n.computing = false;
-    ++n.version;
-}
-
-void AsyncSimulation::run_processor(std::uint32_t node) {
-    Node& n = nodes_[node];
-    if (n.in_job) return;
-    if (!n.jobs.empty()) {
-        preempt_main(n);
-        n.in_job = true;
-        const std::uint32_t words = history_.messages[n.jobs.front().message].words;
-        const double ns = machine_.cycle_ns * (machine_.message_cycles + machine_.word_cycles * words);
-        result_.nodes[node].messages_ms += ns * kMsPerNs;
-        return schedule(ns, EventKind::kJobDone, node, 0);
-    }
-    if (n.task == kNone || n.computing || n.sent_count != kNone) return;
-    n.computing = true;
-    n.remaining_since_ns = now_;
-    schedule(std::max(0.0, n.remaining_ns), EventKind::kTaskDone, node, ++n.version);
-}
-
-void AsyncSimulation::finish_job(std::uint32_t node) {
-    Node& n = nodes_[node];
-    const MessageJob job = n.jobs.front();
-    n.jobs.pop_front();
-    n.in_job = false;
-    if (job.receiving)
-        receive(job.channel, job.message);
-    else
-        begin_transfer(job.channel);
-    run_processor(node);
-}
-
-// Starts the task of the first ray in the queue or, if the queue is empty, the node's next task without a cause.
-void AsyncSimulation::start_next_task(std::uint32_t node) {
-    Node& n = nodes_[node];
-    if (n.task != kNone || (n.queue.empty() && n.injection_tasks.empty())) return;
-    if (!n.queue.empty()) {
-        n.task = task_of_message_[n.queue.front()];
-        n.queue.pop_front();
-    } else {
-        n.task = n.injection_tasks.front();
-        n.injection_tasks.pop_front();
-    }
-    n.sent_count = kNone;
-    n.remaining_ns = machine_.cycle_ns * static_cast<double>(history_.tasks[n.task].cycles);
-    result_.nodes[node].compute_ms += n.remaining_ns * kMsPerNs;
-    run_processor(node);
-}
-
-void AsyncSimulation::finish_task(std::uint32_t node) {
-    Node& n = nodes_[node];
-    n.computing = false;
-    n.sent_count = 0;
-    ++finished_tasks_;
-    send_outputs(node);
-}
-
-// Sends the remaining messages of the current task until a port is full.
-void AsyncSimulation::send_outputs(std::uint32_t node) {
-    Node& n = nodes_[node];
-    const std::span<const HistoryMessage> messages = history_.sent_by(n.task);
-    while (n.sent_count < messages.size()) {
-        const std::uint32_t message = history_.tasks[n.task].first_message + n.sent_count;
-        const std::uint32_t channel_index = next_channel(node, message);
-        if (channel_index == kNone) {
-            ++n.sent_count;
-            deliver(message);
-            continue;
-        }
-        const std::uint32_t slots = class_of(message) == 1 ? machine_.entry_slots : 1;
-        if (!enqueue(channel_index, {kNone, message, slots})) {
-            n.blocked_since_ns = now_;
-            return;
-        }
-        ++n.sent_count;
-    }
-    n.task = kNone;
-    start_next_task(node);
-}
-
-void AsyncSimulation::deliver(std::uint32_t message) {
-    if (delivered_[message]) throw std::logic_error("async: a message arrives twice");
-    delivered_[message] = true;
-    ++result_.delivered;
-    if (task_of_message_[message] == HistoryTask::kNoCause) return;
-    const std::uint32_t node = history_.messages[message].destination;
-    auto& queue = nodes_[node].queue;
-    queue.push_back(message);
-    result_.nodes[node].queue_max = std::max<std::uint64_t>(result_.nodes[node].queue_max, queue.size());
-    start_next_task(node);
-}
-
-// Returns the channel by which the message leaves the node; kNone if the node is the message's destination.
-std::uint32_t AsyncSimulation::next_channel(std::uint32_t node, std::uint32_t message) const {
-    const std::uint32_t destination = history_.messages[message].destination;
-    if (node == destination) return kNone;
-    const std::uint32_t link =
-        class_of(message) == 0 ? raya_return_link(torus_, node) : raya_next_link(torus_, node, destination);
-    return node * RAYA_LINKS + link;
-}
-
-// Puts the message into the channel's port and returns true. If too few slots are free, adds the message to the blocked
-// messages instead and returns false.
-bool AsyncSimulation::enqueue(std::uint32_t channel_index, const BlockedMessage& blocked_message) {
-    const std::uint32_t message_class = class_of(blocked_message.message);
-    Channel& channel = channels_[channel_index];
-    if (channel.port[message_class].size() + blocked_message.slots_needed > machine_.buffer) {
-        channel.blocked[message_class].push_back(blocked_message);
-        return false;
-    }
-    channel.port[message_class].push_back(blocked_message.message);
-    start_sending(channel_index);
-    return true;
-}
-
-// Called when a slot of a port has become free. Repeatedly moves a message into the port: the first blocked message for
-// which enough slots are free. So a ray that stays in its ring can overtake a ray that waits to enter the ring.
-void AsyncSimulation::admit_blocked(std::uint32_t channel_index, std::uint32_t message_class) {
-    Channel& channel = channels_[channel_index];
-    for (;;) {
-        auto& blocked = channel.blocked[message_class];
-        const auto fits = [&](const BlockedMessage& b) {
-            return channel.port[message_class].size() + b.slots_needed <= machine_.buffer;
-        };
-        const auto first = std::ranges::find_if(blocked, fits);
-        if (first == blocked.end()) return;
-        const BlockedMessage next = *first;
-        blocked.erase(first);
-        channel.port[message_class].push_back(next.message);
-        start_sending(channel_index);
-        if (next.channel != kNone) {
-            free_input(next.channel, message_class);
-        } else {
-            Node& n = nodes_[channel.start];
-            result_.nodes[channel.start].port_ms += (now_ - n.blocked_since_ns) * kMsPerNs;
-            ++n.sent_count;
-            send_outputs(channel.start);
-        }
-    }
-}
-
-// Sends the port's first message of a class for which the input thread has a free slot. Returns have priority over
-// rays, because returns are short.
-void AsyncSimulation::start_sending(std::uint32_t channel_index) {
-    Channel& channel = channels_[channel_index];
-    if (channel.sending) return;
-    for (std::uint32_t message_class = 0; message_class < kClasses; ++message_class) {
-        if (channel.port[message_class].empty() || channel.input_occupied[message_class]) continue;
-        channel.sending = channel.port[message_class].front();
-        channel.sent_class = message_class;
-        channel.input_occupied[message_class] = true;
-        return add_job(channel.start, {channel_index, *channel.sending, false});
-    }
-}
-
-void AsyncSimulation::begin_transfer(std::uint32_t channel_index) {
-    Channel& channel = channels_[channel_index];
-    channel.transferring = true;
-    channel.words_left = history_.messages[*channel.sending].words;
-    channel.rate = 0;
-    channel.transfer_start = now_;
-    set_rate(channel_index);
-    if (channels_[channel.opposite].transferring) set_rate(channel.opposite);
-}
-
-// Sets the rate of the channel's transfer to the rate that is now available, and reschedules the end of the transfer.
-void AsyncSimulation::set_rate(std::uint32_t channel_index) {
-    Channel& channel = channels_[channel_index];
-    channel.words_left -= channel.rate * (now_ - channel.rate_since);
-    channel.rate_since = now_;
-    double ns = 0;
-    if (machine_.one_way > 0) {
-        channel.rate = (channels_[channel.opposite].transferring ? machine_.both_ways / 2 : machine_.one_way) /
-                       (kBytesPerWord * kNsPerS);
-        ns = channel.words_left / channel.rate;
-    }
-    schedule(std::max(0.0, ns), EventKind::kTransferDone, channel_index, ++channel.version);
-}
-
-void AsyncSimulation::end_transfer(std::uint32_t channel_index) {
-    Channel& channel = channels_[channel_index];
-    const std::uint32_t message = *channel.sending, message_class = channel.sent_class;
-    AsyncLink& link = result_.links[channel_index];
-    link.busy_ms += (now_ - channel.transfer_start) * kMsPerNs;
-    ++link.messages;
-    link.words += history_.messages[message].words;
-    channel.transferring = false;
-    channel.sending.reset();
-    channel.port[message_class].pop_front();
-    if (channels_[channel.opposite].transferring) set_rate(channel.opposite);
-    add_job(channel.end, {channel_index, message, true});
-    admit_blocked(channel_index, message_class);
-    start_sending(channel_index);
-}
-
-// Called when the communication task has received a message: delivers or forwards the message.
-void AsyncSimulation::receive(std::uint32_t channel_index, std::uint32_t message) {
-    const std::uint32_t node = channels_[channel_index].end, next = next_channel(node, message);
-    if (next == kNone) {
-        deliver(message);
-        return free_input(channel_index, class_of(message));
-    }
-    const bool same_ring = next % RAYA_LINKS == channel_index % RAYA_LINKS;
-    const std::uint32_t slots = class_of(message) == 0 || same_ring ? 1 : machine_.entry_slots;
-    if (enqueue(next, {channel_index, message, slots})) free_input(channel_index, class_of(message));
-}
-
-void AsyncSimulation::free_input(std::uint32_t channel_index, std::uint32_t message_class) {
-    channels_[channel_index].input_occupied[message_class] = false;
-    start_sending(channel_index);
-}
-
 }  // namespace
-
-AsyncSimulation::AsyncSimulation(const raya_torus& torus, const History& history, const AsyncMachine& machine)
-    : torus_(torus),
-      history_(history),
-      machine_(machine),
-      task_of_message_(tasks_of_messages(history)),
-      delivered_(history.messages.size()),
-      nodes_(raya_nodes(torus)),
-      channels_(nodes_.size() * RAYA_LINKS) {
-    for (std::uint32_t i = 0; i < channels_.size(); ++i) {
-        Channel& channel = channels_[i];
-        channel.start = i / RAYA_LINKS;
-        channel.end = raya_link_end(torus, channel.start, i % RAYA_LINKS);
-        channel.opposite = channel.end * RAYA_LINKS + (i % RAYA_LINKS ^ 1u);
-    }
-    for (std::uint32_t task = 0; task < history.tasks.size(); ++task)
-        if (history.tasks[task].cause == HistoryTask::kNoCause)
-            nodes_[history.tasks[task].node].injection_tasks.push_back(task);
-    result_.nodes.resize(nodes_.size());
-    result_.links.resize(channels_.size());
-}
-
-void AsyncSimulation::schedule(double delay_ns, EventKind kind, std::uint32_t location, std::uint32_t version) {
-    events_.push({now_ + delay_ns, event_count_++, kind, location, version});
-}
-
-AsyncResult AsyncSimulation::run() {
-    for (std::uint32_t node = 0; node < nodes_.size(); ++node) start_next_task(node);
-    while (!events_.empty()) {
-        const Event event = events_.top();
-        events_.pop();
-        handle(event);
-    }
-    if (finished_tasks_ < history_.tasks.size() || result_.delivered < history_.messages.size())
-        throw std::runtime_error(fmt::format("deadlock of the asynchronous torus: {} of {} messages delivered",
-                                             result_.delivered, history_.messages.size()));
-    return std::move(result_);
-}
-
-void AsyncSimulation::handle(const Event& event) {
-    const bool valid = event.kind == EventKind::kJobDone ||
-                       event.version == (event.kind == EventKind::kTaskDone ? nodes_[event.location].version
-                                                                            : channels_[event.location].version);
-    if (!valid) return;  // the event is obsolete
-    now_ = event.time;
-    result_.finish_ms = now_ * kMsPerNs;
-    if (event.kind == EventKind::kJobDone) finish_job(event.location);
-    if (event.kind == EventKind::kTaskDone) finish_task(event.location);
-    if (event.kind == EventKind::kTransferDone) end_transfer(event.location);
-}
 
 AsynchronousTime AsyncResult::time() const {
     AsynchronousTime time{.finish_ms = finish_ms, .delivered = delivered};
@@ -416,22 +389,12 @@ AsyncResult simulate(const raya_torus& torus, const History& history, const Asyn
             fmt::format("ports of {} slots (buffer), of which {} must be free for a ray to enter a ring (entry_slots): "
                         "entry_slots must be at least 1 and at most buffer",
                         machine.buffer, machine.entry_slots));
-    check_history(history, raya_nodes(torus));
     return AsyncSimulation(torus, history, machine).run();
 }
 
 namespace {
 
 constexpr double kUnlimitedBytesPerS = 1e18;  // rate of links whose transfers take no time
-
-// Text to which formatted text is appended.
-struct Text {
-    std::string text;
-    template <class... Args>
-    void add(fmt::format_string<Args...> format, Args&&... args) {
-        fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
-    }
-};
 
 std::string channel_name(std::uint32_t node, std::uint32_t link) { return fmt::format("{}{}", node, link_name(link)); }
 
@@ -447,19 +410,21 @@ std::string wire_name(const raya_torus& torus, std::uint32_t node, std::uint32_t
 std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machine) {
     const double one_way = machine.one_way > 0 ? machine.one_way : kUnlimitedBytesPerS;
     const double both_ways = machine.one_way > 0 ? machine.both_ways : kUnlimitedBytesPerS;
-    Text hosts, links, routes;
+    std::string hosts, links, routes;
+    const auto add_link = [&](const std::string& name, double bytes_per_s) {
+        links += fmt::format("    <link id=\"{}\" bandwidth=\"{:.17g}Bps\" latency=\"0\"/>\n", name, bytes_per_s);
+    };
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
-        hosts.add("    <host id=\"{}\" speed=\"{:.17g}f\"/>\n", node, 1e9 / machine.cycle_ns);
+        hosts += fmt::format("    <host id=\"{}\" speed=\"{:.17g}f\"/>\n", node, 1e9 / machine.cycle_ns);
         // If a side of the torus has two nodes, two wires connect them; raya uses only the first.
         std::set<std::uint32_t> connected = {node};
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
             const std::uint32_t end = raya_link_end(torus, node, link);
             if (!connected.insert(end).second) continue;
             const std::string direction = channel_name(node, link), wire = wire_name(torus, node, link);
-            links.add("    <link id=\"{}\" bandwidth=\"{:.17g}Bps\" latency=\"0\"/>\n", direction, one_way);
-            if (link % 2 == 0)
-                links.add("    <link id=\"{}\" bandwidth=\"{:.17g}Bps\" latency=\"0\"/>\n", wire, both_ways);
-            routes.add(
+            add_link(direction, one_way);
+            if (link % 2 == 0) add_link(wire, both_ways);
+            routes += fmt::format(
                 "    <route src=\"{}\" dst=\"{}\" symmetrical=\"NO\"><link_ctn id=\"{}\"/><link_ctn id=\"{}\"/>"
                 "</route>\n",
                 node, end, direction, wire);
@@ -467,29 +432,27 @@ std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machin
     }
     return "<?xml version='1.0'?>\n<!DOCTYPE platform SYSTEM \"https://simgrid.org/simgrid.dtd\">\n"
            "<platform version=\"4.1\">\n  <zone id=\"torus\" routing=\"Full\">\n" +
-           hosts.text + links.text + routes.text + "  </zone>\n</platform>\n";
+           hosts + links + routes + "  </zone>\n</platform>\n";
 }
 
 std::string simgrid_replay(const raya_torus& torus, const History& history, const AsyncMachine& machine) {
-    Text replay;
-    replay.add("machine {} {} {} {} {}\n", raya_nodes(torus), machine.buffer, machine.entry_slots,
-               machine.message_cycles, machine.word_cycles);
+    std::string replay = fmt::format("machine {} {} {} {} {}\n", raya_nodes(torus), machine.buffer, machine.entry_slots,
+                                     machine.message_cycles, machine.word_cycles);
     for (std::size_t task = 0; task < history.tasks.size(); ++task) {
         const HistoryTask& t = history.tasks[task];
-        replay.add("t {} {} {}\n", t.node, t.cycles, t.cause == HistoryTask::kNoCause ? "-" : std::to_string(t.cause));
+        replay += fmt::format("t {} {} {}\n", t.node, t.cycles,
+                              t.cause == HistoryTask::kNoCause ? "-" : std::to_string(t.cause));
         for (const HistoryMessage& message : history.sent_by(task)) {
-            const bool is_return = message.kind == RAYA_KIND_RETURN;
-            replay.add("m {} {}", message.words, is_return ? 0 : 1);
+            replay += fmt::format("m {} {}", message.words, message.kind == RAYA_KIND_RETURN ? 0 : 1);
             for (std::uint32_t node = t.node; node != message.destination;) {
-                const std::uint32_t link =
-                    is_return ? raya_return_link(torus, node) : raya_next_link(torus, node, message.destination);
+                const std::uint32_t link = link_of(torus, message, node);
                 node = raya_link_end(torus, node, link);
-                replay.add(" {} {}", link, node);
+                replay += fmt::format(" {} {}", link, node);
             }
-            replay.add("\n");
+            replay += "\n";
         }
     }
-    return std::move(replay.text);
+    return replay;
 }
 
 }  // namespace raya

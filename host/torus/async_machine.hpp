@@ -76,8 +76,7 @@ struct AsyncResult {
 };
 
 /// Simulates the history on the machine, deterministically. Throws UserError if buffer < entry_slots or entry_slots is
-/// 0, and std::logic_error for an invalid history (check_history). Throws std::runtime_error on a deadlock, which is
-/// impossible with `entry_slots` >= 2.
+/// 0, and std::runtime_error on a deadlock, which is impossible with `entry_slots` >= 2.
 AsyncResult simulate(const raya_torus& torus, const History& history, const AsyncMachine& machine = {});
 
 /// Returns SimGrid's platform file (XML). The file has a host for each node; its name is the node's number, and it

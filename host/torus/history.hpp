@@ -4,7 +4,9 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "host/model/t805.hpp"
@@ -21,36 +23,20 @@ struct RayId {
     std::uint32_t tree_index = 1;
     std::uint32_t light = 0;  // index of a shadow ray's light + 1, at most 65,535; 0 for other rays
 
-    /// Returns the `tree_index` of the ray with this path (kernels/shared/packet.h) at this level, 0..31.
-    static std::uint32_t tree_index_of(std::uint32_t path, std::uint32_t level);
+    /// Returns the id of the packet's ray; for a return, that of the ray whose contribution it carries.
+    static RayId of(std::uint32_t pixel, std::uint32_t path, std::uint32_t state);
 
     /// Returns the ray whose hit generated this ray. Undefined for a primary ray.
     RayId parent() const;
+
+    bool operator==(const RayId&) const = default;
 };
 
-/// Numbers rays in the order of the first calls of number_of(). There may be tens of millions of rays. The
-/// open-addressing hash table has 16 bytes per slot and doubles its size at a load factor of 2/3. So it takes 24 to 48
-/// bytes per ray, and 1.5 times as much while it grows.
-class RayNumbers {
-  public:
-    /// Returns the number of the ray. The first call for a ray assigns the next number, from 0 on. Throws
-    /// std::logic_error for an invalid id.
-    std::uint64_t number_of(const RayId& id);
-
-    /// Returns the next number, for a packet that will not be looked up again.
-    std::uint64_t next_number() { return next_number_++; }
-
-  private:
-    struct Slot {
-        std::uint64_t key = 0;               // pixel and tree_index; 0: empty, because a tree_index is never 0
-        std::uint64_t number_and_light = 0;  // number: 48 bits; light: 16 bits
-    };
-    Slot& slot_of(std::uint64_t key, std::uint64_t light);
-    void grow();
-
-    std::vector<Slot> slots_ = std::vector<Slot>(1 << 10);  // a power of 2
-    std::size_t used_slots_ = 0;
-    std::uint64_t next_number_ = 0;
+struct RayIdHash {
+    std::size_t operator()(const RayId& id) const {
+        return std::hash<std::uint64_t>()((std::uint64_t{id.pixel} << 32 | id.tree_index) +
+                                          id.light * std::uint64_t{0x9e3779b97f4a7c15});
+    }
 };
 
 /// A computation of one node, which either processes one packet or generates one primary ray. A task that processes a
@@ -84,15 +70,12 @@ struct History {
     std::span<const HistoryMessage> sent_by(std::size_t task) const;
 };
 
-/// Throws std::logic_error for an invalid history. In a valid history tasks and messages have the order of History,
-/// every ray causes one task at the ray's destination, and every return is sent to the root and causes no task.
-void check_history(const History& history, std::uint32_t nodes);
-
-/// Returns [message]: index of the task that the message causes; HistoryTask::kNoCause for a return.
+/// Returns [message]: index of the task that the message causes; HistoryTask::kNoCause for a return. Throws
+/// std::logic_error for a message that causes two tasks.
 std::vector<std::uint32_t> tasks_of_messages(const History& history);
 
 /// Records a history from the work of all nodes in every superstep (NodeWorkSink). Takes 24 bytes for each voxel that a
-/// ray visits, 12 bytes for each packet, and the memory of RayNumbers.
+/// ray visits, 12 bytes for each packet, and about 60 bytes for each ray.
 class HistoryRecorder {
   public:
     /// `packets`: numbers of words charged for messages. The history omits returns that are not charged because they
@@ -104,36 +87,32 @@ class HistoryRecorder {
     /// than 2^32 - 2 tasks or messages.
     void add(const NodeWork& work);
 
-    /// Checks the history with check_history() and returns it. Must be called once, as the last call. The sum of the
-    /// cycles of a node's tasks is the node's cycles in the render. Injection cycles, including those of discarded
-    /// rays, are divided equally among the primary rays that the node generates in the superstep. The injection cycles
-    /// of a superstep without such a ray are added to those of the next superstep. Cycles that remain at the end become
-    /// a separate task.
+    /// Returns the history. Must be called once, as the last call. The sum of the cycles of a node's tasks is the
+    /// node's cycles in the render. Injection cycles, including those of discarded rays, are divided equally among the
+    /// primary rays that the node generates in the superstep. The injection cycles of a superstep without such a ray
+    /// are added to those of the next superstep. Cycles that remain at the end become a separate task.
     History finish();
 
   private:
     struct SentMessage {
         HistoryMessage message;
-        std::uint64_t ray = 0;  // number of the ray; for a return, number of the ray whose contribution it carries
+        RayId ray;  // for a return, the ray whose contribution it carries
     };
     /// Last message and last task of a ray so far; UINT32_MAX: none.
     struct RayProgress {
         std::uint32_t message = UINT32_MAX;  // last message that contained the ray
         std::uint32_t task = UINT32_MAX;     // last task that processed the ray
     };
-    RayProgress& ray_of(std::uint64_t number);
     void add_injection_tasks(const NodeWork& work);
     void add_processing_tasks(const NodeWork& work);
     void add_messages(const NodeWork& work, std::size_t first_task);
-    std::uint32_t destination_of(std::uint32_t sender, const raya_head& packet) const;
     std::uint16_t words_of(std::uint32_t kind) const;
     void append(const SentMessage& sent);
 
     raya_torus torus_;
     PacketCharge packets_;
     History history_;
-    RayNumbers numbers_;
-    std::vector<RayProgress> rays_;                 // [ray number]
+    std::unordered_map<RayId, RayProgress, RayIdHash> rays_;
     std::vector<std::uint64_t> unassigned_cycles_;  // [node]: injection cycles not yet part of a task
 };
 

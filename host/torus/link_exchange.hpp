@@ -3,8 +3,10 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/array/checkpoints.hpp"
@@ -23,12 +25,6 @@ using ExchangeKernel = DescribedKernel<"torus/exchange.cl", "exchange", const Bu
                                        Uint<"inboxes_of_link">, Uint<"capacity">, Uint<"packet_words">,
                                        Uint<"outbox_status">, Uint<"inbox_status">, const Buffer<std::uint32_t>&,
                                        Buffer<std::uint32_t>&, Buffer<std::uint32_t>&, Buffer<std::uint32_t>&>;
-
-/// Counts of the links of all nodes, [node][RAYA_LINKS].
-struct LinkCounts {
-    std::vector<std::uint64_t> messages;  // numbers of charged packets
-    std::vector<std::uint64_t> packets;   // numbers of packets, including those that are not charged
-};
 
 /// Mailboxes of one class of packets (rays or returns), and their transfers over all links.
 class LinkExchange {
@@ -59,11 +55,10 @@ class LinkExchange {
     /// `status`, `words` and counts() cover all nodes of all ranks.
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
-    /// Transfers between ranks, in the same superstep as an exchange(). begin_transfers() appends the messages to `out`
-    /// and `in`. The caller must call wait_for_outgoing(), start the messages and wait for them. Then write_incoming()
-    /// writes the received packets into the inboxes.
+    /// Transfers between ranks, in the same superstep as an exchange(). begin_transfers() reads the packets and appends
+    /// the messages to `out` and `in`. After the caller has waited for the messages, write_incoming() writes the
+    /// received packets into the inboxes.
     void begin_transfers(const NodeStatus& status, std::vector<OutgoingMessage>& out, std::vector<IncomingMessage>& in);
-    void wait_for_outgoing();
     void write_incoming();
 
     Buffer<std::uint32_t>& outboxes() { return outboxes_; }
@@ -71,12 +66,12 @@ class LinkExchange {
     /// [link][slot]: 1 if the outbox was transferred.
     const Buffer<std::uint32_t>& sent_flags() const { return flag_buffer_; }
 
-    /// Counts since clear().
-    const LinkCounts& counts() const { return counts_; }
+    /// [node][RAYA_LINKS]: number of charged packets since clear(), for the nodes of all ranks.
+    const std::vector<std::uint64_t>& messages() const { return messages_; }
 
-    /// Return the numbers of packets that this rank's nodes have sent and received since clear().
-    std::uint64_t sent_packets() const;
-    std::uint64_t received_packets() const;
+    /// Numbers of packets that this rank's nodes have sent and received since clear(), without those before a resume.
+    std::uint64_t sent_packets() const { return sent_packets_; }
+    std::uint64_t received_packets() const { return received_packets_; }
 
     /// Saves or restores counts and packets of the mailboxes. `status`: that of all nodes. Restore after clear().
     void visit_state(RenderState& state, const NodeStatus& status);
@@ -87,27 +82,19 @@ class LinkExchange {
                            const std::function<void(std::uint32_t node, const raya_head& packet)>& visit);
 
   private:
-    void count_transfers(const NodeStatus& status, std::uint32_t link, std::vector<std::uint64_t>& words);
-    void launch_kernel();
-    void write_sent_flags();
-    bool inbox_occupied(const NodeStatus& status, std::uint32_t link, std::uint32_t sender) const;
+    bool transfers(const NodeStatus& status, std::uint32_t link, std::uint32_t sender) const;
     bool crosses_ranks(std::uint32_t link, std::uint32_t sender) const;
 
-    /// A link between this rank and another rank, in either direction.
-    struct RankLink {
-        std::uint32_t link, sender, rank;  // direction; node at the start of the link; the other rank
-    };
-
-    /// Message between this rank and another rank. It contains the outboxes of one link direction.
+    /// Message between this rank and another rank: some outboxes of one link direction.
     struct LinkMessage {
-        std::uint32_t rank = 0, link = 0;    // the other rank; direction
-        std::vector<std::uint32_t> senders;  // nodes whose outboxes are in the message, ascending
-        std::vector<std::uint32_t> packets;  // [index in `senders`]: number of packets in the outbox
-        std::size_t words = 0;               // number of words in the message
+        struct Box {
+            std::uint32_t sender, packets;  // node of the outbox; number of packets in it
+        };
+        std::vector<Box> boxes;  // in ascending order of the senders
+        std::size_t words = 0;   // number of words in the message
     };
-    std::vector<RankLink> find_rank_links() const;
-    LinkMessage& message_for(std::vector<LinkMessage>& messages, std::uint32_t rank, std::uint32_t link) const;
-    void read_message(const LinkMessage& message, std::size_t first_word);
+    using LinkMessages = std::map<std::pair<std::uint32_t, std::uint32_t>, LinkMessage>;  // by other rank and direction
+    static std::size_t words_of(const LinkMessages& messages);
 
     Session& session_;
     const NodeDistribution& distribution_;
@@ -118,13 +105,12 @@ class LinkExchange {
     ExchangeKernel kernel_;
     std::uint32_t group_size_;
     Buffer<std::uint32_t>& status_;
-    Buffer<std::uint32_t> end_slots_;          // [link][slot]: slot of the node at the link's end, or RAYA_NO_SLOT
-    std::vector<std::uint32_t> sent_flags_;    // next contents of flag_buffer_
-    std::vector<std::uint32_t> device_flags_;  // present contents of flag_buffer_
-    std::vector<std::uint32_t> visited_;       // [link][slot]: number of packets in the outbox already visited
-    LinkCounts counts_;
-    const std::vector<RankLink> rank_links_;  // sorted by link, then by sender
-    std::vector<LinkMessage> outgoing_, incoming_;
+    Buffer<std::uint32_t> end_slots_;        // [link][slot]: slot of the node at the link's end, or RAYA_NO_SLOT
+    std::vector<std::uint32_t> sent_flags_;  // contents of flag_buffer_ after an exchange()
+    std::vector<std::uint32_t> visited_;     // [link][slot]: number of packets in the outbox already visited
+    std::vector<std::uint64_t> messages_;
+    std::uint64_t sent_packets_ = 0, received_packets_ = 0;
+    LinkMessages outgoing_, incoming_;
     std::optional<Readback<std::uint32_t>> outgoing_words_;  // words of the messages outgoing_, concatenated
     std::vector<std::uint32_t> incoming_words_;              // words of the messages incoming_, concatenated
     std::size_t box_words(std::uint32_t packets) const { return std::size_t{1 + packets} * class_.packet_words; }

@@ -37,18 +37,16 @@ bool any_node_has(std::span<const std::uint32_t> status, std::size_t word) {
 }  // namespace
 
 NodeArray::NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories,
-                     const NodeBuffers& buffers, const KernelOptions& options, const NodeDistribution& distribution,
-                     Ranks& ranks)
+                     const NodeBuffers& buffers, const KernelOptions& options, const NodeDistribution& distribution)
     : NodeArray(Kernels(session, choose_words_local(options, memories, session.device()), settings.kernels.sources),
-                settings, memories, buffers, distribution, ranks) {}
+                settings, memories, buffers, distribution) {}
 
 NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories,
-                     const NodeBuffers& buffers, const NodeDistribution& distribution, Ranks& ranks)
+                     const NodeBuffers& buffers, const NodeDistribution& distribution)
     : session_(kernels.session()),
       settings_(settings),
       buffers_(buffers),
       distribution_(distribution),
-      ranks_(ranks),
       nodes_(distribution.count()),
       node_words_(max_node_words(memories)),
       options_(kernels.options()),
@@ -122,19 +120,18 @@ void NodeArray::clear() {
 // Launches have no limit if the last superstep was short, because the number of packets in a queue, and so a
 // superstep's work, grows by a small factor only. Then the host need not read the status after each launch.
 template <class Launch>
-void NodeArray::launch_until_done(const std::string& label, Slots nodes, const Launch& launch) {
+void NodeArray::launch_until_done(const std::string& label, const Launch& launch) {
     constexpr double kShort_s = 0.25;
     constexpr std::uint32_t kFirstWork = 1 << 16;
-    if (nodes.count == 0) return;
     std::uint32_t work = superstep_s_ && *superstep_s_ < kShort_s ? kUnlimitedWork : kFirstWork;
     if (settings_.work_per_launch > 0) work = settings_.work_per_launch;
     const double target_s = settings_.work_per_launch > 0 ? 0 : 1;
-    std::vector<std::uint32_t> status(std::size_t{nodes.count} * RAYA_STATUS_WORDS);
+    std::vector<std::uint32_t> status(status_.size());
     const auto launch_part = [&](std::uint32_t part, bool resumes) {
         launch(node_kernels::Work{part}, node_kernels::Resume{resumes});
     };
     const auto end = [&] {
-        session_.read(label, status_, status, std::size_t{nodes.first} * RAYA_STATUS_WORDS);
+        session_.read(label, status_, status);
         return LaunchEnd{!any_node_has(status, RAYA_STATUS_LEFT), any_node_has(status, RAYA_STATUS_CUT)};
     };
     launches_.run(session_, label, work, target_s, launch_part, end, queues_, ray_links_.outboxes(),
@@ -142,69 +139,64 @@ void NodeArray::launch_until_done(const std::string& label, Slots nodes, const L
                   made_, ended_);
 }
 
-void NodeArray::inject(Slots nodes) {
-    launch_until_done("inject", nodes, [&](node_kernels::Work work, node_kernels::Resume resume) {
-        session_.launch("inject", inject_, nodes.count, options_.group_size, memories_, starts_, run_,
-                        node_kernels::FirstNode{nodes.first}, work, resume,
+void NodeArray::inject() {
+    launch_until_done("inject", [&](node_kernels::Work work, node_kernels::Resume resume) {
+        session_.launch("inject", inject_, nodes_, options_.group_size, memories_, starts_, run_,
+                        node_kernels::FirstNode{0}, work, resume,
                         local_words(RAYA_INJECT_WORDS(options_.group_size, options_.lanes)), queues_, status_, events_,
                         made_, ended_);
     });
 }
 
-void NodeArray::trace_voxel(Slots nodes, Reserve reserve) {
-    launch_until_done("trace_voxel", nodes, [&](node_kernels::Work work, node_kernels::Resume resume) {
-        session_.launch("trace_voxel", trace_, nodes.count, options_.group_size, memories_, starts_, run_,
-                        node_kernels::FirstNode{nodes.first}, reserve, work, resume, local_words(RAYA_COUNT_WORDS),
-                        queues_, status_, events_, made_, ended_, processed_);
+void NodeArray::trace_voxel(Reserve reserve) {
+    launch_until_done("trace_voxel", [&](node_kernels::Work work, node_kernels::Resume resume) {
+        session_.launch("trace_voxel", trace_, nodes_, options_.group_size, memories_, starts_, run_,
+                        node_kernels::FirstNode{0}, reserve, work, resume, local_words(RAYA_COUNT_WORDS), queues_,
+                        status_, events_, made_, ended_, processed_);
     });
 }
 
 void NodeArray::route() {
-    launch_until_done("route", all(), [&](node_kernels::Work work, node_kernels::Resume resume) {
+    launch_until_done("route", [&](node_kernels::Work work, node_kernels::Resume resume) {
         session_.launch("route", route_, nodes_, options_.group_size, memories_, starts_, run_,
                         node_kernels::FirstNode{0}, work, resume, local_words(RAYA_ROUTE_WORDS(options_.group_size)),
                         queues_, ray_links_.outboxes(), return_links_.outboxes(), returns_, status_, ended_);
     });
 }
 
-void NodeArray::accept(Slots nodes, Reserve reserve, std::uint32_t superstep) {
-    launch_until_done("accept", nodes, [&](node_kernels::Work work, node_kernels::Resume resume) {
-        session_.launch("accept", accept_, nodes.count, options_.group_size, memories_, starts_, run_, reserve,
-                        Uint<"turn">{superstep}, node_kernels::FirstNode{nodes.first}, inbox_of_link_,
-                        ray_links_.sent_flags(), return_links_.sent_flags(), work, resume,
-                        LocalMemory<std::uint32_t>{RAYA_ACCEPT_WORDS(options_.group_size)}, queues_,
-                        ray_links_.inboxes(), return_links_.inboxes(), return_links_.outboxes(), returns_, status_,
-                        ended_);
+void NodeArray::accept(Reserve reserve, std::uint32_t superstep) {
+    launch_until_done("accept", [&](node_kernels::Work work, node_kernels::Resume resume) {
+        session_.launch(
+            "accept", accept_, nodes_, options_.group_size, memories_, starts_, run_, reserve, Uint<"turn">{superstep},
+            node_kernels::FirstNode{0}, inbox_of_link_, ray_links_.sent_flags(), return_links_.sent_flags(), work,
+            resume, LocalMemory<std::uint32_t>{RAYA_ACCEPT_WORDS(options_.group_size)}, queues_, ray_links_.inboxes(),
+            return_links_.inboxes(), return_links_.outboxes(), returns_, status_, ended_);
     });
 }
 
 std::vector<std::uint64_t> NodeArray::exchange(const NodeStatus& status) {
-    if (ranks_.has_several()) {
-        std::vector<OutgoingMessage> out;
-        std::vector<IncomingMessage> in;
+    std::vector<OutgoingMessage> out;
+    std::vector<IncomingMessage> in;
+    if (distribution_.ranks().has_several()) {
         ray_links_.begin_transfers(status, out, in);
         return_links_.begin_transfers(status, out, in);
-        ray_links_.wait_for_outgoing();
-        return_links_.wait_for_outgoing();
-        ranks_.start(out, in);
+        distribution_.ranks().start(out, in);
     }
     std::vector<std::uint64_t> words(std::size_t{raya_nodes(settings_.torus)} * RAYA_LINKS);
     ray_links_.exchange(status, words);
     return_links_.exchange(status, words);
+    if (distribution_.ranks().has_several()) {
+        session_.flush();  // the device computes while the host waits
+        distribution_.ranks().wait();
+        ray_links_.write_incoming();
+        return_links_.write_incoming();
+    }
     return words;
 }
 
-void NodeArray::finish_exchange() {
-    if (!ranks_.has_several()) return;
-    session_.flush();  // the device computes while the host waits
-    ranks_.wait();
-    ray_links_.write_incoming();
-    return_links_.write_incoming();
-}
-
 std::vector<std::uint64_t> NodeArray::link_packets() const {
-    std::vector<std::uint64_t> messages = ray_links_.counts().messages;
-    for (std::size_t i = 0; i < messages.size(); ++i) messages[i] += return_links_.counts().messages[i];
+    std::vector<std::uint64_t> messages = ray_links_.messages();
+    for (std::size_t i = 0; i < messages.size(); ++i) messages[i] += return_links_.messages()[i];
     return messages;
 }
 
@@ -247,28 +239,14 @@ void NodeArray::finish_gather(std::vector<raya_head>& returns) {
     returns.insert(returns.end(), read.begin(), read.end());
 }
 
-std::vector<std::uint64_t> NodeArray::gather_counters(const Buffer<std::uint64_t>& counters) {
-    std::vector<std::uint64_t> own_counters(counters.size());
-    session_.read("read counters", counters, own_counters);
-    return distribution_.gather(std::move(own_counters), counters.size() / nodes_);
-}
-
-EventCounts NodeArray::read_own_events() {
-    std::vector<std::uint64_t> node_counts(events_.size());
-    session_.read("read counters", events_, node_counts);
-    EventCounts sums{};
-    for (std::size_t i = 0; i < node_counts.size(); ++i) sums[i % RAYA_EVENTS] += node_counts[i];
-    return sums;
-}
-
-std::pair<PacketCounts, PacketCounts> NodeArray::read_packets(const Buffer<std::uint64_t>& counters) {
-    std::vector<std::uint64_t> node_counts(counters.size());
-    session_.read("read counters", counters, node_counts);
-    PacketCounts own_counts{}, total_counts{};
-    for (std::size_t i = 0; i < node_counts.size(); ++i) own_counts[i % RAYA_KINDS] += node_counts[i];
-    for (const PacketCounts& rank_counts : ranks_.all_gather(own_counts))
-        for (std::size_t kind = 0; kind < RAYA_KINDS; ++kind) total_counts[kind] += rank_counts[kind];
-    return {total_counts, own_counts};
+NodeArray::Counters NodeArray::read_counters() {
+    Counters counters;
+    for (const auto& [buffer, values] : {std::pair(&events_, &counters.events), std::pair(&made_, &counters.made),
+                                         std::pair(&ended_, &counters.ended)}) {
+        values->resize(buffer->size());
+        session_.read("read counters", *buffer, *values);
+    }
+    return counters;
 }
 
 void NodeArray::visit_state(RenderState& state, NodeStatus& status) {
@@ -307,18 +285,11 @@ bool is_new_message(const raya_head& packet) {
 
 PacketRecord record_of(const TorusSettings& settings, std::uint32_t superstep, std::uint32_t node,
                        const raya_head& packet) {
-    PacketRecord record{.superstep = superstep,
-                        .source = node,
-                        .destination = RAYA_ROOT,
-                        .head = packet,
-                        .words = settings.packets.return_words()};
-    if (is_return(packet)) return record;
-    record.words = settings.packets.ray_words;
-    const raya_torus& torus = settings.torus;
-    const raya_place v = raya_unpack_place(packet.voxel);
-    record.destination =
-        raya_node_of(torus, v.at[0] % torus.nodes[0], v.at[1] % torus.nodes[1], v.at[2] % torus.nodes[2]);
-    return record;
+    return {.superstep = superstep,
+            .source = node,
+            .destination = destination_of(settings.torus, node, packet),
+            .head = packet,
+            .words = is_return(packet) ? settings.packets.return_words() : settings.packets.ray_words};
 }
 
 }  // namespace
@@ -368,8 +339,8 @@ void NodeArray::record_packets(const NodeStatus& status, std::uint32_t superstep
     };
     ray_links_.visit_new_packets(status, record_new);
     return_links_.visit_new_packets(status, record_new);
-    std::vector<PacketRecord> records =
-        ranks_.gather(std::span<const PacketRecord>(own_records), ranks_.all_gather(own_records.size()));
+    std::vector<PacketRecord> records = distribution_.ranks().gather(
+        std::span<const PacketRecord>(own_records), distribution_.ranks().all_gather(own_records.size()));
     std::stable_sort(records.begin(), records.end(),
                      [](const PacketRecord& a, const PacketRecord& b) { return a.source < b.source; });
     for (const PacketRecord& record : records) sink(record);

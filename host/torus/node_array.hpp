@@ -76,9 +76,9 @@ using Accept = DescribedKernel<"torus/accept.cl", "accept", InputWords, InputWor
 class NodeArray {
   public:
     /// Builds the kernels with `options` and allocates the device memory. `memories`: memories of this rank's nodes, by
-    /// slots of `distribution`. `ranks` and `distribution` must outlive this object.
+    /// slots of `distribution`. `distribution` must outlive this object.
     NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
-              const KernelOptions& options, const NodeDistribution& distribution, Ranks& ranks);
+              const KernelOptions& options, const NodeDistribution& distribution);
 
     /// Empties queues and mailboxes, sets counters to 0, and restarts the generation of primary rays.
     void clear();
@@ -86,23 +86,13 @@ class NodeArray {
     /// Chooses the pixels that the following renders compute; the default is TorusSettings::pixels.
     void set_pixels(const PixelSubset& pixels);
 
-    /// A range of slots. inner(): nodes without links to other ranks; border(): the remaining nodes.
-    struct Slots {
-        std::uint32_t first = 0, count = 0;
-    };
-    Slots all() const { return {0, nodes_}; }
-    Slots inner() const { return {0, distribution_.inner_nodes()}; }
-    Slots border() const { return {distribution_.inner_nodes(), nodes_ - distribution_.inner_nodes()}; }
-
-    void inject(Slots nodes);
-    void trace_voxel(Slots nodes, Reserve reserve);
+    void inject();
+    void trace_voxel(Reserve reserve);
     void route();
     /// Transfers rays and returns over the links of all nodes. Returns [node][RAYA_LINKS]: number of words charged for
-    /// each link. Messages between ranks may still be in transit afterwards; finish_exchange() waits for them. Between
-    /// the two calls, accept() may be called for inner nodes only.
+    /// each link.
     std::vector<std::uint64_t> exchange(const NodeStatus& status);
-    void finish_exchange();
-    void accept(Slots nodes, Reserve reserve, std::uint32_t superstep);
+    void accept(Reserve reserve, std::uint32_t superstep);
 
     /// Reads the status of the nodes of all ranks; blocks. RAYA_STATUS_PROGRESS and RAYA_STATUS_CYCLES are counts of
     /// the current superstep, which accept() resets.
@@ -124,13 +114,11 @@ class NodeArray {
     /// superstep. An empty sink skips the superstep; it must be empty in all ranks or in none.
     void record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
-    /// Returns [node][RAYA_EVENTS] of all nodes in rank 0, and an empty vector in other ranks.
-    std::vector<std::uint64_t> read_events() { return gather_counters(events_); }
-    EventCounts read_own_events();  // sums over the nodes of this rank
-    /// Returns the numbers of packets that nodes created: sums over all ranks, and over this rank.
-    std::pair<PacketCounts, PacketCounts> read_created_counts() { return read_packets(made_); }
-    /// Returns the numbers of packets that nodes processed to the end, summed over all ranks.
-    PacketCounts read_ended_counts() { return read_packets(ended_).first; }
+    /// Counts of the nodes of this rank, [slot][RAYA_EVENTS] or [slot][RAYA_KINDS].
+    struct Counters {
+        std::vector<std::uint64_t> events, made, ended;  // made, ended: packets (TorusResult)
+    };
+    Counters read_counters();
 
     /// Returns [node][RAYA_LINKS]: number of messages over the link since clear(), for the nodes of all ranks.
     std::vector<std::uint64_t> link_packets() const;
@@ -145,22 +133,18 @@ class NodeArray {
 
   private:
     NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
-              const NodeDistribution& distribution, Ranks& ranks);
+              const NodeDistribution& distribution);
     void write_inbox_table();
-    /// Repeats `launch(work, resume)` until no node of `nodes` has work left.
+    /// Repeats `launch(work, resume)` until no node has work left.
     template <class Launch>
-    void launch_until_done(const std::string& label, Slots nodes, const Launch& launch);
-    /// Reads counters [slot][...] of all ranks. Returns [node][...] in rank 0, and an empty vector in other ranks.
-    std::vector<std::uint64_t> gather_counters(const Buffer<std::uint64_t>& counters);
+    void launch_until_done(const std::string& label, const Launch& launch);
     /// Returns the local memory of a kernel: `work_group_words` words, plus the node's words if kernels copy them.
     LocalMemory<std::uint32_t> local_words(std::size_t work_group_words) const;
-    std::pair<PacketCounts, PacketCounts> read_packets(const Buffer<std::uint64_t>& counters);
 
     Session& session_;
     const TorusSettings settings_;
     NodeBuffers buffers_;
     const NodeDistribution& distribution_;
-    Ranks& ranks_;
     std::uint32_t nodes_, node_words_;  // number of nodes of this rank; number of words of the fullest of these nodes
     KernelOptions options_;
     Buffer<std::uint32_t> memories_, starts_;

@@ -16,9 +16,8 @@ namespace raya {
 
 /// Sizes of the memories of all nodes.
 struct NodeSizes {
-    std::vector<std::uint64_t> words, objects;  // [node]; objects: planes included
-    std::uint64_t copies = 0;                   // number of voxel list entries minus number of distinct objects in them
-    raya_grid grid{};                           // the voxels
+    std::vector<std::uint64_t> words;  // [node]
+    std::uint64_t copies = 0;          // number of voxel list entries minus number of distinct objects in them
 
     /// Returns the number of the node with the most words, the first of several.
     std::uint32_t fullest() const;
@@ -39,8 +38,7 @@ struct NodeMemories {
 NodeMemories pack_nodes(const PackedJob& job, const Partition& partition, const raya_torus& torus,
                         std::span<const std::uint32_t> nodes);
 
-// Sizes of the nodes' queues and mailboxes. Checks that queues and mailboxes fit the memory of a node and of the
-// device, and suggests remedies if they do not fit.
+// Sizes of the nodes' queues and mailboxes. Checks that they fit the memory of a node, and suggests remedies if not.
 
 /// Returns the capacities of a queue of `queue` packets and of mailboxes of max(1, queue / 4) packets.
 NodeBuffers buffers_for(std::uint32_t queue);
@@ -54,32 +52,13 @@ std::uint64_t node_bytes(std::uint64_t words, const NodeBuffers& buffers, std::u
 /// mailboxes together take less than 6 GB.
 std::uint32_t default_queue(std::uint32_t nodes);
 
-/// Thrown if the scene or the buffers do not fit the nodes. `needed`: bytes that the fullest node needs; `memory`:
-/// bytes that a node has.
-struct NodesDoNotFit : DoesNotFit {
-    NodesDoNotFit(const std::string& message, std::uint64_t needed, std::uint64_t memory, std::uint32_t node_count,
-                  std::uint32_t fitting_nodes, std::uint32_t fullest_node)
-        : DoesNotFit(message, needed, memory), nodes(node_count), fitting(fitting_nodes), fullest(fullest_node) {}
-
-    std::uint32_t nodes, fitting, fullest;  // number of nodes; number of nodes that fit; number of the fullest node
-};
-
 /// Chooses the capacity of the queues. If `queue` > 0, it is `queue` packets. If `queue` is 0, it is as many packets as
 /// fit `memory_bytes` (empty: no limit) together with the words of the fullest node, at most default_queue().
-/// buffers_for() determines the size of the mailboxes. Throws NodesDoNotFit if words and buffers exceed `memory_bytes`.
-/// The message states how many nodes fit, the voxels, objects and bytes of the fullest node, and a remedy: more memory
-/// or a shorter queue. `min_queue`: number of packets that the ray tree of a single primary ray may need. Throws
-/// UserError if 0 < `queue` < `min_queue`.
+/// buffers_for() determines the size of the mailboxes. Throws DoesNotFit if words and buffers exceed `memory_bytes`.
+/// The message states how many nodes fit, the bytes of the fullest node, and a remedy: more memory or a shorter queue.
+/// `min_queue`: number of packets that the ray tree of a single primary ray may need. Throws UserError if
+/// 0 < `queue` < `min_queue`.
 NodeBuffers plan_buffers(const std::string& scene, const NodeSizes& sizes, const raya_torus& torus,
                          std::optional<std::uint64_t> memory_bytes, std::uint32_t queue, std::uint32_t min_queue);
-
-/// Memory of a device in bytes. `max_buffer`: maximum size of one buffer.
-struct DeviceMemory {
-    std::uint64_t total = 0, max_buffer = 0;
-};
-
-/// Throws UserError if !fits_device(); the message states a queue length that fits.
-void check_device_memory(const std::string& scene, const NodeBuffers& buffers, std::uint32_t nodes,
-                         const std::string& device, const DeviceMemory& memory);
 
 }  // namespace raya

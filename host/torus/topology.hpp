@@ -33,26 +33,26 @@ raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links);
 /// so at most 6 in a 3-D torus and 4 in a 2-D torus.
 std::uint32_t links_of_node(const raya_torus& torus);
 
+/// Returns the node to which `sender` sends a packet: the root for a return, `sender` for a ray that misses the box,
+/// else the node that holds the packet's voxel.
+std::uint32_t destination_of(const raya_torus& torus, std::uint32_t sender, const raya_head& packet);
+
 /// Returns text such as "4x4x4".
 std::string sides_text(const std::array<std::uint32_t, 3>& sides);
 
 // Distribution of the torus nodes over ranks, and the status words of nodes.
 
 /// Returns [node]: rank of the node, 0..ranks - 1; rank 0 has the root. Each rank gets a cuboid of nodes. Recursive
-/// bisection cuts each cuboid across its longest side, between two layers of nodes, so that the numbers of nodes of
-/// both parts are as nearly proportional to their numbers of ranks as possible. Throws UserError for more ranks than
-/// nodes.
+/// bisection cuts each cuboid across its longest side, between two layers of nodes, and gives half of the ranks to each
+/// part. Throws UserError for more ranks than nodes.
 std::vector<std::uint32_t> ranks_of_nodes(const raya_torus& torus, std::uint32_t ranks);
 
-/// Distribution of the nodes over the ranks. The first slots are those of the inner nodes, whose links all end in the
-/// same rank. The slots of the border nodes follow.
+/// Distribution of the nodes over the ranks.
 class NodeDistribution : public Distribution {
   public:
     explicit NodeDistribution(const raya_torus& torus, Ranks& ranks = Ranks::single());
 
     const raya_torus& torus() const { return torus_; }
-    /// Number of inner nodes of this rank.
-    std::uint32_t inner_nodes() const { return inner_nodes_; }
 
     /// Number of inboxes that this rank has for each link direction. The first inboxes belong to links that start at
     /// nodes of this rank, and are indexed by the slot of the start. Inboxes of links from other ranks follow. All
@@ -64,10 +64,8 @@ class NodeDistribution : public Distribution {
     std::uint32_t inbox_from(std::uint32_t sender, std::uint32_t link) const;
 
   private:
-    bool is_inner(std::uint32_t node) const;
-
     raya_torus torus_;
-    std::uint32_t inner_nodes_ = 0, inboxes_ = 0;
+    std::uint32_t inboxes_ = 0;
     // [link]: nodes of other ranks whose link in that direction ends in this rank, ascending
     std::vector<std::vector<std::uint32_t>> remote_senders_;
 };

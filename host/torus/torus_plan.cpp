@@ -19,36 +19,9 @@
 namespace raya {
 namespace {
 
-PackedJob packed_job(const Session& session, const Scene& scene, const TorusSettings& settings,
-                     const LengthScale& scale) {
-    const SpanLog::Span span = session.span("pack scene");
-    return pack_job(scene, job_settings(settings, scale));
-}
-
-// Returns a job that contains a header and no objects.
-PackedJob header_only_job(const raya_job& header, bool has_patches) {
-    PackedJob job(header, std::vector<std::uint32_t>(kWordsOf<raya_job>), has_patches);
-    job.set_header(header);
-    return job;
-}
-
 NodeBuffers buffers_of(const Scene& scene, const NodeSizes& sizes, const TorusSettings& s) {
     return plan_buffers(scene.name, sizes, s.torus, s.memory_bytes, s.queue,
                         raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces));
-}
-
-// The part of a TorusJob that is the same in all ranks: all but the nodes' words and their starts.
-struct TorusJobHeader {
-    raya_job header;
-    bool has_patches;
-    LengthScale scale;
-    NodeBuffers buffers;
-    std::uint64_t fullest_words, copies;
-};
-
-TorusJob with_memories(const TorusJobHeader& h, NodeMemories memories) {
-    return {
-        header_only_job(h.header, h.has_patches), std::move(memories), h.scale, h.buffers, h.fullest_words, h.copies};
 }
 
 // Writes windows of all nodes into the headers of `nodes`.
@@ -59,46 +32,14 @@ void set_windows(NodeMemories& memories, const std::vector<PixelWindow>& windows
                    windows[nodes[slot]]);
 }
 
-// Packs the scene, divides it among all nodes, and sends each rank the words of its nodes. Returns this rank's job. The
-// words of other ranks' nodes are packed rank by rank, so that this rank never holds all of them.
-TorusJob divide_scene(const Session& session, const Scene& scene, const TorusSettings& s,
-                      const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks,
-                      const std::function<void()>& packed) {
-    const LengthScale scale = length_scale(scene, s.format);
-    const PackedJob job = packed_job(session, scene, s, scale);
-    if (packed) packed();
-    const SpanLog::Span span = session.span("divide scene");
-    const Partition partition = raya::partition(job, s.format, s.voxels);
-    const NodeSizes sizes = node_sizes(job, partition, s.torus);
-    for (std::uint32_t rank = 0; rank < ranks.count(); ++rank) check_words(sizes, distribution.pes_of(rank));
-    const NodeBuffers buffers = buffers_of(scene, sizes, s);
-    check_device_memory(scene.name, buffers, distribution.max_count(), session.device().name, device);
-    const std::vector<PixelWindow> windows = pixel_windows(job.header(), partition.grid, s.torus, s.format);
-    TorusJobHeader header{job.header(), job.has_patches(), scale, buffers, sizes.words[sizes.fullest()], sizes.copies};
-    const auto memories_of = [&](std::uint32_t rank) {
-        const std::vector<std::uint32_t>& nodes = distribution.pes_of(rank);
-        NodeMemories memories = pack_nodes(job, partition, s.torus, nodes);
-        set_windows(memories, windows, nodes);
-        return memories;
-    };
-    if (ranks.has_several()) ranks.broadcast(header);
-    for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) {
-        const NodeMemories memories = memories_of(rank);
-        ranks.send(rank, std::span<const std::uint32_t>(memories.starts));
-        ranks.send(rank, std::span<const std::uint32_t>(memories.words));
-    }
-    return with_memories(header, memories_of(0));
-}
-
-TorusJob receive_job(const NodeDistribution& distribution, Ranks& ranks) {
-    TorusJobHeader header;
-    ranks.broadcast(header);
-    NodeMemories m;
-    m.starts.resize(distribution.count() + 1);
-    ranks.receive(0, std::span(m.starts));
-    m.words.resize(m.starts.back());
-    ranks.receive(0, std::span(m.words));
-    return with_memories(header, std::move(m));
+TorusJob receive_job(const NodeDistribution& distribution) {
+    TorusJob job;
+    distribution.ranks().broadcast<TorusJobHeader>(job);
+    job.memories.starts.resize(distribution.count() + 1);
+    distribution.ranks().receive(0, std::span(job.memories.starts));
+    job.memories.words.resize(job.memories.starts.back());
+    distribution.ranks().receive(0, std::span(job.memories.words));
+    return job;
 }
 
 // Collective: returns, in rank 0, a hash of the words of all nodes. It does not depend on the number of ranks.
@@ -165,18 +106,44 @@ NodeNeeds node_needs(const Scene& scene, const TorusSettings& s) {
     return {scale, words, node_bytes(words, buffers, links_of_node(s.torus))};
 }
 
-DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks) {
-    DeviceMemory smallest{device.global_memory_bytes, device.max_allocation_bytes};
-    for (const DeviceMemory& memory : ranks.all_gather(smallest))
-        smallest = {std::min(smallest.total, memory.total), std::min(smallest.max_buffer, memory.max_buffer)};
-    return smallest;
+PackedJob header_only_job(const TorusJobHeader& job) {
+    PackedJob header_only(job.header, std::vector<std::uint32_t>(kWordsOf<raya_job>), job.has_patches);
+    header_only.set_header(job.header);
+    return header_only;
 }
 
-TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& settings,
-                        const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks,
-                        const std::function<void()>& packed) {
-    if (!ranks.is_first()) return receive_job(distribution, ranks);
-    return divide_scene(session, scene, settings, distribution, device, ranks, packed);
+// The words of other ranks' nodes are packed rank by rank, so that this rank never holds all of them.
+TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& s,
+                        const NodeDistribution& distribution, const std::function<void()>& packed) {
+    Ranks& ranks = distribution.ranks();
+    if (!ranks.is_first()) return receive_job(distribution);
+    const LengthScale scale = length_scale(scene, s.format);
+    const PackedJob job = [&] {
+        const SpanLog::Span span = session.span("pack scene");
+        return pack_job(scene, job_settings(s, scale));
+    }();
+    if (packed) packed();
+    const SpanLog::Span span = session.span("divide scene");
+    const Partition partition = raya::partition(job, s.format, s.voxels);
+    const NodeSizes sizes = node_sizes(job, partition, s.torus);
+    for (std::uint32_t rank = 0; rank < ranks.count(); ++rank) check_words(sizes, distribution.pes_of(rank));
+    const std::vector<PixelWindow> windows = pixel_windows(job.header(), partition.grid, s.torus, s.format);
+    const auto memories_of = [&](std::uint32_t rank) {
+        const std::vector<std::uint32_t>& nodes = distribution.pes_of(rank);
+        NodeMemories memories = pack_nodes(job, partition, s.torus, nodes);
+        set_windows(memories, windows, nodes);
+        return memories;
+    };
+    TorusJobHeader header{
+        job.header(), job.has_patches(), scale, buffers_of(scene, sizes, s), sizes.words[sizes.fullest()],
+        sizes.copies};
+    if (ranks.has_several()) ranks.broadcast(header);
+    for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) {
+        const NodeMemories memories = memories_of(rank);
+        ranks.send(rank, std::span<const std::uint32_t>(memories.starts));
+        ranks.send(rank, std::span<const std::uint32_t>(memories.words));
+    }
+    return {header, memories_of(0)};
 }
 
 StateSettings state_settings(const TorusSettings& s, const TorusJob& job, const NodeDistribution& distribution) {
@@ -203,44 +170,39 @@ Vec3 vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 // Projects a point P onto the image: solves P - eye = c (corner + x column_step + y row_step) for depth c, column x and
 // row y.
-class Projection {
-  public:
+struct Projection {
     Projection(const raya_job& job, const NumberFormat& format)
-        : eye_(vec3(job.eye)),
-          corner_(vec3(job.corner)),
-          column_step_(vec3(job.column_step)),
-          row_step_(vec3(job.row_step)),
-          normal_(column_step_.cross(row_step_)),
-          pixel_distance_(std::min(column_step_.length(), row_step_.length())) {
+        : eye(vec3(job.eye)),
+          corner(vec3(job.corner)),
+          column_step(vec3(job.column_step)),
+          row_step(vec3(job.row_step)),
+          normal(column_step.cross(row_step)),
+          pixel_distance(std::min(column_step.length(), row_step.length())) {
         const double width = job.mapping.width, height = job.mapping.height;
         // Bound of the rounding error of a direction, in pixels: 16 units in the last place of the sum of the lengths
         // of the direction's terms. The margin is one pixel larger, because the edge of a window is half-open.
         const double unit = std::ldexp(1.0, -format.fraction_bits);
-        margin_ = 1 + 16 * unit * (corner_.length() + width * column_step_.length() + height * row_step_.length()) /
-                          pixel_distance_;
+        margin = 1 + 16 * unit * (corner.length() + width * column_step.length() + height * row_step.length()) /
+                         pixel_distance;
         for (const double x : {-1.0, width})
             for (const double y : {-1.0, height})
-                max_distance_ = std::max(max_distance_, (corner_ + x * column_step_ + y * row_step_).length());
+                max_distance = std::max(max_distance, (corner + x * column_step + y * row_step).length());
     }
 
-    const Vec3& eye() const { return eye_; }
-    double margin() const { return margin_; }
-    double pixel_distance() const { return pixel_distance_; }  // minimum distance of adjacent pixels at depth c = 1
-    double max_distance() const { return max_distance_; }      // maximum |P - eye| of a pixel at depth c = 1
-
     // Returns depth c of P.
-    double depth(const Vec3& p) const { return (p - eye_).dot(normal_) / corner_.dot(normal_); }
+    double depth(const Vec3& p) const { return (p - eye).dot(normal) / corner.dot(normal); }
 
     // Returns column and row of P, which must be in front of the eye.
     std::array<double, 2> pixel(const Vec3& p) const {
-        const Vec3 flat = (p - eye_) / depth(p) - corner_;
-        return {flat.dot(row_step_.cross(normal_)) / column_step_.dot(row_step_.cross(normal_)),
-                flat.dot(column_step_.cross(normal_)) / row_step_.dot(column_step_.cross(normal_))};
+        const Vec3 flat = (p - eye) / depth(p) - corner;
+        return {flat.dot(row_step.cross(normal)) / column_step.dot(row_step.cross(normal)),
+                flat.dot(column_step.cross(normal)) / row_step.dot(column_step.cross(normal))};
     }
 
-  private:
-    Vec3 eye_, corner_, column_step_, row_step_, normal_;
-    double pixel_distance_, margin_, max_distance_ = 0;
+    Vec3 eye, corner, column_step, row_step, normal;
+    double pixel_distance;    // minimum distance of adjacent pixels at depth c = 1
+    double margin;            // of a window, pixels
+    double max_distance = 0;  // maximum |P - eye| of a pixel at depth c = 1
 };
 
 // Bounds of projected points: [0] columns, [1] rows.
@@ -250,17 +212,6 @@ struct ScreenBounds {
     bool whole = false;  // true: no bound is known, so the window is the whole image
     bool is_nonempty() const { return whole || low[0] <= high[0]; }
 };
-
-// Extent of the bounding box along an axis. `slack`: bound of the rounding error of a ray's entry point
-// (grid/traversal.clh), which is a few fp32 units in the last place of the path length and of the origin.
-struct BoxExtent {
-    double low, high, slack;
-};
-
-BoxExtent extent_of(const raya_grid& grid, std::uint32_t axis, double eye) {
-    const double low = raya_voxel_plane(grid, axis, 0), high = raya_voxel_plane(grid, axis, grid.divisions[axis]);
-    return {low, high, std::ldexp(std::abs(eye) + std::max(std::abs(low), std::abs(high)), -20)};
-}
 
 // Clips a face to the points with depth >= `min_depth` (Sutherland & Hodgman 1974).
 std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4>& face, double min_depth) {
@@ -287,7 +238,7 @@ void add_face(ScreenBounds& bounds, const Projection& projection, const raya_gri
         face[corner][third] = raya_voxel_plane(grid, third, at.at[third] + corner / 2);
     }
     // The clipping depth is smaller than the depth of any visible point of the face.
-    for (const Vec3& p : clipped(projection, face, distance / projection.max_distance() / 2)) {
+    for (const Vec3& p : clipped(projection, face, distance / projection.max_distance / 2)) {
         const std::array<double, 2> pixel = projection.pixel(p);
         for (std::size_t i = 0; i < 2; ++i) {
             bounds.low[i] = std::min(bounds.low[i], pixel[i]);
@@ -300,18 +251,22 @@ void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_gr
     const raya_place at = raya_place_of(voxel, grid.divisions[0], grid.divisions[1]);
     bool contains_eye = true;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-        const double eye = projection.eye()[axis];
-        const BoxExtent box = extent_of(grid, axis, eye);
+        const double eye = projection.eye[axis];
+        const double box_low = raya_voxel_plane(grid, axis, 0),
+                     box_high = raya_voxel_plane(grid, axis, grid.divisions[axis]);
+        // Bound of the rounding error of a ray's entry point (grid/traversal.clh), which is a few fp32 units in the
+        // last place of the path length and of the origin.
+        const double slack = std::ldexp(std::abs(eye) + std::max(std::abs(box_low), std::abs(box_high)), -20);
         const double low = raya_voxel_plane(grid, axis, at.at[axis]),
                      high = raya_voxel_plane(grid, axis, at.at[axis] + 1);
-        contains_eye = contains_eye && eye >= low - box.slack && eye <= high + box.slack;
-        const double distance_below = box.low - eye, distance_above = eye - box.high,
+        contains_eye = contains_eye && eye >= low - slack && eye <= high + slack;
+        const double distance_below = box_low - eye, distance_above = eye - box_high,
                      distance = std::max(distance_below, distance_above);
         const bool faces_eye =
-            distance_below > 0 ? low <= box.low + box.slack : distance_above > 0 && high >= box.high - box.slack;
+            distance_below > 0 ? low <= box_low + slack : distance_above > 0 && high >= box_high - slack;
         if (!faces_eye) continue;
         // No bound is known if the eye is so close to the face that rounding may move the entry point by a pixel.
-        bounds.whole = bounds.whole || box.slack * projection.max_distance() > distance * projection.pixel_distance();
+        bounds.whole = bounds.whole || slack * projection.max_distance > distance * projection.pixel_distance;
         add_face(bounds, projection, grid, at, axis, at.at[axis] + (distance_above > 0 ? 1 : 0), distance);
     }
     bounds.whole = bounds.whole || contains_eye;
@@ -338,7 +293,7 @@ std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& gri
         PixelWindow window{{0, height}, {0, width}};
         if (!bounds.is_nonempty()) window = {{0, 0}, {0, 0}};
         if (bounds.is_nonempty() && !bounds.whole) {
-            const double m = projection.margin();
+            const double m = projection.margin;
             window = {
                 {clamped(std::floor(bounds.low[1] - m), height), clamped(std::ceil(bounds.high[1] + m) + 1, height)},
                 {clamped(std::floor(bounds.low[0] - m), width), clamped(std::ceil(bounds.high[0] + m) + 1, width)}};

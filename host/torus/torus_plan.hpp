@@ -45,15 +45,23 @@ TorusSettings checked_settings(TorusSettings settings, const Scene& scene, const
 /// Returns the number of pixels to trace.
 std::uint64_t traced_pixels(const TorusSettings& settings);
 
-/// Job of a rank.
-struct TorusJob {
-    PackedJob header_only;  // the job's header, without objects
-    NodeMemories memories;  // of this rank's nodes
+/// Part of a TorusJob that is the same in all ranks.
+struct TorusJobHeader {
+    raya_job header;  // of the packed scene
+    bool has_patches = false;
     LengthScale scale;
     NodeBuffers buffers;
     std::uint64_t fullest_words = 0;  // number of words of the fullest node
     std::uint64_t copies = 0;         // see NodeSizes
 };
+
+/// Job of a rank.
+struct TorusJob : TorusJobHeader {
+    NodeMemories memories;  // of this rank's nodes
+};
+
+/// Returns a packed job with the job's header, without objects.
+PackedJob header_only_job(const TorusJobHeader& job);
 
 /// Length scale of a scene, and memory that the fullest node needs.
 struct NodeNeeds {
@@ -62,20 +70,15 @@ struct NodeNeeds {
     std::uint64_t bytes = 0;  // number of bytes of scene words and buffers together
 };
 
-/// Divides the scene as a render does, but without a device. Throws NodesDoNotFit; see check_packet_fields().
+/// Divides the scene as a render does, but without a device. Throws DoesNotFit; see check_packet_fields().
 NodeNeeds node_needs(const Scene& scene, const TorusSettings& settings);
-
-/// Collective: returns, for each member, the minimum over the devices of all ranks.
-DeviceMemory smallest_device_memory(const DeviceInfo& device, Ranks& ranks);
 
 /// Collective: returns this rank's job. Rank 0 packs the scene, divides it among the nodes and sends each rank the
 /// words of its nodes, one rank after another. Then no rank holds the whole scene. Other ranks do not read `scene`;
-/// rank 0 calls `packed`, if not empty, when it no longer needs the scene's objects. `device`:
-/// smallest_device_memory(). Throws UserError if the scene or the buffers exceed the memory of a
-/// node or of the device.
+/// rank 0 calls `packed`, if not empty, when it no longer needs the scene's objects. Throws UserError if the scene or
+/// the buffers exceed the memory of a node.
 TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& settings,
-                        const NodeDistribution& distribution, const DeviceMemory& device, Ranks& ranks,
-                        const std::function<void()>& packed = {});
+                        const NodeDistribution& distribution, const std::function<void()>& packed = {});
 
 /// Collective: returns the settings that determine the state of a render, for checkpoints.
 StateSettings state_settings(const TorusSettings& settings, const TorusJob& job, const NodeDistribution& distribution);

@@ -6,7 +6,6 @@
 #include <iterator>
 #include <limits>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "host/array/checkpoints.hpp"
@@ -23,251 +22,220 @@ namespace raya {
 // system allocates a page only when it is used.
 constexpr std::uint64_t kReservedReturns = 1 << 22;
 
-struct TorusRenderer::Impl {
-    Session& session;
-    Ranks& ranks;
-    TorusSettings settings;
-    std::string scene_name;
-    NodeDistribution distribution;
-    DeviceMemory device_memory;  // minimum over all ranks
-    TorusJob job;
-    KernelOptions options;
-    std::unique_ptr<NodeArray> nodes{};
-    std::unique_ptr<Composer> composer{};
-    double build_s = 0;
+namespace {
 
-    void build();
-    std::optional<DeadlockFigures> run_supersteps(TorusRun& run, Checkpoints& checkpoints,
-                                                  const ProgressCallback& progress, const RenderObservers& observers);
-    void add_superstep(TorusRun& run, const NodeStatus& status, const MachineState& state,
-                       const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const;
-    NodeStatus route(TorusRun& run, const RenderObservers& observers);
-    void compute(NodeArray::Slots slots, Reserve reserve, bool injects, const NodeWorkSink& work);
-    void compose(TorusResult& result, const std::vector<raya_head>& returns);
-    void collect(TorusResult& result);
-    void check(const TorusResult& result) const;
-    void describe(TorusResult& result) const;
-    void visit_state(RenderState& state, TorusRun& run, NodeStatus& status);
-};
-
-TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks,
-                             const std::function<void()>& packed) {
-    const TorusSettings chosen = checked_settings(settings, scene, session.device());
-    const NodeDistribution distribution(chosen.torus, ranks);
-    const DeviceMemory device_memory = smallest_device_memory(session.device(), ranks);
-    TorusJob job = make_torus_job(session, scene, chosen, distribution, device_memory, ranks, packed);
-    KernelOptions options = kernel_options(chosen, job.header_only);
-    options.costs = chosen.history;
-    impl_.reset(new Impl{.session = session,
-                         .ranks = ranks,
-                         .settings = chosen,
-                         .scene_name = scene.name,
-                         .distribution = distribution,
-                         .device_memory = device_memory,
-                         .job = std::move(job),
-                         .options = options});
-    ranks.one_rank_per_host_first([this] { impl_->build(); });
+// Returns the sums of counts of several nodes, [node][count].
+template <class Counts>
+Counts sums_of(const std::vector<std::uint64_t>& of_nodes) {
+    Counts sums{};
+    for (std::size_t i = 0; i < of_nodes.size(); ++i) sums[i % sums.size()] += of_nodes[i];
+    return sums;
 }
 
-TorusRenderer::~TorusRenderer() = default;
+}  // namespace
 
-const LengthScale& TorusRenderer::scale() const { return impl_->job.scale; }
+TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks,
+                             const std::function<void()>& packed)
+    : session_(session),
+      ranks_(ranks),
+      settings_(checked_settings(settings, scene, session.device())),
+      scene_name_(scene.name),
+      distribution_(settings_.torus, ranks),
+      job_(make_torus_job(session, scene, settings_, distribution_, packed)) {
+    ranks.one_rank_per_host_first([this] { build(); });
+}
 
 void TorusRenderer::set_pixels(const PixelSubset& pixels) {
-    impl_->settings.pixels = pixels;
-    impl_->nodes->set_pixels(pixels);
+    settings_.pixels = pixels;
+    nodes_->set_pixels(pixels);
 }
 
 void TorusRenderer::set_queue(std::uint32_t queue) {
-    Impl& p = *impl_;
-    const NodeBuffers buffers = buffers_for(queue);
-    check_device_memory(p.scene_name, buffers, p.distribution.max_count(), p.session.device().name, p.device_memory);
-    p.job.buffers = buffers;
-    p.build();
+    job_.buffers = buffers_for(queue);
+    build();
 }
 
-void TorusRenderer::Impl::build() {
-    const SpanLog::Span span = session.span("set up device");
-    const std::jthread notice = session.compile_notice();
+void TorusRenderer::build() {
+    const std::uint64_t packets = std::max<std::uint64_t>(job_.buffers.queue, RAYA_LINKS * (job_.buffers.box + 1ull));
+    if (packets * sizeof(raya_packet) * distribution_.count() > session_.device().max_allocation_bytes)
+        throw UserError(
+            fmt::format("{}: the queues or mailboxes of {} nodes exceed the maximum buffer of {}; use a "
+                        "shorter --queue than {} or fewer nodes",
+                        scene_name_, distribution_.count(), session_.device().name, job_.buffers.queue));
+    const SpanLog::Span span = session_.span("set up device");
+    const std::jthread notice = session_.compile_notice();
     const Clock::time_point start = Clock::now();
-    nodes = std::make_unique<NodeArray>(session, settings, job.memories, job.buffers, options, distribution, ranks);
-    KernelOptions one_lane = options;
-    one_lane.lanes = 1;
-    Kernels kernels(session, one_lane, settings.kernels.sources);
-    composer = std::make_unique<Composer>(kernels);
-    nodes->clear();
+    KernelOptions options = kernel_options(settings_, header_only_job(job_));
+    options.costs = settings_.history;
+    nodes_ = std::make_unique<NodeArray>(session_, settings_, job_.memories, job_.buffers, options, distribution_);
+    options.lanes = 1;
+    Kernels kernels(session_, options, settings_.kernels.sources);
+    composer_ = std::make_unique<Composer>(kernels);
+    nodes_->clear();
     // Launches the kernels once with empty queues, because PoCL compiles a kernel at its first launch.
-    nodes->trace_voxel(nodes->all(), Reserve::kWholeTree);
-    nodes->route();
-    nodes->accept(nodes->all(), Reserve::kWholeTree, 0);
-    session.finish();
-    build_s = seconds_since(start);
+    nodes_->trace_voxel(Reserve::kWholeTree);
+    nodes_->route();
+    nodes_->accept(Reserve::kWholeTree, 0);
+    session_.finish();
+    build_s_ = seconds_since(start);
 }
 
 TorusResult TorusRenderer::render(const ProgressCallback& progress, const RenderObservers& observers,
                                   const Checkpointing* checkpointing) {
-    Impl& p = *impl_;
-    if (observers.work && !p.settings.history)
+    if (observers.work && !settings_.history)
         throw std::logic_error("an observer of work needs TorusSettings::history");
     if (checkpointing != nullptr && (observers.work || observers.packets || observers.supersteps))
         throw std::logic_error("a render with observers cannot save checkpoints");
-    p.session.clear_profile();
-    const SpanLog::Span rendering = p.session.span("render");
-    const RankTraffic traffic_before = p.ranks.traffic();
+    session_.clear_profile();
+    const SpanLog::Span rendering = session_.span("render");
+    const RankTraffic traffic_before = ranks_.traffic();
     TorusRun run;
-    run.returns.reserve(std::min<std::uint64_t>(2 * traced_pixels(p.settings), kReservedReturns));
+    run.returns.reserve(std::min<std::uint64_t>(2 * traced_pixels(settings_), kReservedReturns));
     RenderObservers own_observers = observers;
-    if (!p.ranks.is_first()) own_observers.supersteps = {};
-    Checkpoints checkpoints(checkpointing, p.session, p.distribution,
-                            checkpointing ? state_settings(p.settings, p.job, p.distribution) : StateSettings{});
-    if (const auto deadlock = p.run_supersteps(run, checkpoints, progress, own_observers))
-        throw TorusDeadlock(*deadlock);
+    if (!ranks_.is_first()) own_observers.supersteps = {};
+    Checkpoints checkpoints(checkpointing, session_, distribution_,
+                            checkpointing ? state_settings(settings_, job_, distribution_) : StateSettings{});
+    run_supersteps(run, checkpoints, progress, own_observers);
     TorusResult result;
-    if (p.ranks.is_first()) p.compose(result, run.returns);
+    if (ranks_.is_first()) compose(result, run.returns);
     result.supersteps = std::move(run.supersteps);
     result.link_words = std::move(run.link_words);
-    p.collect(result);
+    collect(result);
     result.earlier_s = checkpoints.earlier_s();
     result.render_s = checkpoints.seconds();
-    result.traffic = p.ranks.traffic() - traffic_before;
-    p.describe(result);
-    if (p.ranks.is_first()) p.check(result);
+    result.traffic = ranks_.traffic() - traffic_before;
+    describe(result);
+    if (ranks_.is_first()) check(result);
     return result;
 }
 
 // Launches the computation of a superstep, which precedes the transfer of packets.
-void TorusRenderer::Impl::compute(NodeArray::Slots slots, Reserve reserve, bool injects, const NodeWorkSink& work) {
-    if (injects) nodes->inject(slots);
-    if (!work) return nodes->trace_voxel(slots, reserve);
-    const NodeStatus injected = nodes->read_status();
-    nodes->trace_voxel(slots, reserve);
-    nodes->report_work(injected, work);
+void TorusRenderer::compute(Reserve reserve, bool injects, const NodeWorkSink& work) {
+    if (injects) nodes_->inject();
+    if (!work) return nodes_->trace_voxel(reserve);
+    const NodeStatus injected = nodes_->read_status();
+    nodes_->trace_voxel(reserve);
+    nodes_->report_work(injected, work);
 }
 
 // Adds the counts of a superstep to the run, and passes them to `sink`. `words`: [node][RAYA_LINKS], number of words
 // charged for each link.
-void TorusRenderer::Impl::add_superstep(TorusRun& run, const NodeStatus& status, const MachineState& state,
-                                        const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const {
+void TorusRenderer::add_superstep(TorusRun& run, const NodeStatus& status, const MachineState& state,
+                                  const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const {
     run.supersteps.push_back({state.max_cycles, *std::max_element(words.begin(), words.end()), state.live});
-    if (sink) sink({run.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings.torus)), words});
+    if (sink) sink({run.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings_.torus)), words});
     for (std::size_t i = 0; i < words.size(); ++i) run.link_words[i] += words[i];
 }
 
-// Runs supersteps until the image is complete; on a deadlock, returns the state of the machine. All ranks read the
-// status of all nodes, so they make the same decisions. While packets are transferred between ranks, the inner nodes
-// compute the next superstep.
-std::optional<DeadlockFigures> TorusRenderer::Impl::run_supersteps(TorusRun& run, Checkpoints& checkpoints,
-                                                                   const ProgressCallback& progress,
-                                                                   const RenderObservers& observers) {
-    const SpanLog::Span span = session.span("supersteps");
-    nodes->clear();
-    run.link_words.assign(std::size_t{raya_nodes(settings.torus)} * RAYA_LINKS, 0);
+// Runs supersteps until the image is complete. All ranks read the status of all nodes_, so they make the same
+// decisions.
+void TorusRenderer::run_supersteps(TorusRun& run, Checkpoints& checkpoints, const ProgressCallback& progress,
+                                   const RenderObservers& observers) {
+    const SpanLog::Span span = session_.span("supersteps");
+    const std::uint32_t all_nodes = raya_nodes(settings_.torus), queue = job_.buffers.queue;
+    nodes_->clear();
+    run.link_words.assign(std::size_t{all_nodes} * RAYA_LINKS, 0);
     NodeStatus status(0);
     const auto visit = [&](RenderState& state) { visit_state(state, run, status); };
-    bool resumes = checkpoints.resume(visit);
-    if (!resumes) compute(nodes->all(), run.reserve, true, observers.work);
+    bool resumes = checkpoints.resume(visit), injects = true;
     for (;; ++run.superstep, resumes = false) {
-        if (!resumes) status = route(run, observers);
-        const MachineState state = machine_state(status, raya_nodes(settings.torus), job.buffers.queue);
+        if (!resumes) {
+            compute(run.reserve, injects, observers.work);
+            status = route(run, observers);
+        }
+        const MachineState state = machine_state(status, all_nodes, queue);
         run.max_live = std::max(run.max_live, state.live);
         if (!resumes) checkpoints.save_if_due(progress_of(state, run.returns.size(), run.max_live), visit);
-        const std::vector<std::uint64_t> words = nodes->exchange(status);
-        nodes->accept(nodes->inner(), run.reserve, run.superstep);
+        const std::vector<std::uint64_t> words = nodes_->exchange(status);
+        nodes_->accept(run.reserve, run.superstep);
 
         add_superstep(run, status, state, words, observers.supersteps);
         const bool ended = state.live == status.at(RAYA_ROOT, RAYA_STATUS_HOST) && state.all_injected;
         if (progress) progress(ended ? 1 : progress_of(state, run.returns.size(), run.max_live));
-        const bool injects = !state.all_injected && state.longest_queue <= job.buffers.queue / 4;
+        if (ended) return nodes_->finish_gather(run.returns);
+        injects = !state.all_injected && state.longest_queue <= queue / 4;
         // Packets that a superstep accepts with a tight reserve count as progress only in the next superstep. So only
         // three supersteps without progress prove a deadlock.
         run.stalled = state.progress == 0 && run.supersteps.back().max_link_words == 0 ? run.stalled + 1 : 0;
-        const Reserve next_reserve = run.stalled > 0 ? Reserve::kTight : Reserve::kWholeTree;
-        const bool continues = !ended && run.stalled < 3;
-        if (continues && nodes->inner().count > 0) compute(nodes->inner(), next_reserve, injects, observers.work);
-        nodes->finish_exchange();
-        nodes->accept(nodes->border(), run.reserve, run.superstep);
-        if (ended) {
-            nodes->finish_gather(run.returns);
-            return {};
-        }
-        if (!continues)
-            return DeadlockFigures{
-                scene_name,       run.superstep, state.live, state.full_queues, raya_nodes(settings.torus),
-                job.buffers.queue};
-        if (nodes->border().count > 0) compute(nodes->border(), next_reserve, injects, observers.work);
-        run.reserve = next_reserve;
+        if (run.stalled == 3)
+            throw TorusDeadlock(
+                fmt::format("{}: deadlock in superstep {}: {} packets wait for each other, {} of {} "
+                            "queues are full at {} packets; use a longer queue",
+                            scene_name_, run.superstep, state.live, state.full_queues, all_nodes, queue),
+                queue);
+        run.reserve = run.stalled > 0 ? Reserve::kTight : Reserve::kWholeTree;
     }
 }
 
 // Saves or restores the state between routing and the transfer of packets.
-void TorusRenderer::Impl::visit_state(RenderState& state, TorusRun& run, NodeStatus& status) {
-    if (!state.restores()) nodes->finish_gather(run.returns);
+void TorusRenderer::visit_state(RenderState& state, TorusRun& run, NodeStatus& status) {
+    if (!state.restores()) nodes_->finish_gather(run.returns);
     for (std::uint32_t* number : {&run.superstep, &run.stalled}) state.value(*number);
     state.value(run.reserve);
     state.value(run.max_live);
     state.rank_0(run.supersteps, true);
     state.rank_0(run.link_words);
     state.rank_0(run.returns, true);
-    if (ranks.is_first() &&
+    if (ranks_.is_first() &&
         (run.supersteps.size() != run.superstep || run.stalled > 2 || run.reserve > Reserve::kTight))
         throw UserError("damaged");
-    nodes->visit_state(state, status);
+    nodes_->visit_state(state, status);
 }
 
-// Moves packets from the queues to the outboxes, and starts to read the returns. Returns the status of all nodes.
-NodeStatus TorusRenderer::Impl::route(TorusRun& run, const RenderObservers& observers) {
-    nodes->route();
-    const NodeStatus status = nodes->read_status();
-    nodes->continue_gather(status, run.returns);
+// Moves packets from the queues to the outboxes, and starts to read the returns. Returns the status of all nodes_.
+NodeStatus TorusRenderer::route(TorusRun& run, const RenderObservers& observers) {
+    nodes_->route();
+    const NodeStatus status = nodes_->read_status();
+    nodes_->continue_gather(status, run.returns);
     if (observers.packets)
-        nodes->record_packets(status, run.superstep,
-                              run.superstep % observers.packets_every ? PacketSink{} : observers.packets);
+        nodes_->record_packets(status, run.superstep,
+                               run.superstep % observers.packets_every ? PacketSink{} : observers.packets);
     return status;
 }
 
-void TorusRenderer::Impl::compose(TorusResult& result, const std::vector<raya_head>& returns) {
-    const SpanLog::Span span = session.span("compose");
+void TorusRenderer::compose(TorusResult& result, const std::vector<raya_head>& returns) {
+    const SpanLog::Span span = session_.span("compose");
     result.contributions = returns.size();
     for (const raya_head& packet : returns) result.returns += (packet.state & RAYA_STATE_CHARGED) != 0;
-    const std::uint32_t pixels = settings.width * settings.height;
-    result.image = {static_cast<int>(settings.width), static_cast<int>(settings.height),
-                    composer->compose(sort_contributions(returns, pixels))};
+    const std::uint32_t pixels = settings_.width * settings_.height;
+    result.image = {static_cast<int>(settings_.width), static_cast<int>(settings_.height),
+                    composer_->compose(sort_contributions(returns, pixels))};
 }
 
-void TorusRenderer::Impl::collect(TorusResult& result) {
-    const SpanLog::Span span = session.span("collect");
-    const std::vector<std::uint64_t> events = nodes->read_events();
-    const auto cycles = t805_cycles(settings.packets);
-    std::vector<std::uint64_t> loads(raya_nodes(settings.torus));
-    for (std::size_t i = 0; i < events.size(); ++i) {
-        result.events[i % RAYA_EVENTS] += events[i];
-        loads[i / RAYA_EVENTS] += cycles[i % RAYA_EVENTS] * events[i];
-    }
-    if (ranks.is_first()) result.load = load_of(std::move(loads));
-    result.rank_events = nodes->read_own_events();
-    std::tie(result.made, result.rank_made) = nodes->read_created_counts();
-    result.ended = nodes->read_ended_counts();
-    const NodeStatus status = nodes->read_status();
-    for (std::uint32_t node = 0; node < raya_nodes(settings.torus); ++node)
+void TorusRenderer::collect(TorusResult& result) {
+    const SpanLog::Span span = session_.span("collect");
+    const NodeArray::Counters own = nodes_->read_counters();
+    result.rank_events = sums_of<EventCounts>(own.events);
+    result.rank_made = sums_of<PacketCounts>(own.made);
+    const std::vector<std::uint64_t> events = distribution_.gather(own.events, RAYA_EVENTS);
+    result.events = sums_of<EventCounts>(events);
+    result.made = sums_of<PacketCounts>(distribution_.gather(own.made, RAYA_KINDS));
+    result.ended = sums_of<PacketCounts>(distribution_.gather(own.ended, RAYA_KINDS));
+    const auto cycles = t805_cycles(settings_.packets);
+    std::vector<std::uint64_t> loads(raya_nodes(settings_.torus));
+    for (std::size_t i = 0; i < events.size(); ++i) loads[i / RAYA_EVENTS] += cycles[i % RAYA_EVENTS] * events[i];
+    if (ranks_.is_first()) result.load = load_of(std::move(loads));
+    const NodeStatus status = nodes_->read_status();
+    for (std::uint32_t node = 0; node < raya_nodes(settings_.torus); ++node)
         result.queue_max = std::max<std::uint64_t>(result.queue_max, status.at(node, RAYA_STATUS_QUEUE_MAX));
-    result.link_packets = nodes->link_packets();
+    result.link_packets = nodes_->link_packets();
     for (const std::uint64_t packets : result.link_packets) result.hops += packets;
-    result.sent_rays = nodes->ray_links().sent_packets();
-    result.received_rays = nodes->ray_links().received_packets();
-    result.received_returns = nodes->return_links().received_packets();
+    result.sent_rays = nodes_->ray_links().sent_packets();
+    result.received_rays = nodes_->ray_links().received_packets();
+    result.received_returns = nodes_->return_links().received_packets();
 }
 
 // Throws std::logic_error if a packet was lost or duplicated, because the image would be wrong.
-void TorusRenderer::Impl::check(const TorusResult& result) const {
+void TorusRenderer::check(const TorusResult& result) const {
     for (std::size_t kind = 1; kind < RAYA_KINDS; ++kind)
         if (result.made[kind] != result.ended[kind])
             throw std::logic_error(
                 fmt::format("{} packets of kind {} were made, {} ended", result.made[kind], kind, result.ended[kind]));
-    if (result.made[RAYA_KIND_PRIMARY] != traced_pixels(settings))
+    if (result.made[RAYA_KIND_PRIMARY] != traced_pixels(settings_))
         throw std::logic_error(
-            fmt::format("{} primary rays for {} pixels", result.made[RAYA_KIND_PRIMARY], traced_pixels(settings)));
+            fmt::format("{} primary rays for {} pixels", result.made[RAYA_KIND_PRIMARY], traced_pixels(settings_)));
     const EventCounts& e = result.events;
-    const std::uint64_t expected_returns = settings.packets.one_return_per_ray
+    const std::uint64_t expected_returns = settings_.packets.one_return_per_ray
                                                ? e[RAYA_PRIMARY] + e[RAYA_REFLECTED] + e[RAYA_REFRACTED]
                                                : result.made[RAYA_KIND_RETURN];
     if (result.returns != expected_returns)
@@ -275,19 +243,19 @@ void TorusRenderer::Impl::check(const TorusResult& result) const {
             fmt::format("{} returns are charged as messages, expected {}", result.returns, expected_returns));
 }
 
-void TorusRenderer::Impl::describe(TorusResult& result) const {
-    result.copies = job.copies;
-    result.scale = job.scale;
-    result.buffers = job.buffers;
-    result.copied_words = nodes->copies_words_to_local() ? job.memories.words.size() : 0;
-    result.node_bytes = node_bytes(job.fullest_words, job.buffers, links_of_node(settings.torus));
-    result.parts_of_rank = distribution.count();
-    result.lanes = settings.kernels.lanes;
-    result.group_size = settings.kernels.group_size;
-    result.build_options = nodes->build_options();
-    result.tuned = settings.kernels.origin;
-    result.build_s = build_s;
-    result.commands = session.profile().summary();
+void TorusRenderer::describe(TorusResult& result) const {
+    result.copies = job_.copies;
+    result.scale = job_.scale;
+    result.buffers = job_.buffers;
+    result.copied_words = nodes_->copies_words_to_local() ? job_.memories.words.size() : 0;
+    result.node_bytes = node_bytes(job_.fullest_words, job_.buffers, links_of_node(settings_.torus));
+    result.parts_of_rank = distribution_.count();
+    result.lanes = settings_.kernels.lanes;
+    result.group_size = settings_.kernels.group_size;
+    result.build_options = nodes_->build_options();
+    result.tuned = settings_.kernels.origin;
+    result.build_s = build_s_;
+    result.commands = session_.profile().summary();
 }
 
 namespace {

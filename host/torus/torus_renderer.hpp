@@ -6,52 +6,19 @@
 #include <memory>
 #include <vector>
 
+#include "host/array/checkpoints.hpp"
 #include "host/base/checkpoint.hpp"
 #include "host/base/log.hpp"
 #include "host/cl/commands.hpp"
 #include "host/cl/kernel_options.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/scene/scene.hpp"
+#include "host/torus/node_array.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_result.hpp"
-#include "host/torus/topology.hpp"
 #include "kernels/shared/packet.h"
 
 namespace raya {
-
-/// Renders images of one scene. All ranks must make the same calls in the same order.
-class TorusRenderer {
-  public:
-    /// Collective: packs and divides the scene, checks that it fits the nodes, builds the kernels and allocates the
-    /// device memory for the nodes of this rank. Only rank 0 reads `scene`; it calls `packed`, if not empty, when it no
-    /// longer needs the scene's objects. Throws UserError if the scene does not fit,
-    /// a setting is out of range or there are more ranks than nodes, and DeviceError if the device fails.
-    TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks = Ranks::single(),
-                  const std::function<void()>& packed = {});
-    ~TorusRenderer();
-
-    /// Renders one image; can be called repeatedly. All ranks must set the same members of `observers`. In ranks other
-    /// than 0 the result has no image and no counts. Throws TorusDeadlock, or std::logic_error if RenderObservers::work
-    /// is set without TorusSettings::history, or if checkpointing is combined with observers. With `checkpointing`, a
-    /// checkpoint may be saved in each superstep. A resumed render returns the same image and counts as an
-    /// uninterrupted one; its times are the sums over all runs.
-    TorusResult render(const ProgressCallback& progress = {}, const RenderObservers& observers = {},
-                       const Checkpointing* checkpointing = nullptr);
-
-    /// Returns the factor by which the scene's lengths are multiplied.
-    const LengthScale& scale() const;
-
-    /// Chooses the pixels that the following renders compute, so that one renderer can render the pixel subsets of
-    /// several groups of nodes one after another.
-    void set_pixels(const PixelSubset& pixels);
-
-    /// Sets the capacity of the queues, in packets, for the following images. The queues may exceed a node's memory.
-    /// Throws UserError if the queues do not fit the device, and DeviceError if the device fails.
-    void set_queue(std::uint32_t queue);
-
-  private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
-};
 
 // Sorts the contributions that the root has received, by pixel and by position in the pixel's ray tree, and sums them.
 
@@ -83,6 +50,60 @@ class Composer {
     Session& session_;
     std::uint32_t group_size_;
     ComposeKernel compose_;
+};
+
+/// Renders images of one scene. All ranks must make the same calls in the same order.
+class TorusRenderer {
+  public:
+    /// Collective: packs and divides the scene, checks that it fits the nodes, builds the kernels and allocates the
+    /// device memory for the nodes of this rank. Only rank 0 reads `scene`; it calls `packed`, if not empty, when it no
+    /// longer needs the scene's objects. Throws UserError if the scene does not fit,
+    /// a setting is out of range or there are more ranks than nodes, and DeviceError if the device fails.
+    TorusRenderer(Session& session, const Scene& scene, const TorusSettings& settings, Ranks& ranks = Ranks::single(),
+                  const std::function<void()>& packed = {});
+
+    /// Renders one image; can be called repeatedly. All ranks must set the same members of `observers`. In ranks other
+    /// than 0 the result has no image and no counts. Throws TorusDeadlock, or std::logic_error if RenderObservers::work
+    /// is set without TorusSettings::history, or if checkpointing is combined with observers. With `checkpointing`, a
+    /// checkpoint may be saved in each superstep. A resumed render returns the same image and counts as an
+    /// uninterrupted one; its times are the sums over all runs.
+    TorusResult render(const ProgressCallback& progress = {}, const RenderObservers& observers = {},
+                       const Checkpointing* checkpointing = nullptr);
+
+    /// Returns the factor by which the scene's lengths are multiplied.
+    const LengthScale& scale() const { return job_.scale; }
+
+    /// Chooses the pixels that the following renders compute, so that one renderer can render the pixel subsets of
+    /// several groups of nodes one after another.
+    void set_pixels(const PixelSubset& pixels);
+
+    /// Sets the capacity of the queues, in packets, for the following images. The queues may exceed a node's memory.
+    /// Throws UserError if the queues exceed the device's maximum buffer, and DeviceError if the device fails.
+    void set_queue(std::uint32_t queue);
+
+  private:
+    void build();
+    void run_supersteps(TorusRun& run, Checkpoints& checkpoints, const ProgressCallback& progress,
+                        const RenderObservers& observers);
+    void add_superstep(TorusRun& run, const NodeStatus& status, const MachineState& state,
+                       const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const;
+    NodeStatus route(TorusRun& run, const RenderObservers& observers);
+    void compute(Reserve reserve, bool injects, const NodeWorkSink& work);
+    void compose(TorusResult& result, const std::vector<raya_head>& returns);
+    void collect(TorusResult& result);
+    void check(const TorusResult& result) const;
+    void describe(TorusResult& result) const;
+    void visit_state(RenderState& state, TorusRun& run, NodeStatus& status);
+
+    Session& session_;
+    Ranks& ranks_;
+    TorusSettings settings_;
+    std::string scene_name_;
+    NodeDistribution distribution_;
+    TorusJob job_;
+    std::unique_ptr<NodeArray> nodes_;
+    std::unique_ptr<Composer> composer_;
+    double build_s_ = 0;
 };
 
 }  // namespace raya

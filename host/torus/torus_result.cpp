@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
 #include "host/model/budget.hpp"
@@ -67,12 +66,6 @@ double stepwise_ms(const std::vector<Superstep>& supersteps) {
 
 }  // namespace
 
-TorusDeadlock::TorusDeadlock(const DeadlockFigures& state)
-    : UserError(fmt::format("{}: deadlock in superstep {}: {} packets wait for each other, {} of {} queues are full at "
-                            "{} packets; use a longer queue",
-                            state.scene, state.superstep, state.live, state.full, state.nodes, state.queue)),
-      figures(state) {}
-
 std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const TorusResult& r) {
     const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
     EventCounts inject_events{}, trace_events = r.rank_events;
@@ -101,12 +94,9 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
 }
 
 TorusTime torus_time(const raya_torus& torus, const TorusResult& result) {
-    const std::size_t nodes = raya_nodes(torus), links = nodes * RAYA_LINKS;
-    if (result.load.per_pe.size() != nodes || result.link_words.size() != links || result.link_packets.size() != links)
-        throw std::invalid_argument("torus_time: the result is of a torus with another number of nodes");
     const std::vector<std::uint64_t> messages = message_cycles(torus, result);
     std::uint64_t processor_cycles = 0;
-    for (std::size_t node = 0; node < nodes; ++node)
+    for (std::size_t node = 0; node < messages.size(); ++node)
         processor_cycles = std::max(processor_cycles, result.load.per_pe[node] + messages[node]);
     TorusTime time;
     time.compute_ms = t805_ms(result.load.max);
@@ -119,16 +109,6 @@ TorusTime torus_time(const raya_torus& torus, const TorusResult& result) {
 }
 
 namespace {
-
-struct Kind {
-    std::uint32_t number;
-    const char* name;
-};
-constexpr std::array<Kind, RAYA_KINDS - 1> kKinds = {{{RAYA_KIND_PRIMARY, "primary"},
-                                                      {RAYA_KIND_REFLECTED, "reflected"},
-                                                      {RAYA_KIND_REFRACTED, "refracted"},
-                                                      {RAYA_KIND_SHADOW, "shadow"},
-                                                      {RAYA_KIND_RETURN, "return"}}};
 
 const char* returns_name(const PacketCharge& packets) { return packets.one_return_per_ray ? "rays" : "terms"; }
 
@@ -152,10 +132,10 @@ struct LinkBytes {
 };
 
 void packet_members(Members& m, const TorusResult& result) {
-    for (const Kind& kind : kKinds)
-        m(kind.name, "Numbers of packets of this kind.", [&](Members& packets) {
-            packets("made", result.made[kind.number], "Number of packets that nodes created.");
-            packets("ended", result.ended[kind.number], "Number of packets that ended; equal to `made`.");
+    for (std::size_t kind = 1; kind < RAYA_KINDS; ++kind)
+        m(kPacketKinds[kind], "Numbers of packets of this kind.", [&](Members& packets) {
+            packets("made", result.made[kind], "Number of packets that nodes created.");
+            packets("ended", result.ended[kind], "Number of packets that ended; equal to `made`.");
         });
 }
 
@@ -224,8 +204,8 @@ std::string lines(const TorusSettings& settings, const TorusResult& result, cons
                   const TorusTime& time) {
     const auto made = std::accumulate(result.made.begin(), result.made.end(), std::uint64_t{0});
     std::string kinds;
-    for (const Kind& kind : kKinds)
-        kinds += fmt::format("{}{} {}", kinds.empty() ? "" : " + ", result.made[kind.number], kind.name);
+    for (std::size_t kind = 1; kind < RAYA_KINDS; ++kind)
+        kinds += fmt::format("{}{} {}", kinds.empty() ? "" : " + ", result.made[kind], kPacketKinds[kind]);
     std::string text =
         fmt::format("packets {} = {}; {}\n", made, kinds, counted(result.supersteps.size(), "superstep"));
     text += fmt::format("charged {} of {}, {} words a ray and {} a return; {} primary rays discarded\n",

@@ -60,6 +60,10 @@ struct RenderObservers {
     NodeWorkSink work{};              // called for each node and superstep; needs TorusSettings::history and one rank
 };
 
+/// [RAYA_KIND_*]: name of the kind of packets, in files and reports.
+inline constexpr std::array<const char*, RAYA_KINDS> kPacketKinds = {"",          "primary", "reflected",
+                                                                     "refracted", "shadow",  "return"};
+
 /// Number of packets of each kind (RAYA_KIND_* of kernels/shared/packet.h).
 using PacketCounts = std::array<std::uint64_t, RAYA_KINDS>;
 
@@ -82,21 +86,13 @@ struct TorusResult : RenderResult {  // pixels outside TorusSettings::pixels are
     std::uint64_t contributions = 0;  // number of return packets that reached the host
 };
 
-/// State of a machine in a deadlock: no packet can move, because full nodes wait for each other.
-struct DeadlockFigures {
-    std::string scene;
-    std::uint64_t superstep = 0;
-    std::uint64_t live = 0;   // number of packets in queues and mailboxes
-    std::uint64_t full = 0;   // number of full queues
-    std::uint32_t nodes = 0;  // number of nodes
-    std::uint32_t queue = 0;  // capacity of a queue, packets
-};
-
-/// Thrown if the torus is in a deadlock. Longer queues prevent the deadlock.
+/// Thrown if the torus is in a deadlock: no packet can move, because full nodes wait for each other. Longer queues
+/// prevent the deadlock.
 struct TorusDeadlock : UserError {
-    explicit TorusDeadlock(const DeadlockFigures& state);
+    TorusDeadlock(const std::string& message, std::uint32_t queue_capacity)
+        : UserError(message), queue(queue_capacity) {}
 
-    DeadlockFigures figures;
+    std::uint32_t queue;  // capacity of a queue, packets
 };
 
 /// Returns the work of each kernel of this rank. Nodes count events for all kernels together. Events of the generation
@@ -118,7 +114,7 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
 ///     rate of a link with both directions in use. The processors' work for messages is not added, because it overlaps
 ///     with the transfers and is shorter. A processor works at most 12 link directions x (2 + 19 / 6) = 62 cycles
 ///     for each word over the busiest link direction (packets of 6 words). The word's transfer takes 83 cycles.
-/// So overlapped <= stepwise. Throws std::invalid_argument if `result` is for another torus.
+/// So overlapped <= stepwise.
 TorusTime torus_time(const raya_torus& torus, const TorusResult& result);
 
 // State of a torus render on the host.

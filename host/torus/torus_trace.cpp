@@ -3,11 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
-#include <optional>
-#include <set>
-#include <stdexcept>
+#include <random>
 
 #include "host/model/t805.hpp"
 #include "host/torus/topology.hpp"
@@ -17,37 +14,6 @@ namespace {
 
 constexpr std::size_t kCompressedBlock = 1 << 16;  // number of bytes of text that PacketTrace compresses at a time
 
-// Number of a packet's ray, and number of the ray's parent; a primary ray has no parent.
-struct Lineage {
-    std::uint64_t ray = 0;
-    std::optional<std::uint64_t> parent;
-};
-
-// A return packet gets a new number that is not looked up again, because the packet is recorded once and has no
-// children.
-Lineage lineage_of(RayNumbers& numbers, const PacketRecord& record) {
-    const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
-    const RayId id = {record.head.pixel, RayId::tree_index_of(record.head.path, raya_state_level(state)),
-                      raya_state_light(state)};
-    Lineage lineage;
-    lineage.ray = kind == RAYA_KIND_RETURN ? numbers.next_number() : numbers.number_of(id);
-    if (kind == RAYA_KIND_RETURN)
-        lineage.parent = numbers.number_of(id);
-    else if (kind != RAYA_KIND_PRIMARY)
-        lineage.parent = numbers.number_of(id.parent());
-    return lineage;
-}
-
-// Throws std::logic_error for a packet head that only a faulty kernel can produce.
-void check_head(const PacketRecord& record) {
-    const std::uint32_t state = record.head.state, kind = raya_state_kind(state);
-    const bool is_level_0 = raya_state_level(state) == 0, has_light = raya_state_light(state) != 0;
-    const bool valid =
-        kind == RAYA_KIND_RETURN || (has_light == (kind == RAYA_KIND_SHADOW) &&
-                                     (kind == RAYA_KIND_SHADOW || is_level_0 == (kind == RAYA_KIND_PRIMARY)));
-    if (!valid) throw std::logic_error(fmt::format("packet trace: invalid packet state {:#x}", state));
-}
-
 constexpr TraceTrack kSupersteps = {kTraceMachine, 1};
 constexpr std::uint32_t kFirstNodeTrack = 2;  // track of node 0
 
@@ -55,33 +21,25 @@ constexpr std::uint32_t kFirstNodeTrack = 2;  // track of node 0
 double link_ms(std::uint64_t words) { return t805_link_ms(words, words); }
 TraceTrack track_of(std::uint32_t node) { return {kTraceMachine, kFirstNodeTrack + node}; }
 
-// Returns the number of links on the route of a packet. The routes of returns take the axes in another order than those
-// of rays, but are equally long.
-std::uint32_t route_length(const raya_torus& torus, std::uint32_t source, std::uint32_t destination) {
-    return raya_node_distance(torus, source, destination);
-}
-
 }  // namespace
-
-const char* packet_kind_name(std::uint32_t kind) {
-    constexpr std::array<const char*, RAYA_KINDS> kNames = {"",          "primary", "reflected",
-                                                            "refracted", "shadow",  "return"};
-    if (kind == RAYA_KIND_NONE || kind >= kNames.size())
-        throw std::logic_error(fmt::format("invalid packet kind {}", kind));
-    return kNames[kind];
-}
 
 PacketTrace::PacketTrace() : text_("superstep,source,destination,kind,bytes,ray,parent\n") {}
 
+std::uint64_t PacketTrace::number_of(const RayId& ray) {
+    const auto [number, is_new] = numbers_.try_emplace(ray, next_number_);
+    next_number_ += is_new;
+    return number->second;
+}
+
 void PacketTrace::add(const PacketRecord& record) {
-    const std::uint32_t state = record.head.state;
-    const char* const kind = packet_kind_name(raya_state_kind(state));
-    check_head(record);
-    const Lineage lineage = lineage_of(numbers_, record);
+    const std::uint32_t kind = raya_state_kind(record.head.state);
+    const RayId ray = RayId::of(record.head.pixel, record.head.path, record.head.state);
+    // A return gets a new number that is not looked up again, because it is recorded once and has no children.
+    const std::uint64_t number = kind == RAYA_KIND_RETURN ? next_number_++ : number_of(ray);
     auto to = std::back_inserter(text_);
-    fmt::format_to(to, "{},{},{},{},{},{},", record.superstep, record.source, record.destination, kind,
-                   sizeof(std::uint32_t) * record.words, lineage.ray);
-    if (lineage.parent) fmt::format_to(to, "{}", *lineage.parent);
+    fmt::format_to(to, "{},{},{},{},{},{},", record.superstep, record.source, record.destination, kPacketKinds.at(kind),
+                   sizeof(std::uint32_t) * record.words, number);
+    if (kind != RAYA_KIND_PRIMARY) fmt::format_to(to, "{}", number_of(kind == RAYA_KIND_RETURN ? ray : ray.parent()));
     text_ += '\n';
     ++rows_;
     if (text_.size() < kCompressedBlock) return;
@@ -107,13 +65,9 @@ void TorusTrace::add_superstep(const SuperstepDetail& step) {
     steps_.push_back(std::move(nodes));
 }
 
-// Reservoir sampling (J. S. Vitter, "Random Sampling with a Reservoir", 1985, algorithm R).
 void TorusTrace::add_packet(const PacketRecord& p) {
-    const SampledPacket sample = {p.superstep, p.source, p.destination, p.head.state, p.head.pixel};
-    ++packets_seen_;
-    if (packets_.size() < kMaxPackets) return packets_.push_back(sample);
-    const std::uint64_t index = random_.next() % packets_seen_;
-    if (index < kMaxPackets) packets_[index] = sample;
+    if (p.superstep % kPacketsEvery == 0)
+        packets_.push_back({p.superstep, p.source, p.destination, raya_state_kind(p.head.state)});
 }
 
 // Adds supersteps and flows to a trace. The supersteps follow one another, from time 0 on.
@@ -141,23 +95,27 @@ class TorusTrace::Timeline {
 
     // Adds the flows and returns their number.
     std::size_t add_flows() {
-        std::set<std::uint32_t> traced_nodes;
-        for (const TracedPe& n : nodes_) traced_nodes.insert(n.pe);
-        std::size_t flows = 0;
-        for (const SampledPacket& p : machine_trace_.packets_) {
-            const std::size_t arrival = p.superstep + route_length(machine_trace_.torus_, p.source, p.destination);
-            if (!traced_nodes.contains(p.source) || !traced_nodes.contains(p.destination) ||
-                arrival >= begins_ms_.size())
-                continue;
-            trace_.flow(packet_kind_name(raya_state_kind(p.state)), track_of(p.source),
-                        nanoseconds(compute_ends_ms_[p.superstep]), track_of(p.destination),
-                        nanoseconds(begins_ms_[arrival]));
-            ++flows;
-        }
-        return flows;
+        std::vector<bool> is_traced(raya_nodes(machine_trace_.torus_));
+        for (const TracedPe& n : nodes_) is_traced[n.pe] = true;
+        std::vector<TracedPacket> shown;
+        for (const TracedPacket& p : machine_trace_.packets_)
+            if (arrival_of(p) < begins_ms_.size() && is_traced[p.source] && is_traced[p.destination])
+                shown.push_back(p);
+        std::vector<TracedPacket> sample;
+        std::ranges::sample(shown, std::back_inserter(sample), kMaxPackets, std::mt19937());
+        for (const TracedPacket& p : sample)
+            trace_.flow(kPacketKinds[p.kind], track_of(p.source), nanoseconds(compute_ends_ms_[p.superstep]),
+                        track_of(p.destination), nanoseconds(begins_ms_[arrival_of(p)]));
+        return sample.size();
     }
 
   private:
+    // Returns the earliest superstep in which the packet can arrive. The routes of returns take the axes in another
+    // order than those of rays, but are equally long.
+    std::size_t arrival_of(const TracedPacket& p) const {
+        return p.superstep + raya_node_distance(machine_trace_.torus_, p.source, p.destination);
+    }
+
     void add_machine(std::size_t step, double end_ms) {
         const std::vector<NodeStep>& nodes = machine_trace_.steps_[step];
         const Superstep& superstep = result_.supersteps[step];
@@ -217,13 +175,12 @@ void TorusTrace::add_to(TraceFile& trace, const TorusResult& result, std::size_t
     trace.metadata()["machine"] = {
         {"name", "torus"},
         {"nodes", raya_nodes(torus_)},
-        {"packets_seen", packets_seen_},
-        {"packets_sampled", packets_.size()},
+        {"packets_recorded", packets_.size()},
         {"flows", flows},
         {"note",
          "modelled time, from time 0 of the trace; every superstep waits for its busiest node and link. The modelled "
-         "time is independent of the measured times above. Packets are recorded in every 16th superstep, with "
-         "--packets in every superstep; a flow ends at the earliest superstep in which its packet can arrive"}};
+         "time is independent of the measured times above. Flows show packets of every 16th superstep; a flow ends at "
+         "the earliest superstep in which its packet can arrive"}};
 }
 
 }  // namespace raya

@@ -1,14 +1,16 @@
 // Runs raya under mpirun with one process per rank. Records the output, the exit code and the number of processes that
 // do not end by themselves.
 #pragma once
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <functional>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "tests/cli/run_program.hpp"
+#include "tests/cli/refusals.hpp"
 
 namespace raya {
 
@@ -183,5 +185,28 @@ inline RanksOutcome run_ranks(const Mpi& mpi, const std::vector<std::string>& ar
     if (!sent) throw std::runtime_error("the ranks did not start in time for the signal: " + outcome.describe());
     return outcome;
 }
+
+/// A shell script that runs a program. On one rank it evaluates a shell command before it runs the program.
+class RankScript {
+  public:
+    RankScript() {
+        std::ofstream(script_) << "#!/bin/sh\nonly_rank=$1; command=$2; shift 2\n"
+                                  "[ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = \"$only_rank\" ] && eval \"$command\"\n"
+                                  "exec \"$@\"\n";
+        ::chmod(script_.c_str(), 0755);
+    }
+
+    /// Returns arguments of mpirun. `command`: for the rank `rank`.
+    Arguments arguments(const Mpi& mpi, std::uint32_t ranks, std::uint32_t rank, const std::string& command,
+                        const Arguments& program_arguments) const {
+        Arguments launched = {"-n", std::to_string(ranks), script_, std::to_string(rank), command, mpi.program};
+        launched.insert(launched.end(), program_arguments.begin(), program_arguments.end());
+        return launched;
+    }
+
+  private:
+    ScratchFolder folder_;
+    std::string script_ = folder_ / "one_rank.sh";
+};
 
 }  // namespace raya

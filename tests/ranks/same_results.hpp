@@ -1,10 +1,7 @@
 // Checks that two renders, for example on one and on several ranks, give the same results bit for bit.
 #pragma once
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <string>
 #include <tuple>
-#include <vector>
 
 #include "host/ring/ring_result.hpp"
 #include "host/torus/torus_result.hpp"
@@ -50,32 +47,6 @@ inline void check_same(const TorusResult& a, const TorusResult& b) {
         CHECK(a.supersteps[i].max_node_cycles == b.supersteps[i].max_node_cycles);
         CHECK(a.supersteps[i].max_link_words == b.supersteps[i].max_link_words);
         CHECK(a.supersteps[i].live == b.supersteps[i].live);
-    }
-}
-
-/// Checks that the work of the ranks' kernels adds up to that of a single rank. The bytes of some kernels depend on the
-/// number of launches: they are compared only for the kernels in `bytes_of`.
-inline void check_sums(const std::vector<KernelWork>& single, const std::vector<std::vector<KernelWork>>& ranks,
-                       const std::vector<std::string>& bytes_of) {
-    for (std::size_t i = 0; i < single.size(); ++i) {
-        CAPTURE(single[i].label);
-        KernelWork sum;
-        for (const std::vector<KernelWork>& works : ranks) {
-            REQUIRE(works[i].label == single[i].label);
-            sum.rays += works[i].rays;
-            sum.operations += works[i].operations;
-            sum.divisions += works[i].divisions;
-            sum.roots += works[i].roots;
-            sum.bytes += works[i].bytes;
-        }
-        CHECK(sum.rays == single[i].rays);
-        CHECK(sum.operations == single[i].operations);
-        CHECK(sum.divisions == single[i].divisions);
-        CHECK(sum.roots == single[i].roots);
-        if (std::find(bytes_of.begin(), bytes_of.end(), single[i].label) != bytes_of.end()) {
-            CHECK(single[i].bytes > 0);
-            CHECK(sum.bytes == single[i].bytes);
-        }
     }
 }
 

@@ -1,17 +1,16 @@
-// Runs of raya under mpirun write the same files as a single process.
+// Runs of raya under mpirun write the same files as a single process, and print everything once.
 #include <map>
+#include <set>
 
 #include "host/base/whole_file.hpp"
 #include "tests/cli/device_with_fault.hpp"
-#include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
-#include "tests/ranks/rank_script.hpp"
+#include "tests/ranks/run_ranks.hpp"
+#include "tests/report/trace_schema.hpp"
 #include "tests/thorough.hpp"
 
 namespace raya {
 namespace {
-
-constexpr std::uint32_t kRankCounts[] = {1, 2, 3, 4, 7, 8};
 
 /// Contents of a render's files, by file name. Reports omit the measured values.
 using Files = std::map<std::string, std::string>;
@@ -31,139 +30,158 @@ Files files_in(const ScratchFolder& folder) {
     return files;
 }
 
-void check_all_rank_counts(const ScratchFolder& folder, const Arguments& render) {
-    const RunOutcome single_run = run_raya(render);
-    INFO(single_run.describe());
-    REQUIRE(single_run.code == 0);
-    const Files single_files = files_in(folder);
-    for (const Mpi& mpi : installed_mpis())
-        for (const std::uint32_t count : kRankCounts) {
-            Arguments arguments = {"-n", std::to_string(count), mpi.program};
-            arguments.insert(arguments.end(), render.begin(), render.end());
-            const RanksOutcome run = run_ranks(mpi, arguments);
-            INFO(run.describe());
-            REQUIRE(run.code == 0);
-            CHECK(run.messages == 0);
-            CHECK(run.remaining == 0);
-            const Files rank_files = files_in(folder);
-            REQUIRE(rank_files.size() == single_files.size());
-            for (const auto& [name, bytes] : single_files) {
-                CAPTURE(name);
-                CHECK((rank_files.at(name) == bytes));
-            }
-        }
+RanksOutcome run_on(const Mpi& mpi, std::uint32_t count, const Arguments& render, const RunOptions& options = {}) {
+    Arguments arguments = {"-n", std::to_string(count), mpi.program};
+    arguments.insert(arguments.end(), render.begin(), render.end());
+    return run_ranks(mpi, arguments, 0, {}, options);
 }
 
-TEST_CASE("mpirun: images, counts and loads of the ring are those of a single process", "[ranks][.mpirun]") {
+void check_same_files(const Mpi& mpi, std::uint32_t count, const Arguments& render, const ScratchFolder& folder,
+                      const Files& expected, const RunOptions& options = {}) {
+    const RanksOutcome run = run_on(mpi, count, render, options);
+    INFO(run.describe());
+    REQUIRE(run.code == 0);
+    CHECK(run.messages == 0);
+    CHECK(run.remaining == 0);
+    CHECK((files_in(folder) == expected));
+}
+
+}  // namespace
+
+TEST_CASE("mpirun: the files of any number of ranks are those of a single process", "[ranks][.mpirun]") {
     const ScratchFolder folder;
-    const Arguments common = {"render",   scene_file("centre"), "-o",      folder / "x.pfm", "--cost", folder / "c.pfm",
-                              "--report", folder / "x.json",    "--quiet", "--lanes",        "4",      "--size",
-                              "40x24"};
+    const Arguments common = {"render",   scene_file("spheres"),
+                              "-o",       folder / "x.pfm",
+                              "--report", folder / "x.json",
+                              "--quiet",  "--group",
+                              "1",        "--lanes",
+                              "4"};
     for (const Arguments& options :
-         {Arguments{"--pes", "8", "--accel", "bvh", "--from", "3,-6,4", "--light", "5,5,9"},
-          Arguments{"--pes", "13", "--antialias", "supersample", "--mask", folder / "m.pfm"}}) {
+         {Arguments{"--pes", "13", "--antialias", "supersample", "--mask", folder / "m.pfm", "--cost", folder / "c.pfm",
+                    "--accel", "bvh", "--from", "3,-6,4", "--light", "5,5,9", "--size", "40x24"},
+          Arguments{"--machine", "torus", "--nodes", "3x2x2", "--packets", folder / "p.csv.gz", "--size", "16"}}) {
         Arguments render = common;
         render.insert(render.end(), options.begin(), options.end());
-        check_all_rank_counts(folder, render);
+        REQUIRE(run_raya(render).code == 0);
+        const Files expected = files_in(folder);
+        CHECK(expected.size() == (options.size() > 10 ? 4 : 3));
+        for (const Mpi& mpi : installed_mpis())
+            for (const std::uint32_t count : quick(2, {3u, 8u, 1u, 2u, 4u, 7u}))
+                check_same_files(mpi, count, render, folder, expected);
     }
 }
 
-TEST_CASE("mpirun: image, counts, loads and packets of the torus are those of a single process", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: ranks have devices of different types, each with memory for a part of the scene",
+          "[ranks][.mpirun]") {
+    if (kSanitized) return;
+    const ScratchFolder folder, other;
+    const std::string scene = other / "u.nff";
+    REQUIRE(run_raya({"generate", "uniform", "60000", "--voxels", "4x4x4", "-o", scene}).code == 0);
+    const Arguments torus = {"render",      scene,       "--machine", "torus", "--size",        "32", "--queue", "64",
+                             "--pe-memory", "100000000", "--quiet",   "-o",    folder / "x.pfm"};
+    REQUIRE(run_raya(torus).code == 0);
+    const Files expected = files_in(folder);
+    // 4112 is CL_DEVICE_MAX_MEM_ALLOC_SIZE. The limit of 1 MB is less than the size of the words of all nodes, 1.4 MB.
+    const RunOptions small_devices{.variables = {{"LD_PRELOAD", RAYA_CL_FAULTS},
+                                                 {"RAYA_FAULT", "clGetDeviceInfo 4112 1000000"},
+                                                 {"POCL_DEVICES", "pthread basic"}}};
+    const RunOutcome refused = run_raya(torus, small_devices);
+    INFO(refused.describe());
+    CHECK(refused.code == 3);
+    CHECK(contains(refused.err, "node memories"));
+    Arguments on_devices = torus;
+    on_devices.insert(on_devices.end(), {"--device", "0,1"});
+    for (const Mpi& mpi : installed_mpis()) check_same_files(mpi, 4, on_devices, folder, expected, small_devices);
+}
+
+TEST_CASE("mpirun: trace, roofline and report contain every rank", "[ranks][.mpirun]") {
     const ScratchFolder folder;
-    check_all_rank_counts(folder, {"render", scene_file("spheres"), "-o", folder / "x.pfm", "--report",
-                                   folder / "x.json", "--packets", folder / "p.csv.gz", "--machine", "torus", "--nodes",
-                                   "3x2x2", "--size", "16", "--group", "1", "--quiet"});
-}
-
-// Renders on three ranks and saves checkpoints until the device of rank 1 fails. Returns the last checkpoint.
-std::string failed_render(const Mpi& mpi, const RankScript& script, const Arguments& render, const std::string& file) {
-    for (int launch = 10; launch < 1000; launch += launch / 2) {
-        const std::string fault = "clEnqueueNDRangeKernel " + std::to_string(launch) + " -5";
-        const RanksOutcome run =
-            run_ranks(mpi, script.arguments(mpi, 3, 1, preload_command(RAYA_CL_FAULTS, "RAYA_FAULT", fault), render));
-        INFO(run.describe());
-        CHECK(run.remaining == 0);
-        CHECK_THAT(run.err, Catch::Contains("raya: rank 1 on "));
-        if (run.code == 3 && std::filesystem::exists(file)) return file_contents(file);
-    }
-    throw std::runtime_error("no failed render left a checkpoint");
+    for (const Mpi& mpi : installed_mpis())
+        for (const std::string machine : {"spa", "torus"}) {
+            const RanksOutcome run =
+                run_on(mpi, 3,
+                       {"render", scene_file("spheres"), "--size", "32", "--machine", machine, "-o", folder / "i.pfm",
+                        "--trace", folder / "t.json", "--profile", "--report", folder / "r.json"});
+            INFO(run.describe());
+            REQUIRE(run.code == 0);
+            CHECK(contains(run.out, "ranks   3 on 1 host"));
+            const Document trace = Document::parse(file_contents(folder / "t.json"));
+            CHECK(TraceSchema(trace).faults().empty());
+            CHECK(trace["otherData"]["rank_clocks"].size() == 3);
+            std::set<std::string> processes;
+            for (const Document& event : trace["traceEvents"])
+                if (event["name"] == "process_name")
+                    processes.insert(event["args"]["name"].get<std::string>().substr(0, 12));
+            const Document report = Document::parse(file_contents(folder / "r.json"));
+            std::uint64_t messages = 0, rays = 0, expected_rays = 0;
+            for (const Document& rank : report["measured"]["ranks"]) {
+                const std::string name = "rank " + std::to_string(rank["rank"].get<int>());
+                CHECK((processes.contains(name + " host ") && processes.contains(name + " devic")));
+                CHECK(contains(run.out, name + " on "));
+                messages += rank["messages_sent"].get<std::uint64_t>();
+                CHECK(rank["waiting_s"].get<double>() <= rank["render_s"].get<double>());
+                for (const Document& row : rank["roofline"])
+                    if (row["label"] == (machine == "spa" ? "trace" : "trace_voxel"))
+                        rays += row["rays"].get<std::uint64_t>();
+            }
+            for (const char* kind : {"primary", "reflected", "refracted", "shadow"})
+                expected_rays += report["rays"][kind].get<std::uint64_t>();
+            CHECK(messages > 0);
+            CHECK(rays == expected_rays);
+        }
 }
 
 TEST_CASE("mpirun: a render that a failing device ends is resumed on any number of ranks", "[ranks][.mpirun]") {
     if (kSanitized) return;
     const ScratchFolder folder;
-    const RankScript script;
     const std::string checkpoint = folder / "s.rst";
-    const Arguments common = {"render",   scene_file("centre"),
-                              "-o",       folder / "x.pfm",
-                              "--report", folder / "x.json",
-                              "--quiet",  "--lanes",
-                              "4",        "--group",
-                              "1",        "--checkpoint",
-                              checkpoint, "--checkpoint-every",
-                              "0",        "--resume"};
-    for (const Arguments& options :
-         {Arguments{"--machine", "grande", "--pes", "7", "--antialias", "supersample", "--size", "160x120"},
-          Arguments{"--machine", "torus", "--nodes", "2x2x2", "--size", "24"}}) {
-        Arguments render = common;
-        render.insert(render.end(), options.begin(), options.end());
-        REQUIRE(run_raya(render).code == 0);
-        const Files expected = files_in(folder);
-        REQUIRE(expected.size() == 2);
-        for (const Mpi& mpi : installed_mpis()) {
-            const std::string state = failed_render(mpi, script, render, checkpoint);
-            for (const std::uint32_t count : quick(2, {2u, 1u, 4u})) {
-                write_whole_file(checkpoint, state);
-                const RanksOutcome run = run_ranks(mpi, launch_arguments(mpi, count, render));
-                INFO(run.describe());
-                CHECK(run.code == 0);
-                CHECK(Document::parse(file_contents(folder / "x.json"))["measured"]["earlier_s"] > 0);
-                CHECK((files_in(folder) == expected));
-            }
-            std::string damaged = state;
-            damaged[state.size() / 2] ^= 1;
-            write_whole_file(checkpoint, damaged);
-            const RanksOutcome run = run_ranks(mpi, launch_arguments(mpi, 2, render));
-            INFO(run.describe());
-            CHECK(run.code == 2);
-            CHECK(run.messages == 1);
-            CHECK_THAT(run.err, Catch::Contains("raya: rank 0 on ") &&
-                                    Catch::Contains("--resume: " + checkpoint + ": damaged; remove the file"));
-            CHECK(file_contents(checkpoint) == damaged);
-            std::filesystem::remove(checkpoint);
+    const Arguments render = {"render",    scene_file("centre"),
+                              "-o",        folder / "x.pfm",
+                              "--report",  folder / "x.json",
+                              "--quiet",   "--lanes",
+                              "4",         "--group",
+                              "1",         "--checkpoint",
+                              checkpoint,  "--checkpoint-every",
+                              "0",         "--resume",
+                              "--machine", "torus",
+                              "--nodes",   "2x2x2",
+                              "--size",    "24"};
+    REQUIRE(run_raya(render).code == 0);
+    const Files expected = files_in(folder);
+    REQUIRE(expected.size() == 2);
+    const std::string fault = "export LD_PRELOAD=" RAYA_CL_FAULTS " RAYA_FAULT='clEnqueueNDRangeKernel 200 -5'";
+    for (const Mpi& mpi : installed_mpis()) {
+        const RanksOutcome failed = run_ranks(mpi, RankScript().arguments(mpi, 3, 1, fault, render));
+        INFO(failed.describe());
+        CHECK(failed.code == 3);
+        CHECK_THAT(failed.err, Catch::Contains("raya: rank 1 on "));
+        REQUIRE(std::filesystem::exists(checkpoint));
+        const std::string state = file_contents(checkpoint);
+        for (const std::uint32_t count : {2u, 1u}) {
+            write_whole_file(checkpoint, state);
+            check_same_files(mpi, count, render, folder, expected);
         }
+        std::filesystem::remove(checkpoint);
     }
 }
 
-TEST_CASE("mpirun: only rank 0 reads stdin and writes stdout", "[ranks][.mpirun]") {
+TEST_CASE("mpirun: only rank 0 reads stdin, writes stdout and prints verbose messages", "[ranks][.mpirun][verbosity]") {
     const ScratchFolder folder;
-    const std::string options = " --quiet --lanes 4 --pes 8 --size 16 --background 1,0.5,0 ";
+    const std::string options = " --lanes 4 --pes 8 --size 16 --background 1,0.5,0 ";
     const auto shell = [&](const std::string& line) {
         return std::system(("cd '" + folder.path().string() + "' && " + line).c_str());
     };
     const std::string scene = "'" + scene_file("planes") + "'";
-    REQUIRE(shell("'" RAYA_PROGRAM "' render " + scene + " -o single.ppm" + options) == 0);
+    REQUIRE(shell("'" RAYA_PROGRAM "' render " + scene + " -o single.ppm --quiet" + options) == 0);
     for (const Mpi& mpi : installed_mpis()) {
         const std::string launch = mpi.launcher + " --bind-to none -n 3 '" + mpi.program + "'";
         CAPTURE(launch);
-        CHECK(shell(launch + " render - -o -" + options + "< " + scene + " > ranks.ppm") == 0);
+        CHECK(shell(launch + " render - -o - -vv" + options + "< " + scene + " > ranks.ppm 2> messages") == 0);
         CHECK((file_contents(folder / "ranks.ppm") == file_contents(folder / "single.ppm")));
-    }
-}
-
-TEST_CASE("mpirun: only rank 0 prints verbose messages", "[ranks][.mpirun][verbosity]") {
-    const ScratchFolder folder;
-    for (const Mpi& mpi : installed_mpis()) {
-        const RanksOutcome run =
-            run_ranks(mpi, {"-n", "3", mpi.program, "render", scene_file("planes"), "-o", folder / "x.pfm", "--size",
-                            "16", "--lanes", "4", "--pes", "8", "-vv"});
-        INFO(run.describe());
-        CHECK(run.code == 0);
-        for (const char* line :
-             {"raya: device ", "raya: read scene: ", "raya: trace: ", "raya: on the device: trace (kernel)"}) {
-            const std::size_t first = run.err.find(line);
-            CHECK(first != std::string::npos);
-            CHECK(run.err.find(line, first + 1) == std::string::npos);
+        const std::string messages = file_contents(folder / "messages");
+        for (const char* line : {"raya: device ", "raya: read scene: ", "raya: trace: "}) {
+            CHECK(contains(messages, line));
+            CHECK(messages.find(line) == messages.rfind(line));
         }
     }
 }
@@ -180,5 +198,4 @@ TEST_CASE("mpirun: point-to-point and collective messages of any size arrive unc
         }
 }
 
-}  // namespace
 }  // namespace raya

@@ -1,8 +1,6 @@
 // Simulation of the asynchronous torus: times computed by hand, lower and upper bounds, and freedom from deadlock.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
-#include <stdexcept>
 #include <string>
 
 #include "host/torus/async_machine.hpp"
@@ -120,28 +118,9 @@ TEST_CASE("a torus deadlocks if all its ports may fill up, but not if one slot o
     }
 }
 
-// A node processes rays in order of arrival. So a ray on which no task depends may delay a ray on which other tasks
-// depend. Therefore the asynchronous machine is not always faster than supersteps, although it is faster for renders
-// (test_history.cpp).
-TEST_CASE("a long task delays the tasks that depend on a later ray of its node", "[torus]") {
-    constexpr std::uint64_t kLong = 10'000'000;
-    HistoryBuilder h;
-    h.add_task(0, 10);
-    const std::uint32_t ray_to_0 = h.add_ray(0), ray_to_1 = h.add_ray(1);
-    h.add_task(0, kLong, ray_to_0);  // on node 0; starts before the ray from node 1 arrives
-    h.add_task(1, 100'000, ray_to_1);
-    h.add_task(0, 10, h.add_ray(0));     // on node 0; waits for the long task
-    h.add_task(2, kLong, h.add_ray(2));  // on node 2, after the task above
-    const double delayed_ms = simulate(torus_of(4), h.history).finish_ms;
-    h.history.tasks[1].cycles = 0;  // the long task on node 0
-    const double undelayed_ms = simulate(torus_of(4), h.history).finish_ms;
-    CHECK(delayed_ms > 2 * kLong * kCycle);
-    CHECK(undelayed_ms + 0.1 < kLong * kCycle + 10);
-}
-
 TEST_CASE("random histories: every message is delivered once, within the time bounds, for any buffer size", "[torus]") {
     constexpr std::uint64_t kSeed = 1995;
-    const unsigned cases = quick_cases(400, 4000);
+    const unsigned cases = quick_cases(200, 4000);
     for (std::uint64_t i = 0; i < cases; ++i) {
         SplitMix random(kSeed + i);
         const raya_torus torus = random_torus(random, 6);
@@ -169,51 +148,11 @@ TEST_CASE("random histories: every message is delivered once, within the time bo
             sum_ms += n.compute_ms + n.messages_ms;
         }
         CHECK(r.finish_ms <= sum_ms * (1 + 1e-9));
+        const AsyncMachine no_messages{.message_cycles = 0, .word_cycles = 0, .one_way = 0, .both_ways = 0};
+        const AsyncResult undelayed = simulate(torus, history, no_messages);
+        CHECK(total(undelayed.nodes, &AsyncNode::messages_ms) == 0);
+        CHECK(undelayed.finish_ms >= bound.compute_ms * (1 - 1e-9));
     }
-}
-
-TEST_CASE("with messages that take no time, the finish time is at least the maximum compute time", "[torus]") {
-    constexpr std::uint64_t kSeed = 805;
-    for (std::uint64_t i = 0; i < 50; ++i) {
-        SplitMix random(kSeed + i);
-        const raya_torus torus = random_torus(random, 4);
-        const History history = random_history(random, torus, 200);
-        CAPTURE(kSeed, i, torus_text(torus));
-        const AsyncMachine machine{.message_cycles = 0, .word_cycles = 0, .one_way = 0, .both_ways = 0};
-        const AsyncResult r = simulate(torus, history, machine);
-        CHECK(r.delivered == history.messages.size());
-        CHECK(total(r.nodes, &AsyncNode::messages_ms) == 0);
-        const TorusTime bound = torus_time(torus, traffic_of(torus, history));
-        CHECK(r.finish_ms >= bound.compute_ms * (1 - 1e-9));
-        CHECK(r.finish_ms <= simulate(torus, history).finish_ms * 1.5);
-    }
-}
-
-TEST_CASE("invalid histories are refused", "[torus]") {
-    SplitMix random(7);
-    const raya_torus torus = make_torus({3, 2, 1}, Links::kTorus3d);
-    const History valid = random_history(random, torus, 100);
-    REQUIRE(valid.tasks.size() > 50);
-    const auto check_refused = [&](const auto& spoil) {
-        History invalid = valid;
-        spoil(invalid);
-        CHECK_THROWS_AS(simulate(torus, invalid), std::logic_error);
-    };
-    const auto is_ray = [](const HistoryMessage& m) { return m.kind != RAYA_KIND_RETURN; };
-    const auto ray = static_cast<std::size_t>(std::ranges::find_if(valid.messages, is_ray) - valid.messages.begin());
-    const auto caused = [](const HistoryTask& t) { return t.cause != HistoryTask::kNoCause; };
-    const auto task = static_cast<std::size_t>(std::ranges::find_if(valid.tasks, caused) - valid.tasks.begin());
-    check_refused([&](History& h) { h.messages[ray].destination ^= 1; });
-    check_refused([&](History& h) { h.messages[ray].kind = RAYA_KIND_RETURN; });
-    check_refused([&](History& h) { h.messages[ray].words = 0; });
-    check_refused([&](History& h) { h.messages[ray].task += 1; });
-    check_refused([&](History& h) { h.tasks[task].cause = HistoryTask::kNoCause; });
-    check_refused([&](History& h) { h.tasks[task + 1].cause = h.tasks[task].cause; });
-    check_refused([&](History& h) { h.tasks[task].node = 6; });
-    check_refused([&](History& h) { h.tasks.pop_back(); });
-    check_refused([&](History& h) { h.tasks.front().cause = 0; });
-    CHECK_NOTHROW(simulate(torus, valid));
-    CHECK(simulate(torus, {}).finish_ms == 0);
 }
 
 }  // namespace

@@ -1,12 +1,9 @@
-// The composer adds each pixel's contributions in the order of the pixel's ray tree, not in their order of arrival, and
-// rounds once per addition.
+// The order in which a pixel's contributions are added: that of the pixel's ray tree, not of their arrival. The fields
+// of packets that determine this order.
 #include <algorithm>
-#include <bit>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <stdexcept>
 
-#include "host/cl/kernel_options.hpp"
 #include "host/torus/torus_renderer.hpp"
 #include "tests/scene/random_below.hpp"
 
@@ -62,42 +59,6 @@ std::vector<float> colours_of(const std::vector<raya_head>& packets) {
     return colours;
 }
 
-// Returns random contributions in the format, one list per pixel; some lists are empty. In the reduced formats,
-// products and sums of the numbers are multiples of 2^-38 below 2^12, so that they are exact in double.
-Contributions random_lists(SplitMix& random, const NumberFormat& format, std::uint32_t pixels) {
-    Contributions lists;
-    lists.starts = {0};
-    for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
-        const std::uint32_t count = random_below(random, 5) ? random_below(random, 60) : 0;
-        for (std::uint32_t i = 0; i < 4 * count; ++i) {
-            const double number = std::ldexp(random.uniform(1, 2), -static_cast<int>(random_below(random, 4)));
-            const bool zero = random_below(random, 20) == 0;
-            lists.colours.push_back(zero ? 0 : round_to_format(number, format));
-        }
-        lists.starts.push_back(lists.starts.back() + count);
-    }
-    return lists;
-}
-
-// Returns c * w + sum, rounded once.
-float add_to(float sum, float c, float w, const NumberFormat& format) {
-    if (format.is_fp32()) return std::fma(c, w, sum);
-    return round_to_format(std::fma(static_cast<double>(c), w, sum), format);
-}
-
-// Returns the expected image: red, green and blue of each pixel.
-std::vector<float> sums_of(const Contributions& lists, const NumberFormat& format) {
-    std::vector<float> image;
-    for (std::size_t pixel = 0; pixel + 1 < lists.starts.size(); ++pixel)
-        for (std::size_t colour = 0; colour < 3; ++colour) {
-            float sum = 0;
-            for (std::size_t i = lists.starts[pixel]; i < lists.starts[pixel + 1]; ++i)
-                sum = add_to(sum, lists.colours[4 * i + colour], lists.colours[4 * i + 3], format);
-            image.push_back(sum);
-        }
-    return image;
-}
-
 }  // namespace
 
 TEST_CASE("contributions are sorted in depth-first order of their pixels' trees", "[torus]") {
@@ -118,50 +79,28 @@ TEST_CASE("contributions are sorted in depth-first order of their pixels' trees"
         const Contributions sorted = sort_contributions(returns, pixels);
         CHECK(sorted.starts == starts);
         CHECK((sorted.colours == colours_of(expected)));
+        if (returns.empty()) continue;
+        CHECK_THROWS_AS(sort_contributions(returns, returns.front().pixel), std::logic_error);  // outside the image
+        returns.push_back(returns.front());
+        returns.back().state ^= RAYA_STATE_FRESH;  // not part of the contribution's identity
+        CHECK_THROWS_AS(sort_contributions(returns, pixels), std::logic_error);
     }
 }
 
-TEST_CASE("a duplicate contribution, or one outside the image, is an error", "[torus]") {
-    SplitMix random(5);
-    for (int i = 0; i < 100; ++i) {
-        CAPTURE(i);
-        std::vector<raya_head> returns;
-        for (std::uint32_t pixel = 0; pixel < 4; ++pixel) RandomRayTree(random, returns, pixel).add_ray(0, 0, 3);
-        CHECK_NOTHROW(sort_contributions(returns, 4));
-        CHECK_THROWS_AS(sort_contributions(returns, 3), std::logic_error);
-        raya_head copy = returns[random_below(random, returns.size())];
-        copy.state ^= RAYA_STATE_FRESH;  // not part of the contribution's identity
-        copy.weight += 1;
-        returns.push_back(copy);
-        shuffle(returns, random);
-        CHECK_THROWS_AS(sort_contributions(returns, 4), std::logic_error);
-    }
-}
-
-TEST_CASE("an image without contributions is black", "[torus]") {
-    const Contributions no_contributions = sort_contributions({}, 7);
-    CHECK(no_contributions.colours.empty());
-    CHECK(no_contributions.starts == std::vector<std::uint32_t>(8, 0));
-    Session session(choose_device(""));
-    Kernels kernels(session, {});
-    Composer composer(kernels);
-    CHECK(composer.compose(no_contributions) == std::vector<float>(21, 0));
-}
-
-TEST_CASE("pixels are sums in which each multiply-add rounds once", "[torus]") {
-    const std::uint64_t seed = 40'961;
-    SplitMix random(seed);
-    const std::string name = GENERATE("fp32", "spa22", "e8m12t", "e5m6");
-    KernelOptions options;
-    options.format = parse_format(name);
-    Session session(choose_device(""));
-    Kernels kernels(session, options);
-    Composer composer(kernels);
-    for (int i = 0; i < 40; ++i) {
-        const std::uint32_t pixels = 1 + random_below(random, 300);
-        CAPTURE(seed, i, name, pixels);
-        const Contributions lists = random_lists(random, options.format, pixels);
-        CHECK((composer.compose(lists) == sums_of(lists, options.format)));
+TEST_CASE("kind, level, light and flags of a packet's state do not overlap", "[torus]") {
+    const std::uint32_t flags = RAYA_STATE_WIDE | RAYA_STATE_FOUND | RAYA_STATE_FRESH | RAYA_STATE_CHARGED;
+    SplitMix random(1);
+    for (int i = 0; i < 1000; ++i) {
+        const std::uint32_t kind = random_below(random, RAYA_KINDS), level = random_below(random, 32);
+        const std::uint32_t light = i ? random_below(random, RAYA_MAX_LIGHTS + 1) : RAYA_MAX_LIGHTS;
+        const std::uint32_t plain = raya_state(kind, level, light);
+        CAPTURE(kind, level, light);
+        CHECK((plain & flags) == 0);
+        for (const std::uint32_t state : {plain, plain | flags}) {
+            CHECK(raya_state_kind(state) == kind);
+            CHECK(raya_state_level(state) == level);
+            CHECK(raya_state_light(state) == light);
+        }
     }
 }
 

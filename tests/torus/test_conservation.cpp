@@ -1,38 +1,27 @@
-// Conservation of packets: numbers of packets made and ended, hops and words on links, and the voxels that rays visit.
+// Conservation of packets on random machines: numbers of packets, hops and words on links, routes of rays, returns and
+// discarded rays.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <numeric>
-#include <sstream>
 #include <tuple>
 
-#include "host/torus/torus_trace.hpp"
-#include "tests/base/gunzip.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "tests/thorough.hpp"
-#include "tests/torus/record_packets.hpp"
+#include "tests/torus/render_torus.hpp"
 
 namespace raya {
 namespace {
 
-bool is_wide(const PacketRecord& p) { return state_of(p) & RAYA_STATE_WIDE; }
+std::uint32_t kind_of(const PacketRecord& p) { return raya_state_kind(p.head.state); }
 
 std::uint64_t sum(const std::vector<std::uint64_t>& values) {
     return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
 }
 
-// Identifies a ray, which may be a shadow ray: pixel, path, level, light. The records with the same key are the stages
-// of the ray's traversal of the voxels.
-using LightKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
-LightKey light_key(const PacketRecord& p) {
-    return {p.head.pixel, p.head.path, raya_state_level(state_of(p)), raya_state_light(state_of(p))};
-}
-
-std::map<LightKey, std::vector<PacketRecord>> stages_of(const std::vector<PacketRecord>& records) {
-    std::map<LightKey, std::vector<PacketRecord>> stages;
-    for (const PacketRecord& p : records)
-        if (kind_of(p) != RAYA_KIND_RETURN) stages[light_key(p)].push_back(p);
-    return stages;
-}
+// Identifies a ray: pixel, path, level.
+using RayKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
+RayKey key_of(const PacketRecord& p) { return {p.head.pixel, p.head.path, raya_state_level(p.head.state)}; }
 
 // Checks that the number of packets of each kind follows from the events.
 void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t lights, bool one_return_per_ray) {
@@ -57,11 +46,11 @@ void check_kinds(const TorusResult& r, std::uint64_t pixels, std::uint32_t light
 
 // Checks that each packet crosses as many links as the torus distance between its source and destination, and that each
 // link carries the number of words that follows from the routing rules.
-void check_traffic(const RecordedRender& r, const TorusSettings& s) {
+void check_traffic(const TorusResult& result, const std::vector<PacketRecord>& records, const TorusSettings& s) {
     std::uint64_t hops = 0;
-    std::vector<std::uint64_t> words(r.result.link_words.size());
+    std::vector<std::uint64_t> words(result.link_words.size());
     std::size_t to_itself = 0, wrong_words = 0;
-    for (const PacketRecord& p : r.records) {
+    for (const PacketRecord& p : records) {
         const std::uint64_t distance = raya_node_distance(s.torus, p.source, p.destination);
         to_itself += distance == 0;
         hops += distance;
@@ -70,119 +59,79 @@ void check_traffic(const RecordedRender& r, const TorusSettings& s) {
     }
     CHECK(to_itself == 0);
     CHECK(wrong_words == 0);
-    CHECK(r.result.hops == hops);
-    CHECK(sum(r.result.link_packets) == hops);
-    CHECK(r.result.link_words == words);
-    for (std::uint32_t i = 0; i < r.result.link_words.size(); ++i)
-        if (s.torus.sides[i % RAYA_LINKS / 2] == 1) CHECK(r.result.link_words[i] == 0);
-    CHECK(std::is_sorted(r.records.begin(), r.records.end(), [](const PacketRecord& a, const PacketRecord& b) {
+    CHECK(result.hops == hops);
+    CHECK(sum(result.link_packets) == hops);
+    CHECK(result.link_words == words);
+    CHECK(std::is_sorted(records.begin(), records.end(), [](const PacketRecord& a, const PacketRecord& b) {
         return std::tie(a.superstep, a.source) < std::tie(b.superstep, b.source);
     }));
-    CHECK((r.records.empty() || r.records.back().superstep < r.result.supersteps.size()));
-    CHECK(r.result.supersteps.back().live <= r.result.made[RAYA_KIND_RETURN]);  // returns not yet read by the host
-}
-
-std::uint32_t voxel_number(const raya_grid& grid, const PacketRecord& p) {
-    const raya_place at = raya_unpack_place(p.head.voxel);
-    return raya_voxel(grid, at.at[0], at.at[1], at.at[2]);
-}
-
-// Returns true if each step of a ray leads to a neighbouring voxel and the ray never reverses its direction along an
-// axis.
-bool is_walk(const std::vector<PacketRecord>& stages) {
-    bool is_valid = true;
-    for (std::size_t i = 1; i < stages.size(); ++i) {
-        const raya_place a = raya_unpack_place(stages[i - 1].head.voxel);
-        const raya_place b = raya_unpack_place(stages[i].head.voxel);
-        std::uint32_t steps = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int step = static_cast<int>(b.at[axis]) - static_cast<int>(a.at[axis]);
-            steps += static_cast<std::uint32_t>(std::abs(step));
-            const raya_place first = raya_unpack_place(stages[0].head.voxel);
-            const int steps_before = static_cast<int>(a.at[axis]) - static_cast<int>(first.at[axis]);
-            is_valid = is_valid && step * steps_before >= 0;
-        }
-        is_valid = is_valid && steps == 1;
+    std::uint64_t step_cycles = 0, step_words = 0;  // sums of the supersteps' maxima
+    for (const Superstep& step : result.supersteps) {
+        step_cycles += step.max_node_cycles;
+        step_words += step.max_link_words;
     }
-    return is_valid;
+    CHECK((step_cycles >= result.load.max && step_cycles <= sum(result.load.per_pe)));
+    CHECK((step_words >= *std::ranges::max_element(words) && step_words <= sum(words)));
+    const TorusTime time = torus_time(s.torus, result);
+    CHECK(time.overlapped_ms == std::max(time.processor_ms, time.links_ms));
+    CHECK(time.overlapped_ms <= time.stepwise_ms * (1 + 1e-12));
 }
 
-// Returns true if a wide ray visits all voxels in cyclic order. The node that made the ray tests its own voxel without
-// a packet, so the first record is for the next voxel. A shadow ray may end earlier, in the voxel in which it is
-// blocked. At most one more stage follows, to the voxel in which the ray's hit is shaded.
-bool is_tour(const std::vector<PacketRecord>& stages, const raya_torus& torus, const raya_grid& grid) {
-    const std::uint32_t voxels = raya_voxels(grid);
-    const std::size_t visits = stages.size() - (state_of(stages.back()) & RAYA_STATE_FOUND ? 1 : 0);
-    std::uint32_t number = raya_voxel_of_node(torus, grid, stages[0].source, 0);
-    bool is_valid = visits < voxels && (visits == voxels - 1 || kind_of(stages[0]) == RAYA_KIND_SHADOW);
-    for (std::size_t i = 0; i < stages.size(); ++i) {
-        number = (number + 1) % voxels;
-        is_valid = is_valid && (i >= visits || voxel_number(grid, stages[i]) == number);
-        is_valid = is_valid && (i < visits) == !(state_of(stages[i]) & RAYA_STATE_FOUND);
+// Checks that each stage of a ray's route starts, in a later superstep, where the previous stage ended. Returns the
+// number of rays that visit all voxels in turn (wide rays).
+std::size_t check_routes(const std::vector<PacketRecord>& records) {
+    std::map<std::pair<RayKey, std::uint32_t>, PacketRecord> last;  // by ray and light
+    std::size_t interrupted = 0, wide = 0;
+    for (const PacketRecord& p : records) {
+        if (kind_of(p) == RAYA_KIND_RETURN) continue;
+        const auto [before, is_new] = last.emplace(std::pair(key_of(p), raya_state_light(p.head.state)), p);
+        wide += is_new && p.head.state & RAYA_STATE_WIDE;
+        interrupted += !is_new && (before->second.destination != p.source || before->second.superstep >= p.superstep);
+        before->second = p;
     }
-    return is_valid;
+    CHECK(interrupted == 0);
+    return wide;
 }
 
-struct RayCounts {
-    std::size_t narrow = 0, wide = 0;
-};
-
-// Checks the voxels that each ray visits. Each node must hold one voxel, so that every step sends a packet, which is
-// recorded.
-RayCounts check_walks(const RecordedRender& r, const TorusSettings& s) {
-    RayCounts counts;
-    std::size_t interrupted_routes = 0, early_stages = 0, wrong_walks = 0, wrong_tours = 0;
-    raya_grid grid{};
-    std::copy_n(s.voxels.begin(), 3, grid.divisions);
-    for (const auto& [key, stages] : stages_of(r.records)) {
-        for (std::size_t i = 1; i < stages.size(); ++i) {
-            interrupted_routes += stages[i].source != stages[i - 1].destination;
-            early_stages += stages[i].superstep <= stages[i - 1].superstep;
-        }
-        (is_wide(stages[0]) ? counts.wide : counts.narrow) += 1;
-        wrong_walks += !is_wide(stages[0]) && !is_walk(stages);
-        wrong_tours += is_wide(stages[0]) && !is_tour(stages, s.torus, grid);
+// Checks that every return goes to the root, once for each term or, if all terms of a ray are in one return, once for
+// each ray. That return leaves from the node in which the ray's last shadow ray ends: that to the last light.
+void check_returns(const std::vector<PacketRecord>& records, bool one_return_per_ray) {
+    std::map<RayKey, PacketRecord> last_shadows;
+    for (const PacketRecord& p : records) {
+        if (kind_of(p) != RAYA_KIND_SHADOW) continue;
+        PacketRecord& known = last_shadows.emplace(key_of(p), p).first->second;
+        if (raya_state_light(p.head.state) >= raya_state_light(known.head.state)) known = p;
     }
-    CHECK(interrupted_routes == 0);
-    CHECK(early_stages == 0);
-    CHECK(wrong_walks == 0);
-    CHECK(wrong_tours == 0);
-    return counts;
-}
-
-// Checks that every return goes to the root, and that each ray of a pixel's ray tree, shadow rays included, has at most
-// one return.
-void check_returns(const RecordedRender& r) {
-    std::map<LightKey, int> return_counts;
-    std::size_t misrouted = 0;
-    for (const PacketRecord& p : r.records) {
+    std::map<std::pair<RayKey, std::uint32_t>, int> returns;
+    std::size_t misrouted = 0, repeated = 0, early = 0, misplaced = 0;
+    for (const PacketRecord& p : records) {
         if (kind_of(p) != RAYA_KIND_RETURN) continue;
+        const std::uint32_t light = raya_state_light(p.head.state);
         misrouted += p.destination != RAYA_ROOT || p.source == RAYA_ROOT;
-        ++return_counts[light_key(p)];
+        repeated += ++returns[{key_of(p), one_return_per_ray ? 0 : light}] > 1;
+        const auto shadow = last_shadows.find(key_of(p));
+        if (!one_return_per_ray || shadow == last_shadows.end()) continue;
+        const std::uint32_t last_light = raya_state_light(shadow->second.head.state);
+        early += light < last_light;
+        misplaced += light == last_light && p.source != shadow->second.destination;
     }
     CHECK(misrouted == 0);
-    CHECK(std::all_of(return_counts.begin(), return_counts.end(), [](const auto& a) { return a.second == 1; }));
+    CHECK(repeated == 0);
+    CHECK(early == 0);
+    CHECK(misplaced == 0);
 }
 
-// A row of a packet trace.
-struct Row {
-    std::uint64_t superstep = 0, source = 0, destination = 0, bytes = 0, ray = 0;
-    std::string kind, parent;
-};
-
-std::vector<Row> rows_of(const std::string& csv) {
-    std::istringstream lines(csv);
-    std::string line;
-    std::getline(lines, line);
-    std::vector<Row> rows;
-    while (std::getline(lines, line)) {
-        std::replace(line.begin(), line.end(), ',', ' ');
-        std::istringstream fields(line);
-        Row row;
-        fields >> row.superstep >> row.source >> row.destination >> row.kind >> row.bytes >> row.ray >> row.parent;
-        rows.push_back(row);
-    }
-    return rows;
+// Returns the number of rays that nodes make for the pixels in their windows and discard. Each node also makes the rays
+// of its rows of the image; the rows of all nodes contain every pixel once, and all nodes together keep one ray per
+// pixel.
+std::uint64_t pixels_of_windows(const Scene& scene, const TorusSettings& s) {
+    const PackedJob job = pack_job(scene, job_settings(s, length_scale(scene, s.format)));
+    std::uint64_t pixels = 0;
+    for (const PixelWindow& w : pixel_windows(job.header(), partition(job, s.format, s.voxels).grid, s.torus, s.format))
+        for (std::uint32_t row = w.rows[0]; row < w.rows[1]; ++row)
+            for (std::uint32_t column = w.columns[0]; column < w.columns[1]; ++column)
+                pixels += (row * s.width + column) % s.pixels.stride == s.pixels.first;
+    return pixels;
 }
 
 }  // namespace
@@ -191,9 +140,8 @@ TEST_CASE("random machines: packets, hops and words agree with the events and th
     const std::uint64_t seed = 5150;
     SplitMix random(seed);
     Session session(choose_device(""));
-    RayCounts total;
-    const unsigned cases = quick_cases(20, 60);
-    for (unsigned i = 0; i < cases; ++i) {
+    std::uint64_t wide = 0, discarded = 0;
+    for (unsigned i = 0; i < quick_cases(20, 80); ++i) {
         const std::string format = i % 6 == 0 ? "spa22" : "fp32";
         const Scene scene =
             i % 3 == 0 ? far_mirror_scene(seed + i, format) : random_view_scene(kSceneSeeds[i % kSceneSeeds.size()]);
@@ -204,96 +152,23 @@ TEST_CASE("random machines: packets, hops and words agree with the events and th
         c.links = random.next() % 2 ? Links::kTorus3d : Links::kTorus2d;
         c.inject = random.next() % 2 ? Injection::kAll : Injection::kRoot;
         c.packets = random_charge(random);
-        const bool one_voxel_per_node = i % 4 > 0 || i % 8 == 0;
-        if (!one_voxel_per_node)
+        if (i % 4 == 0)
             for (std::size_t axis = 0; axis < 3; ++axis) c.voxels[axis] = 1 + random_below(random, 7);
-        c.pixels.stride = i % 5 == 4 ? 1 + random_below(random, 5) : 1;
+        if (i % 5 == 4) c.pixels = {3, random_below(random, 3)};
         CAPTURE(seed, i, case_text(c));
         const TorusSettings s = settings_of(c);
-        const RecordedRender r = render_and_record(session, scene, c);
-        check_kinds(r.result, (c.width * c.height - 1) / c.pixels.stride + 1, lights_of(scene),
-                    c.packets.one_return_per_ray);
-        check_traffic(r, s);
-        check_returns(r);
-        if (!one_voxel_per_node) continue;
-        const RayCounts case_counts = check_walks(r, s);
-        total.narrow += case_counts.narrow;
-        total.wide += case_counts.wide;
+        std::vector<PacketRecord> records;
+        const TorusResult r = render_torus(session, scene, c, [&](const PacketRecord& p) { records.push_back(p); });
+        check_kinds(r, traced_pixels(s), lights_of(scene), c.packets.one_return_per_ray);
+        check_traffic(r, records, s);
+        check_returns(records, c.packets.one_return_per_ray);
+        wide += check_routes(records);
+        const bool root_injects = c.inject == Injection::kRoot || raya_nodes(s.torus) == 1;
+        CHECK(r.events[RAYA_DISCARDED] == (root_injects ? 0 : pixels_of_windows(scene, s)));
+        discarded += r.events[RAYA_DISCARDED];
     }
-    CHECK(total.narrow > (thorough() ? 5'000 : 1'000));
-    CHECK(total.wide > (thorough() ? 100 : 20));
-}
-
-TEST_CASE("recording the packets changes no result", "[torus]") {
-    Session session(choose_device(""));
-    const Scene scene = random_view_scene(kSceneSeeds[1]);
-    const TorusCase c{.nodes = {3, 2, 2}, .lanes = 4, .group = 1};
-    const TorusResult recorded = render_and_record(session, scene, c).result,
-                      unrecorded = render_torus(session, scene, c);
-    CHECK(image_and_counts(recorded) == image_and_counts(unrecorded));
-    CHECK(recorded.link_words == unrecorded.link_words);
-    CHECK(recorded.supersteps.size() == unrecorded.supersteps.size());
-}
-
-TEST_CASE("the supersteps' maxima add up to at least the maximum over nodes or links and at most the sum over them",
-          "[torus]") {
-    const TorusResult r =
-        render_torus(random_view_scene(kSceneSeeds[2]), TorusCase{.nodes = {3, 2, 3}, .lanes = 4, .group = 1});
-    std::uint64_t cycles = 0, words = 0;
-    for (const Superstep& step : r.supersteps) {
-        cycles += step.max_node_cycles;
-        words += step.max_link_words;
-    }
-    const auto& loads = r.load.per_pe;
-    CHECK(cycles >= *std::max_element(loads.begin(), loads.end()));
-    CHECK(cycles <= sum(loads));
-    CHECK(words >= *std::max_element(r.link_words.begin(), r.link_words.end()));
-    CHECK(words <= sum(r.link_words));
-    CHECK(r.supersteps.back().max_link_words == 0);
-}
-
-TEST_CASE("packet trace of a render: sizes, routes and parents of the rays are valid", "[torus]") {
-    const TorusCase c{
-        .nodes = {2, 3, 2}, .inject = GENERATE(Injection::kAll, Injection::kRoot), .lanes = 4, .group = 1};
-    PacketTrace trace;
-    const TorusResult r =
-        render_torus(random_view_scene(kSceneSeeds[0]), c, [&](const PacketRecord& record) { trace.add(record); });
-    const std::vector<Row> rows = rows_of(gunzip(trace.finish()));
-    REQUIRE(rows.size() == trace.rows());
-    std::map<std::uint64_t, Row> last_rows;  // by ray: its last row
-    std::size_t wrong_bytes = 0, changed_rays = 0, interrupted_routes = 0, repeated_returns = 0, wrong_primaries = 0;
-    for (const Row& row : rows) {
-        wrong_bytes += row.bytes != (row.kind == "return" ? 32 : 64);
-        wrong_primaries += (row.kind == "primary") != row.parent.empty();  // only primary rays have no parent
-        const auto [before, is_new] = last_rows.emplace(row.ray, row);
-        if (is_new) continue;
-        repeated_returns += row.kind == "return";
-        changed_rays += before->second.kind != row.kind || before->second.parent != row.parent;
-        interrupted_routes += before->second.destination != row.source || before->second.superstep >= row.superstep;
-        before->second = row;
-    }
-    CHECK(wrong_bytes == 0);
-    CHECK(changed_rays == 0);
-    CHECK(interrupted_routes == 0);
-    CHECK(repeated_returns == 0);
-    CHECK(wrong_primaries == 0);
-    std::map<std::string, std::uint64_t> sent;  // by kind: number of rays that left a node at least once
-    std::size_t wrong_parents = 0;
-    for (const auto& [ray, row] : last_rows) {
-        ++sent[row.kind];
-        const auto parent = row.parent.empty() ? last_rows.end() : last_rows.find(std::stoull(row.parent));
-        if (parent == last_rows.end()) continue;  // the parent never left its node
-        const std::string& kind = parent->second.kind;
-        wrong_parents += kind == "return" || (kind == "shadow" && row.kind != "return");
-    }
-    CHECK(wrong_parents == 0);
-    CHECK(sent["primary"] <= r.made[RAYA_KIND_PRIMARY]);
-    CHECK(sent["reflected"] <= r.made[RAYA_KIND_REFLECTED]);
-    CHECK(sent["refracted"] <= r.made[RAYA_KIND_REFRACTED]);
-    CHECK(sent["shadow"] <= r.made[RAYA_KIND_SHADOW]);
-    CHECK(sent["return"] <= r.made[RAYA_KIND_RETURN]);
-    CHECK(sent["shadow"] > 0);
-    CHECK(sent["return"] > r.made[RAYA_KIND_RETURN] / 2);
+    CHECK(wide > 20);
+    CHECK(discarded > 1000);
 }
 
 }  // namespace raya

@@ -1,5 +1,5 @@
 // Checkpoints of torus renders that must be refused: those of other renders, and damaged ones. Resumed renders:
-// tests/ranks/test_checkpoints_on_ranks.cpp.
+// tests/ranks/test_renders_on_ranks.cpp.
 #include <catch2/catch.hpp>
 #include <functional>
 
@@ -37,30 +37,29 @@ TEST_CASE("torus: a checkpoint of another render is refused with a message that 
     Scene moved = scene;
     moved.view.from.x += 1e-3;
     check_refused(moved, small_torus(), "was rendered with another scene, camera or light");
-    const auto check_setting = [&](const char* reason, const auto& change) {
+    const std::pair<const char*, std::function<void(TorusSettings&)>> changes[] = {
+        {"--size 20x16, not 20x17", [](TorusSettings& s) { s.height = 17; }},
+        {"--nodes 2x2x2, not 3x2x2",
+         [](TorusSettings& s) {
+             s.torus = make_torus({3, 2, 2}, s.links);
+         }},
+        {"--links torus3d, not torus2d", [](TorusSettings& s) { s.links = Links::kTorus2d; }},
+        {"--voxels 2x2x2, not 3x3x3",
+         [](TorusSettings& s) {
+             s.voxels = {3, 3, 3};
+         }},
+        {"--inject all, not root", [](TorusSettings& s) { s.inject = Injection::kRoot; }},
+        {"--returns rays, not terms", [](TorusSettings& s) { s.packets.one_return_per_ray = false; }},
+        {"--packet-words 20, not 21", [](TorusSettings& s) { s.packets.ray_words = 21; }},
+        {"--queue 100, not 90", [](TorusSettings& s) { s.queue = 90; }},
+        {"--bounces 2, not 1", [](TorusSettings& s) { s.bounces = 1; }},
+        {"--sampling centres, not corners", [](TorusSettings& s) { s.sampling = Sampling::kCorners; }},
+        {"every Nth pixel, from 1, 0, not 2, 0", [](TorusSettings& s) { s.pixels.stride = 2; }}};
+    for (const auto& [reason, change] : changes) {
         TorusSettings changed = small_torus();
         change(changed);
         check_refused(scene, changed, reason);
-    };
-    check_setting("was rendered with --size 20x16, not 20x17", [](TorusSettings& s) { s.height = 17; });
-    check_setting("was rendered with --nodes 2x2x2, not 3x2x2", [](TorusSettings& s) {
-        s.torus = make_torus({3, 2, 2}, s.links);
-    });
-    check_setting("was rendered with --links torus3d, not torus2d", [](TorusSettings& s) {
-        s.links = Links::kTorus2d;
-        s.torus = make_torus({2, 2, 2}, s.links);
-    });
-    check_setting("was rendered with --voxels 2x2x2, not 3x3x3", [](TorusSettings& s) { s.voxels = {3, 3, 3}; });
-    check_setting("was rendered with --inject all, not root", [](TorusSettings& s) { s.inject = Injection::kRoot; });
-    check_setting("was rendered with --returns rays, not terms", [](TorusSettings& s) { s.packets = {20, false}; });
-    check_setting("was rendered with --packet-words 20, not 21", [](TorusSettings& s) { s.packets = {21, true}; });
-    check_setting("was rendered with --queue 100, not 90", [](TorusSettings& s) { s.queue = 90; });
-    check_setting("was rendered with --bounces 2, not 1", [](TorusSettings& s) { s.bounces = 1; });
-    check_setting("was rendered with --sampling centres, not corners",
-                  [](TorusSettings& s) { s.sampling = Sampling::kCorners; });
-    check_setting("was rendered with every Nth pixel, from 1, 0, not 2, 0", [](TorusSettings& s) {
-        s.pixels = {2, 0};
-    });
+    }
     TestCheckpointing of_torus(1 << 30, state);
     RingRenderer ring(session, scene, settings_of(RingCase{.width = 20, .height = 16}));
     CHECK_THROWS_WITH(ring.render({}, of_torus.checkpointing()), "was rendered with a machine of type torus, not ring");
