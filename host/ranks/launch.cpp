@@ -74,7 +74,7 @@ std::string build_id() {
 
 }  // namespace
 
-std::optional<Launch> launch_from(const std::function<std::string(const char*)>& get_variable) {
+std::optional<Launch> find_launch() {
     struct VariableNames {
         const char *rank, *count;
     };
@@ -83,12 +83,10 @@ std::optional<Launch> launch_from(const std::function<std::string(const char*)>&
                                             {"PMI_RANK", "PMI_SIZE"},
                                             {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}};
     for (const VariableNames& names : kLaunchers)
-        if (const auto rank = parsed_number<std::uint32_t>(get_variable(names.rank)))
-            return Launch{*rank, parsed_number<std::uint32_t>(get_variable(names.count))};
+        if (const auto rank = parsed_number<std::uint32_t>(environment_value(names.rank)))
+            return Launch{*rank, parsed_number<std::uint32_t>(environment_value(names.count))};
     return {};
 }
-
-std::optional<Launch> find_launch() { return launch_from(environment_value); }
 
 std::unique_ptr<Ranks> open_ranks() {
     const std::optional<Launch> launch = find_launch();

@@ -1,6 +1,5 @@
 // Detection of an MPI launcher (mpirun, srun, ...), and start of the ranks.
 #pragma once
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,9 +15,7 @@ struct Launch {
     std::optional<std::uint32_t> count;  // number of ranks; empty if the launcher does not set it
 };
 
-/// Return rank and number of ranks, or empty if no launcher has started this process. launch_from() reads environment
-/// variables with `get_variable`, find_launch() with environment_value().
-std::optional<Launch> launch_from(const std::function<std::string(const char*)>& get_variable);
+/// Returns rank and number of ranks, or empty if no launcher has started this process.
 std::optional<Launch> find_launch();
 
 /// Connects the ranks if a launcher has started more than one, else returns nullptr. Sets the environment variable

@@ -12,6 +12,7 @@
 #include <array>
 #include <climits>
 #include <cstdlib>
+#include <regex>
 #include <thread>
 #include <vector>
 
@@ -39,12 +40,8 @@ std::string library_name() {
     std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
     int length = 0;
     MPI_Get_library_version(text.data(), &length);
-    std::string name(text.data(), static_cast<std::size_t>(length));
-    name = name.substr(0, std::min(name.find(','), name.find('\n')));
-    std::replace(name.begin(), name.end(), '\t', ' ');
-    name.erase(std::unique(name.begin(), name.end(), [](char a, char b) { return a == ' ' && b == ' '; }), name.end());
-    while (name.ends_with(' ')) name.pop_back();
-    return name;
+    const std::string name = std::regex_replace(text.data(), std::regex("[,\n].*|\\s+$"), "");
+    return std::regex_replace(name, std::regex("\\s+"), " ");
 }
 
 class MpiTransport final : public Transport {

@@ -10,84 +10,23 @@
 #include "host/base/log.hpp"
 
 namespace raya {
-namespace {
-
-// Transport of a single rank: communication is a no-op.
-class SingleRankTransport final : public Transport {
-  public:
-    std::uint32_t rank() const override { return 0; }
-    std::uint32_t count() const override { return 1; }
-    std::string host() const override { return {}; }
-    std::string library() const override { return {}; }
-    void broadcast(std::span<std::byte>) override {}
-    void all_gather(std::span<const std::byte> own_bytes, std::span<std::byte> all_bytes,
-                    std::span<const std::size_t>) override {
-        std::copy(own_bytes.begin(), own_bytes.end(), all_bytes.begin());
-    }
-    void start(std::span<const OutgoingMessage>, std::span<const IncomingMessage>) override {}
-    void wait() override {}
-    void poll_failures() override {}
-    void report_failure(const std::string&, int) override {}
-    [[noreturn]] void abort(int code) override { std::exit(code); }
-    void close() override {}
-};
-
-std::uint64_t total_bytes(std::span<const OutgoingMessage> out) {
-    std::uint64_t bytes = 0;
-    for (const OutgoingMessage& message : out) bytes += message.bytes.size();
-    return bytes;
-}
-
-constexpr int kClockRequests = 16;
-
-// Receives kClockRequests requests from the rank `requester`, and answers each with this rank's time.
-void answer_clock_requests(Ranks& ranks, std::uint32_t requester, const std::function<std::uint64_t()>& now) {
-    for (int i = 0; i < kClockRequests; ++i) {
-        char request = 0;
-        ranks.receive(requester, std::span(&request, 1));
-        const std::uint64_t time = now();
-        ranks.send(requester, std::span(&time, 1));
-    }
-}
-
-// Requests rank 0's time kClockRequests times, and returns the clock offset with the minimum uncertainty.
-RankClock request_clock(Ranks& ranks, const std::function<std::uint64_t()>& now) {
-    RankClock best_clock{0, UINT64_MAX};
-    for (int i = 0; i < kClockRequests; ++i) {
-        const char request = 1;
-        std::uint64_t time = 0;
-        const std::uint64_t before = now();
-        ranks.send(0, std::span(&request, 1));
-        ranks.receive(0, std::span(&time, 1));
-        const std::uint64_t half_trip_ns = (now() - before) / 2;
-        if (half_trip_ns < best_clock.uncertainty_ns)
-            best_clock = {static_cast<std::int64_t>(time - (before + half_trip_ns)), half_trip_ns};
-    }
-    return best_clock;
-}
-
-}  // namespace
 
 Ranks& Ranks::single() {
-    static Ranks single_rank(std::make_unique<SingleRankTransport>());
+    static Ranks single_rank(std::make_unique<Transport>());
     return single_rank;
 }
 
 Ranks::Ranks(std::unique_ptr<Transport> transport)
     : transport_(std::move(transport)), rank_(transport_->rank()), count_(transport_->count()) {
-    find_ranks_of_host();
-}
-
-void Ranks::find_ranks_of_host() {
     constexpr std::size_t kMaxNameBytes = 256;
     std::array<char, kMaxNameBytes> own_host{};
     host().copy(own_host.data(), kMaxNameBytes);
     const std::vector<std::array<char, kMaxNameBytes>> hosts = all_gather(own_host);
-    for (std::uint32_t rank = 0; rank < count_; ++rank)
-        if (hosts[rank] == own_host) host_ranks_.push_back(rank);
-    ranks_on_host_ = static_cast<std::uint32_t>(host_ranks_.size());
-    rank_on_host_ =
-        static_cast<std::uint32_t>(std::find(host_ranks_.begin(), host_ranks_.end(), rank_) - host_ranks_.begin());
+    for (std::uint32_t rank = 0; rank < count_; ++rank) {
+        if (hosts[rank] != own_host) continue;
+        rank_on_host_ += rank < rank_;
+        ++ranks_on_host_;
+    }
 }
 
 void Ranks::broadcast(std::string& text) {
@@ -97,7 +36,7 @@ void Ranks::broadcast(std::string& text) {
 }
 
 std::vector<std::string> Ranks::gather(const std::string& text) {
-    const std::vector<std::size_t> sizes = sizes_of_all_ranks(text.size());
+    const std::vector<std::size_t> sizes = all_gather(text.size());
     const std::vector<char> characters = gather(std::span<const char>(text), sizes);
     std::vector<std::string> texts;
     auto begin = characters.begin();
@@ -129,30 +68,14 @@ void Ranks::gather_bytes(std::span<const std::byte> own_bytes, std::span<std::by
     measure_wait([&] { transport_->all_gather(own_bytes, all_bytes, sizes); });
 }
 
-std::vector<std::size_t> Ranks::sizes_of_all_ranks(std::size_t own_size) { return all_gather(own_size); }
-
 void Ranks::start(std::span<const OutgoingMessage> out, std::span<const IncomingMessage> in) {
     traffic_.messages += out.size();
-    traffic_.bytes += total_bytes(out);
+    for (const OutgoingMessage& message : out) traffic_.bytes += message.bytes.size();
     transport_->start(out, in);
 }
 
 void Ranks::wait() {
     measure_wait([&] { transport_->wait(); });
-}
-
-void Ranks::wait_for_first_on_host() {
-    const char done = 1;
-    char received = 0;
-    std::vector<OutgoingMessage> out;
-    std::vector<IncomingMessage> in;
-    if (rank_on_host_ == 0)
-        for (std::uint32_t i = 1; i < ranks_on_host_; ++i)
-            out.push_back({host_ranks_[i], kHostTag, std::as_bytes(std::span(&done, 1))});
-    else
-        in.push_back({host_ranks_[0], kHostTag, std::as_writable_bytes(std::span(&received, 1))});
-    start(out, in);
-    wait();
 }
 
 int Ranks::fail(const std::string& text, int code) {
@@ -183,43 +106,49 @@ int Ranks::close(int code) {
 }
 
 RankClock rank_clock(Ranks& ranks, const std::function<std::uint64_t()>& now) {
-    if (!ranks.is_first()) return request_clock(ranks, now);
-    for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) answer_clock_requests(ranks, rank, now);
-    return {};
+    constexpr int kRequests = 16;
+    char request = 0;
+    std::uint64_t time = 0;
+    if (ranks.is_first()) {
+        for (std::uint32_t rank = 1; rank < ranks.count(); ++rank)
+            for (int i = 0; i < kRequests; ++i) {
+                ranks.receive(rank, std::span(&request, 1));
+                time = now();
+                ranks.send(rank, std::span<const std::uint64_t>(&time, 1));
+            }
+        return {};
+    }
+    RankClock best_clock{0, UINT64_MAX};
+    for (int i = 0; i < kRequests; ++i) {
+        const std::uint64_t before = now();
+        ranks.send(0, std::span<const char>(&request, 1));
+        ranks.receive(0, std::span(&time, 1));
+        const std::uint64_t half_trip_ns = (now() - before) / 2;
+        if (half_trip_ns < best_clock.uncertainty_ns)
+            best_clock = {static_cast<std::int64_t>(time - (before + half_trip_ns)), half_trip_ns};
+    }
+    return best_clock;
 }
 
 namespace {
 
-constexpr std::uint64_t kMaxPingBytes = 4 << 20;
-
 // Lengths of the messages. The shortest has one byte, because the transport does not send empty messages.
-constexpr std::uint64_t kMessageBytes[] = {1,        64,        1 << 10, 4 << 10,      16 << 10,
-                                           64 << 10, 256 << 10, 1 << 20, kMaxPingBytes};
-// Returns the number of repetitions of a measurement; higher for short messages. All messages together have at most
-// 1 GB.
-int repetitions_of(std::uint64_t bytes) { return bytes <= (64 << 10) ? 300 : 20; }
-
-template <class Call>
-double minimum_seconds(int repetitions, Call&& call) {
-    double minimum = std::numeric_limits<double>::max();
-    for (int i = 0; i < repetitions; ++i) {
-        const Clock::time_point start = Clock::now();
-        call();
-        minimum = std::min(minimum, seconds_since(start));
-    }
-    return minimum;
-}
+constexpr std::uint64_t kMessageBytes[] = {1, 64, 1 << 10, 4 << 10, 16 << 10, 64 << 10, 256 << 10, 1 << 20, 4 << 20};
 
 // Measures messages between rank 0 and `partner`. In rank 0, returns half of the minimum round-trip time; the result is
 // not valid in other ranks.
 MessageTime message_time(Ranks& ranks, std::uint32_t partner, std::uint64_t bytes) {
+    if (!ranks.is_first() && ranks.rank() != partner) return {bytes, 0};
+    const int repetitions = bytes <= (64 << 10) ? 300 : 20;  // all messages together have at most 1 GB
     std::vector<std::byte> block(bytes);
-    if (ranks.rank() != 0 && ranks.rank() != partner) return {bytes, 0};
-    const double round_trip_s = minimum_seconds(repetitions_of(bytes), [&] {
+    double round_trip_s = std::numeric_limits<double>::max();
+    for (int i = 0; i < repetitions; ++i) {
+        const Clock::time_point start = Clock::now();
         if (ranks.is_first()) ranks.send(partner, std::span<const std::byte>(block));
         ranks.receive(ranks.is_first() ? partner : 0, std::span(block));
         if (!ranks.is_first()) ranks.send(0, std::span<const std::byte>(block));
-    });
+        round_trip_s = std::min(round_trip_s, seconds_since(start));
+    }
     return {bytes, round_trip_s / 2};
 }
 

@@ -64,7 +64,7 @@ class Ranks {
     /// Collective: returns the elements of all ranks, concatenated in the order of ranks.
     template <Sendable T>
     std::vector<T> all_gather(std::span<const T> own_elements) {
-        return all_gather(own_elements, sizes_of_all_ranks(own_elements.size()));
+        return all_gather(own_elements, all_gather(own_elements.size()));
     }
     template <Sendable T>
     std::vector<T> all_gather(const T& own_element) {
@@ -118,14 +118,14 @@ class Ranks {
     /// Throws RankFailure in rank 0 if another rank has failed. To be called during long computations.
     void poll_failures() { transport_->poll_failures(); }
 
-    /// Collective: calls work() first in one rank of each host, then in the remaining ranks of the host, which find the
-    /// first rank's results in caches on disk. Returns when all ranks of all hosts have finished.
+    /// Collective: calls work() first in one rank of each host, then in the remaining ranks, which find the first
+    /// ranks' results in caches on disk. Returns when all ranks have finished.
     template <std::invocable Work>
     void one_rank_per_host_first(Work&& work) {
-        if (rank_on_host_ == 0) work();
-        wait_for_first_on_host();
-        if (rank_on_host_ > 0) work();
-        all_gather('\0');
+        for (const bool first_on_host : {true, false}) {
+            if ((rank_on_host_ == 0) == first_on_host) work();
+            all_gather('\0');
+        }
     }
 
     const RankTraffic& traffic() const { return traffic_; }
@@ -142,21 +142,17 @@ class Ranks {
 
   private:
     int abort_all(const std::string& message, int code);
-    static constexpr int kDataTag = 0, kHostTag = 1;
+    static constexpr int kDataTag = 0;
 
     void broadcast_bytes(std::span<std::byte> bytes);
     void gather_bytes(std::span<const std::byte> own_bytes, std::span<std::byte> all_bytes,
                       std::span<const std::size_t> sizes);
-    std::vector<std::size_t> sizes_of_all_ranks(std::size_t own_size);
-    void find_ranks_of_host();
-    void wait_for_first_on_host();
     template <class Call>
     void measure_wait(Call&& call);
 
     std::unique_ptr<Transport> transport_;
     std::uint32_t rank_, count_;
-    std::uint32_t rank_on_host_ = 0, ranks_on_host_ = 1;
-    std::vector<std::uint32_t> host_ranks_;  // ranks of this host, ascending
+    std::uint32_t rank_on_host_ = 0, ranks_on_host_ = 0;
     RankTraffic traffic_;
 };
 

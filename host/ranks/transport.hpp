@@ -47,41 +47,44 @@ inline double failure_delay_s(std::uint32_t rank) {
 }
 
 /// Transfer of bytes between ranks. All ranks must make the same collective calls in the same order. Each rank must
-/// make its calls from one thread. A call that waits longer than a time limit throws RankFailure.
+/// make its calls from one thread. A call that waits longer than a time limit throws RankFailure. The functions of this
+/// class are those of a single rank, for which communication is a no-op.
 class Transport {
   public:
     virtual ~Transport() = default;
 
-    virtual std::uint32_t rank() const = 0;   // 0 .. count() - 1
-    virtual std::uint32_t count() const = 0;  // number of ranks, >= 1
-    virtual std::string host() const = 0;     // name of this rank's host
-    virtual std::string library() const = 0;  // name and version of the MPI library, for messages and reports
+    virtual std::uint32_t rank() const { return 0; }    // 0 .. count() - 1
+    virtual std::uint32_t count() const { return 1; }   // number of ranks, >= 1
+    virtual std::string host() const { return {}; }     // name of this rank's host
+    virtual std::string library() const { return {}; }  // name and version of the MPI library, for messages and reports
 
     /// Collective: copies the bytes of rank 0 to all ranks. The size must be the same in all ranks.
-    virtual void broadcast(std::span<std::byte> bytes) = 0;
+    virtual void broadcast(std::span<std::byte> /*bytes*/) {}
 
     /// Collective: writes the bytes of all ranks to `all_bytes` of each rank, concatenated in the order of ranks.
     /// sizes[rank]: number of bytes of that rank. The sum of `sizes` must be at most 2^31 - 1.
     virtual void all_gather(std::span<const std::byte> own_bytes, std::span<std::byte> all_bytes,
-                            std::span<const std::size_t> sizes) = 0;
+                            std::span<const std::size_t> /*sizes*/) {
+        std::copy(own_bytes.begin(), own_bytes.end(), all_bytes.begin());
+    }
 
     /// Starts non-blocking messages; wait() waits until they are complete. The buffers must stay valid, and no other
     /// function may be called, until wait() has returned.
-    virtual void start(std::span<const OutgoingMessage> out, std::span<const IncomingMessage> in) = 0;
-    virtual void wait() = 0;
+    virtual void start(std::span<const OutgoingMessage> /*out*/, std::span<const IncomingMessage> /*in*/) {}
+    virtual void wait() {}
 
     /// Throws RankFailure in rank 0 if another rank has reported a failure; does not block.
-    virtual void poll_failures() = 0;
+    virtual void poll_failures() {}
 
     /// Reports an error of this rank to rank 0, which prints it and ends all ranks. Returns after some seconds if rank
     /// 0 has not ended this rank.
-    virtual void report_failure(const std::string& text, int code) = 0;
+    virtual void report_failure(const std::string& /*text*/, int /*code*/) {}
 
     /// Ends the processes of all ranks with exit code `code`.
-    [[noreturn]] virtual void abort(int code) = 0;
+    [[noreturn]] virtual void abort(int code) { std::exit(code); }
 
     /// Ends the communication. Must be the last call.
-    virtual void close() = 0;
+    virtual void close() {}
 };
 
 /// Type of the function `kMakeMpiTransport` in raya_mpi.so. The function starts MPI and returns the transport, which
@@ -95,29 +98,18 @@ inline constexpr const char *kMpiModule = "raya_mpi", *kMakeMpiTransport = "raya
 class Deadline {
   public:
     Deadline(double limit_s, std::string text, int code)
-        : timer_thread_([this, limit_s, text = std::move(text), code] {
-              std::unique_lock lock(mutex_);
-              if (cancellation_.wait_for(lock, std::chrono::duration<double>(limit_s), [this] { return cancelled_; }))
-                  return;
+        : timer_thread_([limit_s, text = std::move(text), code](const std::stop_token& cancellation) {
+              std::mutex mutex;
+              std::unique_lock lock(mutex);
+              const std::chrono::duration<double> limit(limit_s);
+              std::condition_variable_any().wait_for(lock, cancellation, limit, [] { return false; });
+              if (cancellation.stop_requested()) return;
               if (!text.empty() && ::write(STDERR_FILENO, text.data(), text.size()) < 0) std::_Exit(code);
               std::_Exit(code);
           }) {}
-    ~Deadline() {
-        {
-            const std::lock_guard lock(mutex_);
-            cancelled_ = true;
-        }
-        cancellation_.notify_one();
-        timer_thread_.join();
-    }
-    Deadline(const Deadline&) = delete;
-    Deadline& operator=(const Deadline&) = delete;
 
   private:
-    std::mutex mutex_{};
-    std::condition_variable cancellation_{};
-    bool cancelled_ = false;
-    std::thread timer_thread_;  // declared last, because the thread uses the members above
+    std::jthread timer_thread_;
 };
 
 }  // namespace raya

@@ -87,10 +87,7 @@ class ThreadTransport final : public Transport {
         pending_.clear();
     }
 
-    void poll_failures() override {}
-    void report_failure(const std::string&, int) override {}
     [[noreturn]] void abort(int) override { throw std::logic_error("ThreadTransport does not support abort()"); }
-    void close() override {}
 
   private:
     static constexpr int kBroadcast = -1, kGather = -2;  // tags
@@ -106,16 +103,7 @@ inline Ranks silent_rank(std::uint32_t rank, std::uint32_t count) {
         Silent(std::uint32_t own, std::uint32_t all) : rank_(own), count_(all) {}
         std::uint32_t rank() const override { return rank_; }
         std::uint32_t count() const override { return count_; }
-        std::string host() const override { return {}; }
-        std::string library() const override { return {}; }
-        void broadcast(std::span<std::byte>) override {}
         void all_gather(std::span<const std::byte>, std::span<std::byte>, std::span<const std::size_t>) override {}
-        void start(std::span<const OutgoingMessage>, std::span<const IncomingMessage>) override {}
-        void wait() override {}
-        void poll_failures() override {}
-        void report_failure(const std::string&, int) override {}
-        [[noreturn]] void abort(int code) override { std::exit(code); }
-        void close() override {}
         std::uint32_t rank_, count_;
     };
     return Ranks(std::make_unique<Silent>(rank, count));
