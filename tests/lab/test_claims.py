@@ -10,7 +10,7 @@ import pytest
 
 raya = pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHON=ON")
 from raya.lab import papers  # noqa: E402
-from raya.lab.claims import CLAIMS, decide, judged, undecided_claims  # noqa: E402
+from raya.lab.claims import CLAIMS, decide, judged  # noqa: E402
 from raya.lab.document import write_document  # noqa: E402
 from raya.lab.families import CROWDED, FAMILIES  # noqa: E402
 from raya.lab.laboratory import Costs, Ensemble, Laboratory  # noqa: E402
@@ -382,16 +382,6 @@ def test_each_verdict_of_each_claim_has_a_case():
 
 
 # The file claims.toml.
-
-
-def test_claims_without_a_verdict_are_on_a_page_with_verdicts():
-    """A page shows the derived and untestable claims of its study next to the claims that the study judges."""
-    with_verdicts = {claim.study for claim in CLAIMS.values() if claim.kind in ("test", "counted")}
-    for claim in CLAIMS.values():
-        assert claim.study in with_verdicts, claim.id
-    for study in with_verdicts:
-        assert [judgement.claim for judgement in undecided_claims(study, [])] == [
-            claim for claim in CLAIMS.values() if claim.study == study and claim.kind in ("derived", "untestable")]
 
 
 @pytest.mark.parametrize("key, part", [

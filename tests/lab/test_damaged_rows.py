@@ -22,7 +22,7 @@ What becomes of them?
 """
 import numpy as np
 import pandas as pd
-from raya.lab import Page, Plot, Series, Table, above, estimate, judged
+from raya.lab import Comparison, Page, Plot, Series, Table, above, estimate, judged
 
 
 def run(lab, scenes):

@@ -30,7 +30,7 @@ BenchMeasurement row(std::uint32_t lanes, double best_ms, double median_ms) {
 
 BenchReport report(std::vector<BenchMeasurement> rows) {
     return {.raya = "0.1.0",
-            .device = {.name = "cpu", .platform = "PoCL", .version = "OpenCL 3.0", .driver = "3.1"},
+            .device = {.name = "cpu", .platform = "PoCL", .version = "OpenCL 3.0", .driver = "3.1", .type = ""},
             .rows = std::move(rows)};
 }
 
