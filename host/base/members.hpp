@@ -33,6 +33,7 @@ concept HasMembers = requires(Members& members, std::remove_const_t<T>& value) {
 /// The JSON object of a T.
 template <class T>
 struct Written {
+    using Object = T;
     Json json = Json::object();
 };
 
@@ -136,11 +137,6 @@ class Members {
     }
 
     template <class T>
-    static Json schema(Written<T>*) {
-        T value{};
-        return schema(value);
-    }
-    template <class T>
     static Json schema(T& value) {
         using Type = std::remove_const_t<T>;
         if constexpr (is_object<T>) {
@@ -148,7 +144,8 @@ class Members {
             list(members, value);
             return members.json();
         } else if constexpr (requires { value.json; }) {
-            return schema(const_cast<Type*>(&value));
+            typename Type::Object object{};
+            return schema(object);
         } else if constexpr (requires { value.has_value(); }) {
             typename Type::value_type element{};
             Json json = schema(element);

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
@@ -286,36 +285,13 @@ void device_members(Members& m, const RenderReport& r) {
     m("build_options", r.device.build_options, "Options of the kernel compiler.");
 }
 
-constexpr std::array<const char*, RAYA_EVENTS> kEventMeanings = {
-    "Number of primary rays: one per pixel, and four more for each supersampled pixel.",
-    "Number of primary rays that hit an object.",
-    "Number of reflected rays, including total reflection.",
-    "Number of refracted rays.",
-    "Number of shadow rays, from hits to lights.",
-    "Number of shadow rays that hit an object.",
-    "Number of tests against spheres.",
-    "Number of tests against planes.",
-    "Number of tests against polygons and patches.",
-    "Number of tests against cones and cylinders.",
-    "Number of shaded hits of primary, reflected and refracted rays. For each hit the kernel evaluates a normal, a "
-    "surface and an ambient term.",
-    "Number of contributions of light sources to hits.",
-    "Number of evaluations of a specular highlight's power.",
-    "Number of rays that traversed the acceleration structure. Grid and torus: rays that entered the bounding box of "
-    "the voxels. BVH: rays that visited a node.",
-    "Number of traversal steps of all rays. Grid and torus: voxels entered, including the first voxel of a ray. BVH: "
-    "nodes visited.",
-    ""};
-
-static_assert(kEventMeanings.back() != nullptr);
-
 // Adds the counts of the events whose member in kEvents begins with `prefix`, without the prefix.
 void event_members(Members& m, const EventCounts& events, const std::string& prefix) {
     for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
         const std::string member = kEvents[event].member;
         const bool listed =
             prefix.empty() ? !member.empty() && member.find('.') == std::string::npos : member.starts_with(prefix);
-        if (listed) m(member.substr(prefix.size()), events[event], kEventMeanings[event]);
+        if (listed) m(member.substr(prefix.size()), events[event], "Number of events (kernels/shared/events.h).");
     }
 }
 

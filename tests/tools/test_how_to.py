@@ -113,7 +113,6 @@ HitRegion HitRegions::disk(std::size_t at) const {
 """),
     ("host/model/budget.cpp", 'The 40 operations hide the loads of its 10 words"},\n',
      '    {.event = RAYA_DISK_TESTS, .multiply_accumulates = 7 + 6 + 3, .divisions = 1, .branches = 2, .additions = 14, .multiplications = 12, .work = "all"},\n'),
-    ("host/report/render_report.cpp", '    "Number of tests against cones and cylinders.",\n', '    "Number of tests against disks.",\n'),
 ]
 
 
