@@ -76,7 +76,7 @@ class Reports:
     def make_renders(self):
         # A scene for which raya warns, with a polygon without area and an unknown entity.
         odd = self.file("odd.nff", (SCENES / "planes.nff").read_text() + "p 3\n0 0 0\n0 0 0\n1 1 1\ntt 1\n")
-        quick_options = ["--size", "16", "--lanes", "1", "--format", "fp32", "--quiet", "--report", "r.json"]  # building kernels takes most of the time
+        quick_options = ["--size", "16", "--lanes", "4", "--format", "fp32", "--quiet", "--report", "r.json"]  # building kernels takes most of the time
         spheres, ring = SCENES / "spheres.nff", ["--pes", "8"]
 
         def render(scene, *options, output="x.ppm", launcher=()):
@@ -100,17 +100,17 @@ class Reports:
 
     def make_other_reports(self):
         scene = SCENES / "spheres.nff"
-        quick_options = ["--format", "fp32", "--size", "16", "--lanes", "1", "--samples", "1", "--report"]
+        quick_options = ["--format", "fp32", "--size", "16", "--lanes", "4", "--samples", "1", "--report"]
         self.make("bench", "bench", scene, *quick_options, "base.json", file="base.json")
         self.make("bench", "bench", scene, "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *quick_options, "r.json")
         self.make("bench", "bench", scene, "--variants", "none", *quick_options, "r.json")
         self.make("bench", "bench", scene, "--build", "--variants", "none,torus", *quick_options, "r.json")
         self.run(self.raya, "tune", scene, "--seconds", 3, "--variants", "none", "--format", "fp32", "--size", "16", XDG_CACHE_HOME=self.folder / "cache")
         self.add_report("tuned", "the stored settings", next(self.folder.glob("cache/raya/tuned-*.json")).read_text())
-        check = ["verify", "--brief", "--lanes", "1", "--only", "machine mapping: rows", "--report", "r.json"]
+        check = ["verify", "--brief", "--lanes", "4", "--only", "machine mapping: rows", "--report", "r.json"]
         self.make("verify", *check)
         # The only check is skipped, because there are no stored results in this format.
-        skipped = f"render {shlex.quote(str(scene))} --lanes 1 --format e7m11"
+        skipped = f"render {shlex.quote(str(scene))} --lanes 4 --format e7m11"
         self.make("verify", "verify", "--as", skipped, "--only", "number", "--report", "r.json", code=4)
         self.run(self.patch_kernels, "kernels", *FAULT)
         self.make("verify", *check, "--kernel-dir", "kernels", code=4)
@@ -119,7 +119,7 @@ class Reports:
             self.add_report("info", f"info {arguments[0]}", self.run(self.raya, "info", *arguments, "--json", stdout=subprocess.PIPE))
         self.gpu_day()
         for mapping in ("cyclic:3", "rows"):
-            self.run(self.raya, "explore", scene, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "1", "--format", "fp32", "-o", "e.html")
+            self.run(self.raya, "explore", scene, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "4", "--format", "fp32", "-o", "e.html")
             self.add_report("explore", "raya explore", re.search(r'<pre id="report".*?>(.*?)</pre>', (self.folder / "e.html").read_text(), re.S)[1])
         for study in ("table2", "table4", "fig8"):
             self.make("study", "study", study, "--size", "32", "--views", "20", "-o", "study", file=f"study/{study}.json")

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Tests `raya verify --reproduce` and `--bisect` with injected faults: each case must fail on the faulty kernel or driver and pass on the right one.
 
-    test_reproduce.py RAYA PATCH_KERNELS CL_FAULTS [--all | --reduce]
+    test_reproduce.py RAYA PATCH_KERNELS CL_FAULTS [--reduce]
 
-RAYA is the program, PATCH_KERNELS tests/patch_kernels, CL_FAULTS the library made of tests/cli/cl_faults.cpp. --all: every fault (default: three).
+RAYA is the program, PATCH_KERNELS tests/patch_kernels, CL_FAULTS the library made of tests/cli/cl_faults.cpp.
 --reduce: only reduces two cases with cvise; a reduced kernel must have fewer than 60 lines. Exit code 77: no C compiler, or no cvise or Oclgrind.
 """
 import os, shlex, shutil, subprocess, sys, tempfile
@@ -155,13 +155,12 @@ def main():
             return test.reduce()
         test.messages()
         test.nan_signs()
-        for fault in KERNEL_FAULTS if mode else KERNEL_FAULTS[4:5]:
+        for fault in KERNEL_FAULTS:
             test.kernel_fault(*fault)
-        for fault in DRIVER_FAULTS[1:] if mode else DRIVER_FAULTS[2:]:
+        for fault in DRIVER_FAULTS[1:]:
             test.driver_fault(*fault)
-        if mode:
-            test.endless_loop()
-            test.bisect()
+        test.endless_loop()
+        test.bisect()
 
 
 if __name__ == "__main__":
