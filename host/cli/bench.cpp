@@ -87,34 +87,25 @@ void print_tuned(const std::vector<BenchRow>& rows) {
     for (const std::string& file : files) fmt::print("tuned: {}\n", printable(file));
 }
 
-std::string seconds_text(double s) { return fmt::format("{:.2f}", s); }
-
 void print_builds(const std::vector<BenchBuild>& builds) {
     std::vector<std::vector<std::string>> table = {
         {"kernel", "variant", "format", "lanes", "build s", "first launch s"}};
     double build_s = 0, launch_s = 0;
     for (const BenchBuild& build : builds) {
         table.push_back({build.kernel, build.variant, build.format, std::to_string(build.lanes),
-                         seconds_text(build.build_s), seconds_text(build.launch_s)});
+                         fmt::format("{:.2f}", build.build_s), fmt::format("{:.2f}", build.launch_s)});
         build_s += build.build_s;
         launch_s += build.launch_s;
     }
     fmt::print("{}first launch: includes the compilation that the driver defers until the first launch\n",
                text_table(table));
-    fmt::print("total: {} s of builds, {} s of first launches\n", seconds_text(build_s), seconds_text(launch_s));
+    fmt::print("total: {:.2f} s of builds, {:.2f} s of first launches\n", build_s, launch_s);
 }
 
 struct BaselineOptions {
     std::string baseline;  // file of --compare
     double tolerance_percent = 10;
 };
-
-// Returns the report of --compare; without --compare, an empty one. Throws UserError if the file or the tolerance is
-// not valid. Called before the measurements, so that an error is reported before they take their time.
-BenchReport read_baseline(const BaselineOptions& options) {
-    if (options.baseline.empty()) return {};
-    return read_bench_report(options.baseline);
-}
 
 // Throws UserError if the baseline has no row of this run.
 void check_comparable(const BaselineOptions& options, const BenchReport& baseline, const BenchReport& measured) {
@@ -151,16 +142,15 @@ void write_and_compare(const BaselineOptions& options, const ReportFiles& files,
 // Adds --compare, which excludes the option `build`, and --tolerance, which needs --compare.
 void add_baseline_options(CLI::App& command, BaselineOptions& options, CLI::Option* build) {
     CLI::Option* compare =
-        add_file(command, FileUse::kRead, "--compare", options.baseline, "FILE.json",
+        add_file(command, FileUse::kRead, "--compare FILE.json", options.baseline,
                  "Compare the rows with those of an earlier --report: exit code 4 if a row is slower or its image "
                  "differs",
                  "Compare with an earlier report: exit code 4 if slower")
             ->excludes(build);
-    in_range(add_value(command, "--tolerance", options.tolerance_percent,
+    in_range(add_value(command, "--tolerance PERCENT", options.tolerance_percent,
                        "With --compare: tolerance in percent, 0..100; a row is slower if both its best and its median "
                        "rate fall by more than the tolerance"),
              0, 100, "percent")
-        ->type_name("PERCENT")
         ->capture_default_str()
         ->needs(compare);
 }
@@ -209,18 +199,6 @@ std::vector<BenchRow> prepare_rows(const BenchCommand& command, Session& session
     return rows;
 }
 
-// If the torus is the only variant, refuses the options of ring machines, because they would have no effect.
-void refuse_unused_options(const CLI::App& parser, const BenchCommand& command) {
-    if (command.variants.empty() || std::ranges::count(command.variants, "torus") < std::ssize(command.variants))
-        return;
-    for (const char* option : {"--machine", "--pes", "--offset", "--mapping", "--fold", "--pe-memory"})
-        if (parser.count(option) > 0)
-            throw UserError(
-                fmt::format("{} with --variants torus: no effect, because the torus has 4x4x4 nodes without a memory "
-                            "limit; leave out {}, or add the variant none",
-                            option, option));
-}
-
 Scene scene_of(const BenchCommand& command) {
     Scene scene = command.render.scene.empty()
                       ? parse_nff(embedded_files().at("scenes/spheres.nff"), "scenes/spheres.nff")
@@ -251,9 +229,12 @@ void print_tables(const BenchCommand& command, Session& session, const std::vect
 void bench(const CLI::App& parser, BenchCommand command) {
     Warnings warnings;
     warn_of_build_options(warnings);
-    refuse_unused_options(parser, command);
+    const auto& variants = command.variants;
+    if (!variants.empty() && std::ranges::count(variants, "torus") == std::ssize(variants))
+        refuse_options_of_other_machines(parser, machine_named("torus"));
     if (!command.files.page.empty()) check_page_name("--page", command.files.page);
-    const BenchReport baseline = read_baseline(command.compare);
+    const std::string& old_report = command.compare.baseline;  // read first, because the measurements take long
+    const BenchReport baseline = old_report.empty() ? BenchReport{} : read_bench_report(old_report);
     const std::vector<NumberFormat> formats =
         parse_formats(command.render.format.empty() ? "fp32,spa22" : command.render.format);
     command.render.format.clear();
@@ -298,41 +279,38 @@ void add_bench_command(CLI::App& program) {
                              "Time whole renders of a scene, without accelerator and with a BVH"}});
     const auto options = std::make_shared<BenchCommand>();
     OptionGroup group(*command, "Workload");
-    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE",
+    add_file(*command, FileUse::kRead, "SCENE SCENE", options->render.scene,
              std::string(kSceneHelp) + "; default: 30 spheres and a plane, 512 x 512");
     add_render_options(*command, options->render, false);
     add_value(
-        *command, "--variants", options->variants,
+        *command, "--variants none,grid,bvh,packets,torus", options->variants,
         "Time whole renders instead of the trace kernel, for a comma-separated list of variants; none, grid and bvh "
         "are the ring machine with that --accel; packets is bvh with neighbouring rays together, in fp32 and tiles; "
         "torus is 4x4x4 nodes without a memory limit; raya compares the other variants with the first",
         "Time whole renders instead of the trace kernel")
         ->delimiter(',')
         ->allow_extra_args(false)  // so that the scene may follow
-        ->type_name("none,grid,bvh,packets,torus")
         ->excludes(command->get_option("--accel"));
     CLI::Option* build =
         command->add_flag("--build", options->build,
                           "Measure only compilation: compile each kernel of the variants in each format from source, "
                           "and measure the seconds of the build and of the first launch");
     attach_note(build, kBriefNote, "Measure only compilation");
-    in_range(add_value(*command, "--limit", options->limit_s,
+    in_range(add_value(*command, "--limit SECONDS", options->limit_s,
                        "With --build: maximum seconds to compile a kernel; exit code 4 if a kernel takes longer"),
              0.001, 1e6, "seconds")
-        ->type_name("SECONDS")
         ->needs(build);
-    in_range(add_value(*command, "--samples", options->samples,
+    in_range(add_value(*command, "--samples N", options->samples,
                        "Number of time samples of each row, 1..1000; the best and the median are printed",
                        "Number of time samples of each row, 1..1000"),
              1, 1000)
-        ->type_name("N")
         ->capture_default_str();
     group.next("Report and comparison");
-    add_file(*command, FileUse::kWritten, "--report", options->files.report, "FILE.json",
+    add_file(*command, FileUse::kWritten, "--report FILE.json", options->files.report,
              "Write the rows as JSON, for a later --compare; -: stdout; the tables then go to stderr",
              "Write the rows as JSON; -: stdout");
     add_file(
-        *command, FileUse::kWritten, "--page", options->files.page, "FILE.html",
+        *command, FileUse::kWritten, "--page FILE.html", options->files.page,
         "Write rates, comparison and roofline as an HTML page; raya page makes the same page from a report. Measures "
         "the device's peak for each pair of a format and a number of lanes; each pair takes some seconds",
         "Write rates, comparison and roofline as an HTML page")

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
@@ -36,41 +37,26 @@
 #include "host/version.hpp"
 
 namespace raya {
-namespace {
-
-const CLI::App& subcommand_named(const CLI::App& command, const std::string& name) {
-    for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
-        if (subcommand->get_name() == name) return *subcommand;
-    const std::vector<std::string> known_names = command_names(command);
-    if (known_names.empty())
-        throw UserError(
-            fmt::format("help: {} has no command {}; see raya help {}", command.get_name(), name, command.get_name()));
-    throw UserError(fmt::format("help: no command {}{}; commands: {}", name, did_you_mean(name, known_names),
-                                fmt::join(known_names, ", ")));
-}
-
-void print_help(const CLI::App& program, const std::vector<std::string>& names) {
-    const CLI::App* command = &program;
-    std::string path = program.get_name();
-    for (const std::string& name : names) {
-        command = &subcommand_named(*command, name);
-        path += ' ' + name;
-    }
-    fmt::print("{}", command->get_formatter()->make_help(command, path, CLI::AppFormatMode::Normal));
-}
-
-}  // namespace
 
 void add_help_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("help", "Print the help of a command, or of raya itself");
     add_examples(*command, {{"raya help render", "Print the help of render, as raya render --help does"},
                             {"raya help generate balls", "Print the help of one generator"}});
     const auto names = std::make_shared<std::vector<std::string>>();
-    add_value(*command, "COMMAND", *names, "The command, such as generate balls; default: raya itself")
-        ->type_name("COMMAND");
+    add_value(*command, "COMMAND COMMAND", *names, "The command, such as generate balls; default: raya itself");
     command->callback([names, &program] {
-        if (*names == std::vector<std::string>{"study"}) start_study({"--help"});
-        print_help(program, *names);
+        const CLI::App* described = &program;
+        std::string path = program.get_name();
+        for (const std::string& name : *names) {
+            const std::vector<std::string> known = command_names(*described);
+            if (std::ranges::find(known, name) == known.end())
+                throw UserError(
+                    fmt::format("help: no command {}{}; see {} --help", name, did_you_mean(name, known), path));
+            described = described->get_subcommand(name);
+            path += ' ' + name;
+        }
+        if (path == "raya study") start_study({"--help"});
+        fmt::print("{}", described->get_formatter()->make_help(described, path, CLI::AppFormatMode::Normal));
     });
 }
 
@@ -81,19 +67,6 @@ constexpr int kExitCheckFailed = 4;
 
 constexpr const char* kOutOfMemory =
     "out of memory on the host; remedy: fewer pixels, a smaller scene, or more memory (ulimit -v)";
-
-constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 2 bad option or input, 3 device or driver failure, 4 a check failed, 1 an internal error.";
-constexpr const char* kEnvironment =
-    "\n\nEnvironment:\n"
-    "  RAYA_DEVICE         the device, unless --device is given\n"
-    "  RAYA_BUILD_OPTIONS  added to every kernel's build options, and listed in reports\n"
-    "  RAYA_TUNED          off: use the defaults, not the values that raya tune stored\n"
-    "  RAYA_PYTHON         the Python that runs studies; default: /usr/bin/python3\n"
-    "  RAYA_MPIRUN         the command with which study ranks starts ranks; default: mpirun --bind-to none\n"
-    "  RAYA_MESH_TIMEOUT   seconds that reading a mesh may take; default: 120\n"
-    "  RAYA_RANK_TIMEOUT   seconds that a rank waits for other ranks; default: 600\n"
-    "  XDG_CACHE_HOME      raya tune stores its values in raya/ in this folder; default: ~/.cache";
 
 /// Called by std::terminate(). Reports a std::bad_alloc that is thrown in a destructor, in a thread or before main(),
 /// where no handler catches it.
@@ -255,7 +228,6 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
         .set_version_flag("--version", fmt::format("{} ({})", name_and_version(), build),
                           "Print version, commit and build")
         ->group(kGeneralOptions);
-    program.footer(kExitCodes);
     add_render_command(program, ranks);
     add_explore_command(program);
     add_devices_command(program);
@@ -269,7 +241,6 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     add_verify_command(program);
     add_ping_command(program, ranks);
     add_help_command(program);
-    program.footer(std::string(kExitCodes) + kEnvironment);  // the commands keep the footer without kEnvironment
     add_verbosity_options(program, ranks);
     // Runs before the command's callback. Only rank 0 checks files, because only rank 0 writes them.
     program.parse_complete_callback([&program, &ranks] {

@@ -46,13 +46,13 @@ CLI::App* add_generator(CLI::App& command, GenerateOptions& options, const std::
     add_examples(*generator, examples);
     generator->option_defaults()->group("Scene");
     const OptionGroup group(*generator, kFiles);
-    add_file(*generator, FileUse::kWritten, "-o,--output", options.output, "SCENE.nff", file_help)->required();
+    add_file(*generator, FileUse::kWritten, "-o,--output SCENE.nff", options.output, file_help)->required();
     return generator;
 }
 
 template <class Value>
 void add_number(CLI::App& generator, const std::string& name, Value& value, const std::string& help) {
-    add_value(generator, name, value, help)->type_name("N")->capture_default_str();
+    add_value(generator, name + " N", value, help)->capture_default_str();
 }
 
 void add_terrain(CLI::App& command, const std::shared_ptr<GenerateOptions>& options) {
@@ -107,10 +107,9 @@ void add_generate_command(CLI::App& program) {
         *command, *options, "uniform", "N matt spheres, evenly distributed over the voxels of a cube",
         {{"raya generate uniform 64 --voxels 4x4x4 -o even.nff", "One sphere in each of 64 voxels"},
          {"raya generate uniform 1000 --voxels 2x2x1 -o slab.nff", "250 spheres in each of four voxels"}});
-    add_value(*uniform, "N", options->sphere_count, "Number of spheres, 1..20000000")->type_name("COUNT")->required();
-    add_value(*uniform, "--voxels", options->voxels,
+    add_value(*uniform, "N COUNT", options->sphere_count, "Number of spheres, 1..20000000")->required();
+    add_value(*uniform, "--voxels XxYxZ", options->voxels,
               "Number of voxels along x, y and z, 1..256 each, at most 1,048,576 in total")
-        ->type_name("XxYxZ")
         ->required();
     uniform->callback([options] {
         const auto sides = parse_three_sides("--voxels", options->voxels, fmt::format("1..{} each", kMaxVoxelsPerAxis));
@@ -123,7 +122,7 @@ void add_generate_command(CLI::App& program) {
     CLI::App* random = add_generator(*command, *options, "random", "N spheres at random positions in a cube",
                                      {{"raya generate random 500 -o random.nff", "500 spheres"},
                                       {"raya generate random 500 --seed 2 -o other.nff", "500 other spheres"}});
-    add_value(*random, "N", options->sphere_count, "Number of spheres, 1..20000000")->type_name("COUNT")->required();
+    add_value(*random, "N COUNT", options->sphere_count, "Number of spheres, 1..20000000")->required();
     add_number(*random, "--seed", options->seed, "Seed of the random numbers, 0..2^64-1");
     random->callback(
         [options] { write_scene(*options, [&] { return generate_random(options->sphere_count, options->seed); }); });

@@ -27,45 +27,21 @@
 namespace raya {
 namespace {
 
-// Computes the memory that machines need for a scene, with those steps of a render that need no device.
+// Computes the memory that machines need for a scene, with those steps of a render that need no device. A scene that
+// does not fit is not an error; the result contains the missing bytes.
 
-/// Packs a scene for several machines. Machines with the same format and accelerator share one packed scene.
-class SceneNeeds {
-  public:
-    /// All arguments must outlive this object.
-    SceneNeeds(const RenderOptions& render, const TorusOptions& torus, const Scene& scene);
-
-    /// Returns the machine's memory needs with the accelerator of --accel or, without --accel, with each of none, bvh
-    /// and grid. Throws UserError if the machine does not support the options' values. A scene that does not fit is not
-    /// an error; the result contains the missing bytes.
-    MachineNeeds needs_of(const std::string& machine);
-
-    /// Returns how the scene fits the number formats of the machines for which needs_of() was called.
-    std::vector<FormatFit> formats() const { return formats_; }
-
-  private:
-    /// Size of the packed scene with an accelerator.
-    struct PackedSize {
-        std::uint64_t words = 0;  // number of 32-bit words
-        AccelSummary accel;
-        std::string refusal;  // why the scene cannot be packed; empty if it can
-    };
-
-    const FormatFit& fit_of(const NumberFormat& format);
-    const PackedSize& size_of(const RingSettings& settings, const LengthScale& scale);
-    AccelNeed need_of(const RingSettings& settings, const FormatFit& fit);
-    MachineNeeds ring_needs(const RenderOptions& options);
-    MachineNeeds torus_needs(const RenderOptions& options);
-
-    const RenderOptions& render_;
-    const TorusOptions& torus_;
-    const Scene& scene_;
-    std::vector<FormatFit> formats_;
-    std::map<std::string, PackedSize> sizes_;                       // key: format and accelerator
-    std::optional<std::pair<std::string, PackedJob>> last_packed_;  // [format, scene without accelerator]
+// Size of the packed scene with an accelerator.
+struct PackedSize {
+    std::uint64_t words = 0;  // number of 32-bit words
+    AccelSummary accel;
+    std::string refusal;  // why the scene cannot be packed; empty if it can
 };
 
-constexpr std::array<AccelKind, 3> kAccelKinds = {AccelKind::kNone, AccelKind::kBvh, AccelKind::kGrid};
+// What machines share: how the scene fits their formats, and its sizes.
+struct SceneSizes {
+    std::vector<FormatFit> formats;
+    std::map<std::string, PackedSize> packed;  // by format and accelerator
+};
 
 void set_missing(AccelNeed& need, const DoesNotFit& refusal) {
     need.pe_bytes = refusal.needed_bytes;
@@ -73,61 +49,54 @@ void set_missing(AccelNeed& need, const DoesNotFit& refusal) {
     need.refusal = refusal.what();
 }
 
-SceneNeeds::SceneNeeds(const RenderOptions& render, const TorusOptions& torus, const Scene& scene)
-    : render_(render), torus_(torus), scene_(scene) {}
-
-const FormatFit& SceneNeeds::fit_of(const NumberFormat& format) {
+const FormatFit& fit_of(SceneSizes& sizes, const Scene& scene, const NumberFormat& format) {
     const std::string name = format_name(format);
-    const auto known = std::ranges::find(formats_, name, &FormatFit::format);
-    if (known != formats_.end()) return *known;
+    const auto known = std::ranges::find(sizes.formats, name, &FormatFit::format);
+    if (known != sizes.formats.end()) return *known;
     FormatFit fit{name, {}, {}};
     try {
-        fit.scale = length_scale(scene_, format);
+        fit.scale = length_scale(scene, format);
     } catch (const UserError& error) {
         fit.refusal = error.what();
     }
-    return formats_.emplace_back(std::move(fit));
+    return sizes.formats.emplace_back(std::move(fit));
 }
 
-const SceneNeeds::PackedSize& SceneNeeds::size_of(const RingSettings& settings, const LengthScale& scale) {
-    const std::string format = format_name(settings.format);
-    const auto [entry, added] = sizes_.try_emplace(format + ' ' + accel_text(settings.accel));
+const PackedSize& size_of(SceneSizes& sizes, const Scene& scene, const RingSettings& settings,
+                          const LengthScale& scale) {
+    const auto [entry, added] =
+        sizes.packed.try_emplace(format_name(settings.format) + ' ' + accel_text(settings.accel));
     PackedSize& size = entry->second;
-    if (!added) return size;
-    try {
-        if (!last_packed_ || last_packed_->first != format)
-            last_packed_.emplace(format, pack_for_ring(scene_, settings, scale));
-        size.words = last_packed_->second.words().size();
-        if (settings.accel.kind == AccelKind::kNone) return size;
-        PackedJob job = last_packed_->second;
-        size.accel = append_accel(job, settings);
-        size.words = job.words().size();
-    } catch (const UserError& error) {  // the scene has more words than 32-bit addresses can reach
-        size.refusal = error.what();
-    }
+    if (added) try {
+            PackedJob job = pack_for_ring(scene, settings, scale);
+            if (settings.accel.kind != AccelKind::kNone) size.accel = append_accel(job, settings);
+            size.words = job.words().size();
+        } catch (const UserError& error) {  // the scene has more words than 32-bit addresses can reach
+            size.refusal = error.what();
+        }
     return size;
 }
 
-AccelNeed SceneNeeds::need_of(const RingSettings& settings, const FormatFit& fit) {
+AccelNeed need_of(SceneSizes& sizes, const Scene& scene, const RingSettings& settings, const FormatFit& fit) {
     AccelNeed need;
     need.accel = accel_text(settings.accel);
     need.refusal = fit.refusal;
     if (!need.refusal.empty()) return need;
-    const PackedSize& size = size_of(settings, fit.scale);
+    const PackedSize& size = size_of(sizes, scene, settings, fit.scale);
     need.words = size.words;
     need.summary = size.accel;
     need.refusal = size.refusal;
-    if (!need.refusal.empty()) return need;
-    try {
-        need.pe_bytes = plan_pe_memory(settings.machine, pe_demand(settings, scene_.name, size.words)).bytes();
-    } catch (const DoesNotFit& refusal) {
-        set_missing(need, refusal);
-    }
+    if (need.refusal.empty()) try {
+            need.pe_bytes = plan_pe_memory(settings.machine, pe_demand(settings, scene.name, size.words)).bytes();
+        } catch (const DoesNotFit& refusal) {
+            set_missing(need, refusal);
+        }
     return need;
 }
 
-MachineNeeds SceneNeeds::ring_needs(const RenderOptions& options) {
-    RingSettings settings = ring_settings(options, scene_);
+// With the accelerator of --accel or, without --accel, with each of none, bvh and grid.
+MachineNeeds ring_needs(SceneSizes& sizes, const Scene& scene, const RenderOptions& options) {
+    RingSettings settings = ring_settings(options, scene);
     check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
     MachineNeeds machine{.machine = options.machine,
                          .format = format_name(settings.format),
@@ -135,51 +104,40 @@ MachineNeeds SceneNeeds::ring_needs(const RenderOptions& options) {
                          .memory_bytes = settings.machine.pe_memory_bytes,
                          .needs = {},
                          .refusal = {}};
-    const FormatFit fit = fit_of(settings.format);
+    const FormatFit fit = fit_of(sizes, scene, settings.format);
     const std::string default_accel = accel_text(settings.accel);
-    std::vector<Accel> accels;
-    for (const AccelKind kind : kAccelKinds)
-        if (options.accel.empty()) accels.push_back({kind, {}});
-    if (accels.empty()) accels.push_back(settings.accel);
+    std::vector<Accel> accels = {settings.accel};
+    if (options.accel.empty()) accels = {{AccelKind::kNone, {}}, {AccelKind::kBvh, {}}, {AccelKind::kGrid, {}}};
     for (const Accel& accel : accels) {
         settings.accel = accel;
-        machine.needs.push_back(need_of(settings, fit));
+        machine.needs.push_back(need_of(sizes, scene, settings, fit));
         machine.needs.back().is_default = options.accel.empty() && machine.needs.back().accel == default_accel;
     }
     return machine;
 }
 
-MachineNeeds SceneNeeds::torus_needs(const RenderOptions& options) {
-    const TorusSettings settings = torus_settings(options, torus_, scene_);
-    MachineNeeds machine{.machine = options.machine,
-                         .format = format_name(settings.format),
-                         .pes = raya_nodes(settings.torus),
-                         .memory_bytes = settings.memory_bytes,
-                         .needs = {},
-                         .refusal = {}};
+MachineNeeds torus_needs(SceneSizes& sizes, const Scene& scene, const RenderOptions& options,
+                         const TorusOptions& torus) {
+    const TorusSettings settings = torus_settings(options, torus, scene);
     AccelNeed need;
     need.accel = "voxels";
     need.is_default = true;
-    need.refusal = fit_of(settings.format).refusal;
-    try {
-        if (need.refusal.empty()) {
-            const NodeNeeds needs = node_needs(scene_, settings);
+    need.refusal = fit_of(sizes, scene, settings.format).refusal;
+    if (need.refusal.empty()) try {
+            const NodeNeeds needs = node_needs(scene, settings);
             need.words = needs.words;
             need.pe_bytes = needs.bytes;
+        } catch (const DoesNotFit& refusal) {
+            set_missing(need, refusal);
+        } catch (const UserError& error) {
+            need.refusal = error.what();
         }
-    } catch (const DoesNotFit& refusal) {
-        set_missing(need, refusal);
-    } catch (const UserError& error) {
-        need.refusal = error.what();
-    }
-    machine.needs.push_back(need);
-    return machine;
-}
-
-MachineNeeds SceneNeeds::needs_of(const std::string& machine) {
-    RenderOptions options = render_;
-    options.machine = machine;
-    return machine_named(machine).kind == MachineKind::kTorus ? torus_needs(options) : ring_needs(options);
+    return {.machine = options.machine,
+            .format = format_name(settings.format),
+            .pes = raya_nodes(settings.torus),
+            .memory_bytes = settings.memory_bytes,
+            .needs = {need},
+            .refusal = {}};
 }
 
 struct InfoCommand {
@@ -194,7 +152,7 @@ constexpr std::array kExecutionOptions = {"--device",    "--lanes",        "--gr
                                           "--threshold", "--packet-words", "--packets", "--async",    "--il"};
 
 void add_options(CLI::App& command, InfoCommand& options) {
-    add_file(command, FileUse::kRead, "SCENE", options.render.scene, "SCENE", kSceneHelp)->required();
+    add_file(command, FileUse::kRead, "SCENE SCENE", options.render.scene, kSceneHelp)->required();
     OptionGroup group(command, kFiles);
     command.add_flag("--json", options.json, "Print JSON");
     add_render_options(command, options.render);
@@ -208,27 +166,34 @@ void add_options(CLI::App& command, InfoCommand& options) {
 // Returns the memory needs on the machine of --machine. Throws UserError if this machine does not support the options.
 // Without --machine, returns the memory needs on all machines; the entry of a machine that does not support the options
 // contains the reason. Throws UserError if no ring machine supports the options.
-std::vector<MachineNeeds> needs_of_machines(const CLI::App& parser, const InfoCommand& command, SceneNeeds& needs) {
+std::vector<MachineNeeds> needs_of_machines(const CLI::App& parser, const InfoCommand& command, SceneSizes& sizes,
+                                            const Scene& scene) {
+    const auto needs_of = [&](const Machine& machine) {
+        RenderOptions options = command.render;
+        options.machine = machine.name;
+        return machine.kind == MachineKind::kTorus ? torus_needs(sizes, scene, options, command.torus)
+                                                   : ring_needs(sizes, scene, options);
+    };
     if (parser.count("--machine") > 0) {
-        refuse_options_of_other_machines(parser, machine_named(command.render.machine));
-        return {needs.needs_of(command.render.machine)};
+        const Machine& machine = machine_named(command.render.machine);
+        refuse_options_of_other_machines(parser, machine);
+        return {needs_of(machine)};
     }
-    std::vector<MachineNeeds> machine_needs;
+    std::vector<MachineNeeds> all;
+    bool all_rings_failed = true;
     for (const Machine& machine : machines()) try {
-            machine_needs.push_back(needs.needs_of(machine.name));
+            all.push_back(needs_of(machine));
+            all_rings_failed = all_rings_failed && machine.kind == MachineKind::kTorus;
         } catch (const UserError& error) {
-            machine_needs.push_back({.machine = machine.name,
-                                     .format = {},
-                                     .pes = 0,
-                                     .memory_bytes = {},
-                                     .needs = {},
-                                     .refusal = error.what()});
+            all.push_back({.machine = machine.name,
+                           .format = {},
+                           .pes = 0,
+                           .memory_bytes = {},
+                           .needs = {},
+                           .refusal = error.what()});
         }
-    const bool all_rings_failed = std::ranges::all_of(machine_needs, [](const MachineNeeds& m) {
-        return !m.refusal.empty() || machine_named(m.machine).kind == MachineKind::kTorus;
-    });
-    if (all_rings_failed) throw UserError(machine_needs.front().refusal);
-    return machine_needs;
+    if (all_rings_failed) throw UserError(all.front().refusal);
+    return all;
 }
 
 void info(const CLI::App& parser, const InfoCommand& command) {
@@ -236,9 +201,9 @@ void info(const CLI::App& parser, const InfoCommand& command) {
     change_view(command.render.view, input.scene);
     SceneReport report;
     report.raya = raya_version();
-    SceneNeeds needs(command.render, command.torus, input.scene);
-    report.machines = needs_of_machines(parser, command, needs);
-    report.formats = needs.formats();
+    SceneSizes sizes;
+    report.machines = needs_of_machines(parser, command, sizes, input.scene);
+    report.formats = sizes.formats;
     report.file = input_name(command.render.scene);
     report.box = scene_box(input.scene);
     report.skipped = input.remarks;
@@ -286,7 +251,7 @@ void add_machines_command(CLI::App& program) {
         program.add_subcommand("machines", "List the modelled machines, with the source of every number");
     add_examples(*command, {{"raya machines", "List all machines"}, {"raya machines spa", "List the numbers of spa"}});
     const auto name = std::make_shared<std::string>();
-    command->add_option("machine", *name, "Name of one machine, as for --machine; default: all")->type_name("NAME");
+    add_value(*command, "machine NAME", *name, "Name of one machine, as for --machine; default: all");
     command->callback([name] { list_machines(*name); });
 }
 

@@ -114,9 +114,9 @@ CLI::Option* attach_note(CLI::Option* option, const char* name, const std::strin
     }
 }
 
-std::string note_of(CLI::Option& option, const char* name) {
+std::string note_of(const CLI::Option& option, const char* name) {
     try {
-        CLI::Validator note = *option.get_validator(name);
+        CLI::Validator note = *const_cast<CLI::Option&>(option).get_validator(name);
         return note.active().get_description();
     } catch (const CLI::OptionNotFound&) {
         return "";
@@ -128,19 +128,6 @@ void refuse_choice(const std::string& option, const std::string& text, const std
         fmt::format("must be {} or {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
     throw UserError(text.empty() ? fmt::format("{} must not be empty: it {}", option, legal)
                                  : fmt::format("{} {}: {}", option, text, legal));
-}
-
-constexpr const char* kChoices = "choices";
-
-CLI::Option* offer_choices(CLI::Option* option, const std::vector<std::string>& choices) {
-    return attach_note(option, kChoices, fmt::format("{}", fmt::join(choices, " ")));
-}
-
-std::vector<std::string> offered_choices(CLI::Option& option) {
-    std::vector<std::string> choices;
-    std::istringstream text(note_of(option, kChoices));
-    for (std::string choice; text >> choice;) choices.push_back(choice);
-    return choices;
 }
 
 void add_tuned_option(CLI::App& command, bool& no_tuned) {
@@ -160,48 +147,29 @@ ScopedTunedSource use_tuned(bool no_tuned, Warnings* warnings) {
 
 namespace {
 
-struct VerbosityFlags {
-    int quiet = 0, verbose = 0;
-    bool is_first_rank = true;
-
-    void apply() const {
-        if (quiet > 0 && verbose > 0) throw UserError("--quiet and --verbose: give one of them");
-        set_verbosity(is_first_rank || quiet > 0 ? verbose - quiet : 0);
-    }
-};
-
-void add_to(CLI::App& command, const std::shared_ptr<VerbosityFlags>& flags) {
+// Adds the options to a command and its subcommands.
+void add_to(CLI::App& command, bool is_first_rank) {
     const OptionGroup group(command, kGeneralOptions);
     if (CLI::Option* help = command.get_option_no_throw("--help"); help != nullptr) help->group(kGeneralOptions);
-    const auto brief_options =
-        std::ranges::count_if(command.get_options(), [](CLI::Option* o) { return !note_of(*o, kBriefNote).empty(); });
     command.set_help_all_flag("--help-all", "Print the help of all options and exit")
-        ->group(brief_options >= kMinBriefOptions ? kGeneralOptions : "");
+        ->group(has_short_help(command) ? kGeneralOptions : "");
+    const auto change = [is_first_rank](int sign) {
+        return [=](std::int64_t count) {
+            if (sign * verbosity() < 0) throw UserError("--quiet and --verbose: give one of them");
+            if (is_first_rank || sign < 0) set_verbosity(verbosity() + sign * static_cast<int>(count));
+        };
+    };
+    command.add_flag_function("-q,--quiet", change(-1), "Print no summary, no progress; twice: no warnings");
     command.add_flag_function(
-        "-q,--quiet",
-        [flags](std::int64_t count) {
-            flags->quiet += static_cast<int>(count);
-            flags->apply();
-        },
-        "Print no summary, no progress; twice: no warnings");
-    command.add_flag_function(
-        "-v,--verbose",
-        [flags](std::int64_t count) {
-            flags->verbose += static_cast<int>(count);
-            flags->apply();
-        },
+        "-v,--verbose", change(1),
         "Log the host's steps on stderr; twice: also kernels' builds, and the device's times by label");
     for (CLI::App* subcommand : command.get_subcommands([](const CLI::App* c) { return !c->get_prefix_command(); }))
-        add_to(*subcommand, flags);
+        add_to(*subcommand, is_first_rank);
 }
 
 }  // namespace
 
-void add_verbosity_options(CLI::App& program, const Ranks& ranks) {
-    const auto flags = std::make_shared<VerbosityFlags>();
-    flags->is_first_rank = ranks.is_first();
-    add_to(program, flags);
-}
+void add_verbosity_options(CLI::App& program, const Ranks& ranks) { add_to(program, ranks.is_first()); }
 
 namespace {
 
@@ -236,14 +204,14 @@ CLI::Option* set_file_use(CLI::Option* option, FileUse use) {
 }
 
 void add_kernel_source_options(CLI::App& command, std::string& folder) {
-    add_file(command, FileUse::kKernelFolder, "--kernel-dir", folder, "DIR",
+    add_file(command, FileUse::kKernelFolder, "--kernel-dir DIR", folder,
              "Read the kernels from this folder, for kernel development");
     command.add_flag_callback("--il", use_il,
                               "Compile the kernels to SPIR-V with clang and llvm-spirv, and give the driver SPIR-V "
                               "instead of source; like --il in RAYA_BUILD_OPTIONS; the image does not change");
 }
 
-FileUse file_use_of(CLI::Option& option) {
+FileUse file_use_of(const CLI::Option& option) {
     const std::string use = note_of(option, kFileUseNote);
     return use.empty() ? FileUse::kNone : static_cast<FileUse>(std::stoi(use));
 }
@@ -251,7 +219,7 @@ FileUse file_use_of(CLI::Option& option) {
 void check_files(const CLI::App& command, const std::vector<NamedFile>& more_outputs) {
     forget_promised_outputs();  // of an earlier command in this process, or this command's own
     const auto for_each_file = [&](FileUse use, auto add) {
-        for (CLI::Option* option : const_cast<CLI::App&>(command).get_options())
+        for (const CLI::Option* option : command.get_options())
             if (option->count() > 0 && file_use_of(*option) == use)
                 for (const std::string& file : option->results()) add(NamedFile{option->get_name(), file});
     };

@@ -117,16 +117,18 @@ class OptionGroup {
 /// Attaches `text` to an option under the name `name`. Help does not show the text. note_of() returns the text, or ""
 /// if no text has this name.
 CLI::Option* attach_note(CLI::Option* option, const char* name, const std::string& text);
-std::string note_of(CLI::Option& option, const char* name);
+std::string note_of(const CLI::Option& option, const char* name);
 
 inline constexpr const char* kBriefNote = "brief";
 
-/// Adds an option, checks its value with check_value() and stores it in `value`. `brief`: help of the option in the
-/// command's short help; empty: the option is only in --help-all, if the command has options with such a text.
+/// Adds an option, checks its value with check_value() and stores it in `value`. `name`: "--size N|WxH", with the
+/// placeholder of the value in help. `brief`: help of the option in the command's short help; empty: the option is only
+/// in --help-all, if the command has options with such a text.
 template <class Value>
 CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const std::string& help = "",
                        const std::string& brief = "") {
-    CLI::Option* option = command.add_option(name, value, help);
+    const std::size_t blank = name.find(' ');
+    CLI::Option* option = command.add_option(name.substr(0, blank), value, help)->type_name(name.substr(blank + 1));
     option->check([option](const std::string& text) {
         check_value<typename OptionValue<Value>::Type>(option->get_name(), text, option->get_description());
         return std::string();
@@ -173,13 +175,6 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, Variable& va
     return brief.empty() ? option : attach_note(option, kBriefNote, brief);
 }
 
-/// Sets the option's values for "did you mean". They neither restrict the value nor appear in help. The call is not
-/// needed if the placeholder in help lists the values: "ring|bus".
-CLI::Option* offer_choices(CLI::Option* option, const std::vector<std::string>& choices);
-
-/// Returns the values that offer_choices() set; empty if offer_choices() was not called.
-std::vector<std::string> offered_choices(CLI::Option& option);
-
 // The option --no-tuned, and the use of the values that raya tune stored for a device.
 
 void add_tuned_option(CLI::App& command, bool& no_tuned);
@@ -205,13 +200,13 @@ enum class FileUse { kNone, kRead, kWritten, kKernelFolder, kWrittenFolder };
 
 /// Sets how the command uses the option's file.
 CLI::Option* set_file_use(CLI::Option* option, FileUse use);
-FileUse file_use_of(CLI::Option& option);
+FileUse file_use_of(const CLI::Option& option);
 
-/// Adds an option for a file or folder, as add_value() does. `type`: the placeholder of the value in help.
+/// Adds an option for a file or folder, as add_value() does.
 template <class Value>
-CLI::Option* add_file(CLI::App& command, FileUse use, const std::string& name, Value& value, const std::string& type,
-                      const std::string& help, const std::string& brief = "") {
-    return set_file_use(add_value(command, name, value, help, brief)->type_name(type), use);
+CLI::Option* add_file(CLI::App& command, FileUse use, const std::string& name, Value& value, const std::string& help,
+                      const std::string& brief = "") {
+    return set_file_use(add_value(command, name, value, help, brief), use);
 }
 
 /// Adds --kernel-dir, whose value is stored in `folder`, and --il.

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -109,10 +108,10 @@ void add_page_command(CLI::App& program) {
                    "Make a page of the checks of this device"}});
     const auto options = std::make_shared<PageCommand>();
     const OptionGroup group(*command, kFiles);
-    add_file(*command, FileUse::kRead, "REPORT", options->report, "REPORT.json",
+    add_file(*command, FileUse::kRead, "REPORT REPORT.json", options->report,
              "Report of raya render, bench or verify, written by --report")
         ->required();
-    add_file(*command, FileUse::kWritten, "-o,--output", options->page, "FILE.html",
+    add_file(*command, FileUse::kWritten, "-o,--output FILE.html", options->page,
              "HTML page to write: one file that needs no network")
         ->required();
     command->callback([options] { make_page(*options); });
@@ -234,28 +233,10 @@ namespace {
 
 // Refuses an image that is too large for a page. Called before the render.
 void check_pixels(const ImageSize& size) {
-    constexpr std::uint64_t kMaxPixels = 2'000'000;  // their page has about 2 MB, twice the maximum in check_bytes()
+    constexpr std::uint64_t kMaxPixels = 2'000'000;  // their page has about 2 MB
     if (std::uint64_t{size.width} * size.height <= kMaxPixels) return;
     throw UserError(fmt::format("--size {}x{}: too many pixels for a page, maximum {}; remedy: a smaller --size",
                                 size.width, size.height, kMaxPixels));
-}
-
-void check_cycles(const std::string& scene, const CostImage& cost) {
-    if (total_cycles(cost) < kExactCycles) return;
-    throw UserError(
-        fmt::format("{}: the pixels take {} cycles in total, more than the page's script can add exactly; remedy: a "
-                    "smaller --size, fewer --bounces, or --accel bvh",
-                    scene, total_cycles(cost)));
-}
-
-void check_bytes(const std::string& scene, const CostImage& cost, std::size_t bytes) {
-    constexpr std::size_t kMaxBytes = 1'000'000;  // maximum size of a page, small enough for e-mail
-    if (bytes <= kMaxBytes) return;
-    const double scale = 0.9 * std::sqrt(static_cast<double>(kMaxBytes) / static_cast<double>(bytes));
-    const auto smaller_side = [scale](std::uint32_t pixels) { return std::max(1, static_cast<int>(scale * pixels)); };
-    throw UserError(fmt::format("{}: a page of {} x {} pixels would have {} bytes, maximum {}; remedy: --size {}x{}",
-                                scene, cost.width, cost.height, bytes, kMaxBytes, smaller_side(cost.width),
-                                smaller_side(cost.height)));
 }
 
 void explore(const ExploreCommand& command) {
@@ -276,11 +257,9 @@ void explore(const ExploreCommand& command) {
     const RingResult result =
         renderer.render(bar->active() ? [&](double fraction) { bar->update(fraction); } : ProgressCallback{});
     bar->stage("writing");
-    check_cycles(scene_name(command), result.cost());
     const std::string page = report_page(to_json(
         Exploration{scene_name(command), command_of(command, settings), settings, session.device(), result.image.width,
                     result.image.height, plain_png(result.image), cost_planes(result.cost().cycles)}));
-    check_bytes(scene_name(command), result.cost(), page.size());
     write_whole_file(command.page, page);
     bar.reset();
     if (is_quiet()) return;
@@ -303,10 +282,9 @@ void add_explore_command(CLI::App& program) {
                              "Write a page that opens with 64 PEs and blocks of scan lines"}});
     const auto options = std::make_shared<ExploreCommand>();
     const OptionGroup group(*command, kFiles);
-    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE", kSceneHelp)->required();
-    add_file(*command, FileUse::kWritten, "-o,--output", options->page, "FILE.html",
-             "HTML page to write: one file below 1 MB that needs no network; -: stdout",
-             "HTML page to write; -: stdout")
+    add_file(*command, FileUse::kRead, "SCENE SCENE", options->render.scene, kSceneHelp)->required();
+    add_file(*command, FileUse::kWritten, "-o,--output FILE.html", options->page,
+             "HTML page to write: one file that needs no network; -: stdout", "HTML page to write; -: stdout")
         ->required();
     add_render_options(*command, options->render, false);
     command->get_option("--mapping")

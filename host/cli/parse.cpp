@@ -8,7 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <sstream>
+#include <regex>
 #include <string_view>
 
 #include "host/base/encoding.hpp"
@@ -74,13 +74,10 @@ std::vector<NumberFormat> parse_formats(const std::string& list) {
 
 void add_device_option(CLI::App& command, std::string& device) {
     const OptionGroup group(command, kKernels);
-    offer_choices(
-        add_value(command, "--device", device,
-                  "OpenCL device: its number, type (gpu, cpu), or part of its name or version, as raya devices lists "
-                  "them; default: RAYA_DEVICE, else the first GPU, else the first CPU",
-                  "OpenCL device: its number, type or part of its name")
-            ->type_name("NAME"),
-        {"gpu", "cpu"});
+    add_value(command, "--device NAME", device,
+              "OpenCL device: its number, type (gpu, cpu), or part of its name or version, as raya devices lists them; "
+              "default: RAYA_DEVICE, else the first GPU, else the first CPU",
+              "OpenCL device: its number, type or part of its name");
 }
 
 namespace {
@@ -266,21 +263,19 @@ std::vector<std::pair<std::string, std::string>> ViewOptions::given_options() co
 
 void add_view_options(CLI::App& command, ViewOptions& v) {
     const OptionGroup group(command, kCamera);
-    add_value(command, "--from", v.from,
+    add_value(command, "--from X,Y,Z", v.from,
               "Position of the eye in scene units; default of all six camera and light options: the scene's, "
-              "or a view of the whole mesh")
-        ->type_name("X,Y,Z");
-    add_value(command, "--at", v.at, "Point at the centre of the image")->type_name("X,Y,Z");
-    add_value(command, "--up", v.up, "Up direction of the image, of any length")->type_name("X,Y,Z");
-    add_value(command, "--angle", v.angle, "Vertical field of view, between 0 and 180 degrees")->type_name("DEGREES");
-    add_value(command, "--background", v.background, "Colour of rays that hit nothing; linear, 1 is full intensity")
-        ->type_name("R,G,B");
+              "or a view of the whole mesh");
+    add_value(command, "--at X,Y,Z", v.at, "Point at the centre of the image");
+    add_value(command, "--up X,Y,Z", v.up, "Up direction of the image, of any length");
+    add_value(command, "--angle DEGREES", v.angle, "Vertical field of view, between 0 and 180 degrees");
+    add_value(command, "--background R,G,B", v.background,
+              "Colour of rays that hit nothing; linear, 1 is full intensity");
     add_value(
-        command, "--light", v.lights,
+        command, "--light X,Y,Z[,R,G,B]", v.lights,
         "A light at X,Y,Z of colour R,G,B; default colour: white, with the total intensity sqrt(n)/2 for n lights; "
         "repeat the option for several lights; they replace all lights of the scene")
-        ->allow_extra_args(false)  // so that the scene may follow
-        ->type_name("X,Y,Z[,R,G,B]");
+        ->allow_extra_args(false);  // so that the scene may follow
 }
 
 void change_view(const ViewOptions& v, Scene& scene) {
@@ -346,17 +341,13 @@ std::string failure_reason(const CLI::App& program, const CLI::App& command, con
 /// Throws UserError for arguments that CLI11 would read in an unexpected way: it takes the value of "--quiet=x" as a
 /// count, the next argument as the value of "--size=", and "-q=x" as -q and "-=x".
 void check_arguments(const CLI::App& program, const std::vector<std::string>& arguments) {
-    constexpr std::size_t kMaxBytes = 4096;  // maximum size of an argument: Linux's PATH_MAX
     const CLI::App* command = &program;
-    std::string option;  // of the current argument, or before it
     for (const std::string& argument : arguments) {
         const std::size_t equals = argument.find('=');
-        if (argument.starts_with("-")) option = argument.substr(0, std::min<std::size_t>(equals, 40));
-        if (argument.size() > kMaxBytes)
-            throw UserError(fmt::format("{}: the value has {} bytes, maximum {}", option, argument.size(), kMaxBytes));
-        for (const CLI::App* subcommand : command->get_subcommands([](const CLI::App*) { return true; }))
+        for (const CLI::App* subcommand : command->get_subcommands({}))
             if (subcommand->get_name() == argument) command = subcommand;
         if (!argument.starts_with("-") || equals == std::string::npos) continue;
+        const std::string option = argument.substr(0, equals);
         const CLI::Option* const named = command->get_option_no_throw(option);
         if (named != nullptr && named->get_items_expected_max() == 0)
             throw UserError(option + ": the option takes no value");
@@ -367,30 +358,22 @@ void check_arguments(const CLI::App& program, const std::vector<std::string>& ar
     }
 }
 
-/// Adds to a message such as "--fold blok: ..." the option's choice that is most similar to the value.
-std::string with_suggestion(const CLI::App& program, std::string text) {
-    std::string path;
-    for (const CLI::Option* option : selected_command(program, path).get_options()) {
-        const std::string start = option->get_name() + ' ';
-        const std::size_t end = text.find(": ");
-        if (!text.starts_with(start) || end == std::string::npos || end < start.size()) continue;
-        const std::string value = text.substr(start.size(), end - start.size());
-        // const_cast: CLI11 returns validators, which store the choices, only for a non-const option.
-        const std::vector<std::string> choices = choices_of(option_text(*const_cast<CLI::Option*>(option)));
-        if (!value.starts_with(
-                nearest_name(value, choices)))  // "grid:4" starts with the choice grid, which is not misspelt
-            text.insert(end, did_you_mean(value, choices));
-        break;
-    }
-    return text;
+/// Adds to a message such as "--fold blok: must be cyclic or block" the word of the message that is most similar to the
+/// value.
+std::string with_suggestion(const std::string& text) {
+    static const std::regex form("(--[a-z-]+ )([a-z][a-z0-9-]*)(: (?:must be|no such) .*)"), word("[a-z][a-z0-9-]*");
+    std::smatch parts;
+    if (!std::regex_match(text, parts, form)) return text;
+    const std::string value = parts[2], rest = parts[3];
+    const std::vector<std::string> words(std::sregex_token_iterator(rest.begin(), rest.end(), word), {});
+    return parts[1].str() + value + did_you_mean(value, words) + rest;
 }
 
 }  // namespace
 
 std::vector<std::string> command_names(const CLI::App& command) {
     std::vector<std::string> names;
-    for (const CLI::App* subcommand : command.get_subcommands([](const CLI::App*) { return true; }))
-        names.push_back(subcommand->get_name());
+    for (const CLI::App* subcommand : command.get_subcommands({})) names.push_back(subcommand->get_name());
     return names;
 }
 
@@ -406,7 +389,7 @@ void parse_arguments(CLI::App& program, const std::vector<std::string>& argument
                                     path.empty() ? "" : ": ", failure_reason(program, command, error, arguments),
                                     path));
     } catch (const UserError& error) {
-        const std::string text = with_suggestion(program, error.what());
+        const std::string text = with_suggestion(error.what());
         if (text == error.what()) throw;
         throw UserError(text);
     }

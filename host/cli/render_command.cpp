@@ -26,7 +26,7 @@ namespace raya {
 void add_checkpoint_options(CLI::App& command, CheckpointOptions& options) {
     const OptionGroup group(command, kFiles);
     CLI::Option* const file = add_file(
-        command, FileUse::kWritten, "--checkpoint", options.file, "FILE.rst",
+        command, FileUse::kWritten, "--checkpoint FILE.rst", options.file,
         "Save the progress of a long render to this file, for --resume; the file is removed when the render is "
         "complete. The image and its hash do not change; the number of MPI ranks may",
         "Save the progress of a long render, for --resume");
@@ -34,11 +34,10 @@ void add_checkpoint_options(CLI::App& command, CheckpointOptions& options) {
         .add_flag("--resume", options.resume,
                   "Continue the same render from the file of --checkpoint; start anew if this file does not exist")
         ->needs(file);
-    in_range(add_value(command, "--checkpoint-every", options.every_s,
+    in_range(add_value(command, "--checkpoint-every SECONDS", options.every_s,
                        "Minimum seconds between two checkpoints, 0..86400; raya waits longer if saving would take over "
                        "5 % of the time; 0: a checkpoint after every band of pixels, or in every superstep"),
              0, 86'400, "seconds")
-        ->type_name("SECONDS")
         ->capture_default_str()
         ->needs(file);
 }
@@ -53,21 +52,19 @@ constexpr std::string_view kBuildPrefix = "build ";
 void add_trace_options(CLI::App& command, TraceOptions& trace) {
     const OptionGroup group(command, kDiagnostics);
     CLI::Option* const file = add_file(
-        command, FileUse::kWritten, "--trace", trace.file, "FILE.json[.gz]",
+        command, FileUse::kWritten, "--trace FILE.json[.gz]", trace.file,
         "Write a trace for ui.perfetto.dev: the host's steps, the device's commands, and the modelled machine in "
         "modelled time; -: stdout");
     in_range(
-        add_value(command, "--trace-events", trace.events,
+        add_value(command, "--trace-events N", trace.events,
                   "Maximum number of events in the trace, 1 or more; a warning gives the number of omitted events"),
         1)
-        ->type_name("N")
         ->capture_default_str()
         ->needs(file);
     add_value(
-        command, "--trace-pes", trace.pes,
+        command, "--trace-pes N", trace.pes,
         "Number N of PEs or nodes of the modelled machine that get a track: the N/4 busiest, the N/4 idlest, and N/2 "
         "with numbers at even distances; 0 omits the modelled machine")
-        ->type_name("N")
         ->capture_default_str()
         ->needs(file);
 }
@@ -201,32 +198,27 @@ std::optional<Render> render_image(const RenderCommand& command, RenderRun& run)
 
 void add_render_command_options(CLI::App& command, RenderCommand& options) {
     OptionGroup group(command, kFiles);
-    add_file(command, FileUse::kWritten, "-o,--output", options.image, "IMAGE",
+    add_file(command, FileUse::kWritten, "-o,--output IMAGE", options.image,
              "Image to write: .png, .tif, .ppm or .jpg (8-bit; JPEG with quality 95, lossy), .exr or .pfm (linear); -: "
              "stdout, as PPM. If a file goes to stdout, the summary goes to stderr",
              "Image to write: .png, .tif, .ppm, .jpg, .exr or .pfm");
     add_render_options(command, options.render);
     group.next(kImageGroup);
-    in_range(add_value(command, "--exposure", options.exposure,
+    in_range(add_value(command, "--exposure EV", options.exposure,
                        "8-bit images: multiply colours by 2^EV, -64..64 stops; the report's hash does not change"),
              -64, 64, "stops")
-        ->type_name("EV")
         ->default_str("0");
     add_checkpoint_options(command, options.checkpoint);
     add_torus_options(command, options.torus);
     group.next(kDiagnostics);
-    attach_note(add_file(command, FileUse::kWritten, "--cost", options.cost, "FILE.exr",
-                         "Write the modelled cycles of each pixel as an image, .exr or .pfm; -: stdout, as PFM",
-                         "Write the modelled cycles of each pixel"),
-                kRingOnlyNote,
-                "several nodes work for a pixel, so that no node has its cost; leave it out, or choose a ring: "
-                "--machine grande");
-    attach_note(add_file(command, FileUse::kWritten, "--mask", options.mask, "IMAGE",
-                         "Write the mask of the supersampled pixels, white on black"),
-                kRingOnlyNote, kNoNeighbours);
-    add_file(command, FileUse::kWritten, "--report", options.report, "FILE.json",
+    ring_only(add_file(command, FileUse::kWritten, "--cost FILE.exr", options.cost,
+                       "Write the modelled cycles of each pixel as an image, .exr or .pfm; -: stdout, as PFM",
+                       "Write the modelled cycles of each pixel"));
+    ring_only(add_file(command, FileUse::kWritten, "--mask IMAGE", options.mask,
+                       "Write the mask of the supersampled pixels, white on black"));
+    add_file(command, FileUse::kWritten, "--report FILE.json", options.report,
              "Write all counts and measurements as JSON; -: stdout", "Write all counts and measurements; -: stdout");
-    add_file(command, FileUse::kWritten, "--page", options.page, "FILE.html",
+    add_file(command, FileUse::kWritten, "--page FILE.html", options.page,
              "Write an HTML page: image, owners of pixels, loads, times by label, roofline, modelled and measured "
              "times, build options; raya page makes the same page from a report. Like --profile, measures the device's "
              "peak",
@@ -248,7 +240,7 @@ CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<Render
                              "Render a small image on a torus of 64 nodes, with a report"}});
     command->callback([options] {});  // keeps the options
     const OptionGroup group(*command, kFiles);
-    add_file(*command, FileUse::kRead, "SCENE", options->render.scene, "SCENE", kSceneHelp)->required();
+    add_file(*command, FileUse::kRead, "SCENE SCENE", options->render.scene, kSceneHelp)->required();
     add_render_command_options(*command, *options);
     command->get_option("--output")->required();
     return command;

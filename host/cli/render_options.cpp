@@ -10,77 +10,46 @@
 namespace raya {
 namespace {
 
-// Returns the names of the mappings without their parameters.
-std::vector<std::string> mapping_names() {
-    std::vector<std::string> names;
-    for (const std::string& form : mapping_forms()) {
-        const std::string name = form.substr(0, form.find(':'));
-        if (names.empty() || names.back() != name) names.push_back(name);
-    }
-    names.insert(names.end(), {"dynamic", "hybrid"});
-    return names;
-}
-
-// Sets the choices of options whose placeholder in the help, such as NAME, does not list them.
-void offer_render_choices(CLI::App& command) {
-    std::vector<std::string> ring_names;
-    for (const Machine& machine : machines())
-        if (machine.kind == MachineKind::kRing) ring_names.push_back(machine.name);
-    offer_choices(command.get_option("--machine"), ring_names);
-    offer_choices(command.get_option("--mapping"), mapping_names());
-    offer_choices(command.get_option("--format"), {"fp32", "spa22"});
-    offer_choices(command.get_option("--lanes"), {"1", "4", "8", "16"});
-}
-
-constexpr const char* kNoPixels =
-    "its nodes hold voxels of the scene, not pixels; leave it out: --nodes and --voxels set what a node holds";
+constexpr const char* kRingOnlyNote = "ring only";
 
 void add_antialias_options(CLI::App& command, RenderOptions& o) {
-    attach_note(
-        add_choice(
-            command, "--antialias", o.antialias, kAntialiasChoices,
-            "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more samples for pixels that differ "
-            "from a neighbour. PEs exchange border pixels as --exchange sets",
-            "3 x 3 filter or adaptive supersampling"),
-        kRingOnlyNote, kNoNeighbours);
-    attach_note(
-        add_choice(
-            command, "--exchange", o.exchange,
-            Choices<ExchangeMethod>{{"ring", ExchangeMethod::kRing},
-                                    {"bus", ExchangeMethod::kBus},
-                                    {"bus-broadcast", ExchangeMethod::kBroadcast}},
-            "How PEs get the neighbours of their pixels: ring: all PEs send a block to the next PE at once; bus: one "
-            "PE at a time sends to one other PE; bus-broadcast: one PE at a time sends to all PEs. All three give "
-            "the same image; default: ring"),
-        kRingOnlyNote, kNoNeighbours);
-    attach_note(
-        in_range(add_value(command, "--threshold", o.threshold,
+    ring_only(add_choice(
+        command, "--antialias", o.antialias, kAntialiasChoices,
+        "filter: mean of each pixel's 3 x 3 neighbourhood; supersample: four more samples for pixels that differ "
+        "from a neighbour. PEs exchange border pixels as --exchange sets",
+        "3 x 3 filter or adaptive supersampling"));
+    ring_only(add_choice(
+        command, "--exchange", o.exchange,
+        Choices<ExchangeMethod>{{"ring", ExchangeMethod::kRing},
+                                {"bus", ExchangeMethod::kBus},
+                                {"bus-broadcast", ExchangeMethod::kBroadcast}},
+        "How PEs get the neighbours of their pixels: ring: all PEs send a block to the next PE at once; bus: one "
+        "PE at a time sends to one other PE; bus-broadcast: one PE at a time sends to all PEs. All three give "
+        "the same image; default: ring"));
+    ring_only(
+        in_range(add_value(command, "--threshold T", o.threshold,
                            "Supersample pixels whose colour, clamped to 0..1, differs from a neighbour's by T or more, "
                            "0..1; default: 0.125"),
-                 0, 1)
-            ->type_name("T"),
-        kRingOnlyNote, kNoNeighbours);
-    attach_note(
-        add_choice(
-            command, "--points", o.points,
-            Choices<raya_u32>{{"axes", RAYA_POINTS_AXES}, {"diagonals", RAYA_POINTS_DIAGONALS}},
-            "Positions of the four samples: axes: half a pixel left, right, above and below; diagonals: half a pixel "
-            "away on both axes; default: axes"),
-        kRingOnlyNote, kNoNeighbours);
+                 0, 1));
+    ring_only(add_choice(
+        command, "--points", o.points,
+        Choices<raya_u32>{{"axes", RAYA_POINTS_AXES}, {"diagonals", RAYA_POINTS_DIAGONALS}},
+        "Positions of the four samples: axes: half a pixel left, right, above and below; diagonals: half a pixel "
+        "away on both axes; default: axes"));
 }
 
 }  // namespace
 
+CLI::Option* ring_only(CLI::Option* option) { return attach_note(option, kRingOnlyNote, "x"); }
+
 void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) {
     add_strict_option(command, o.strict);
     OptionGroup group(command, kImageGroup);
-    add_value(command, "--size", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution",
-              "Size in pixels, 1..16384 a side; default: the scene's")
-        ->type_name("N|WxH");
-    add_value(command, "--bounces", o.bounces,
+    add_value(command, "--size N|WxH", o.size, "Image size in pixels, 1..16384 a side; default: the scene's resolution",
+              "Size in pixels, 1..16384 a side; default: the scene's");
+    add_value(command, "--bounces N", o.bounces,
               "Maximum number of reflections and refractions after the primary ray, 0..31; default: 8",
-              "Reflections and refractions, 0..31; default: 8")
-        ->type_name("N");
+              "Reflections and refractions, 0..31; default: 8");
     add_choice(command, "--sampling", o.sampling,
                Choices<Sampling>{{"centres", Sampling::kCentres}, {"corners", Sampling::kCorners}},
                "Primary rays pass through pixel centres, or through pixel corners as in SPD");
@@ -88,79 +57,64 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
     add_view_options(command, o.view);
     group.next(kMachine);
     add_value(
-        command, "--machine", o.machine,
+        command, "--machine NAME", o.machine,
         "spa: 256 PEs of 32 KB; grande: a PE for each image column, no memory limit; spa1: one PE of 32 KB; "
         "cap (256 PEs), pixel-machine (64), links (256): the published arrays of these names, but with spa's PEs and "
         "no memory limit; for comparing loads",
         "spa (256 PEs of 32 KB), grande, torus and others; raya machines")
-        ->type_name("NAME")
         ->capture_default_str();
-    attach_note(add_value(command, "--pes", o.pes,
-                          "Number P of processing elements, 1..W*H; default: the machine's, or A*B of a grid",
-                          "Number of PEs; default: the machine's")
-                    ->type_name("P"),
-                kRingOnlyNote, "its PEs are nodes; set their number with --nodes IxJxK");
-    attach_note(
-        add_value(command, "--offset", o.offset,
+    ring_only(add_value(command, "--pes P", o.pes,
+                        "Number P of processing elements, 1..W*H; default: the machine's, or A*B of a grid",
+                        "Number of PEs; default: the machine's"));
+    ring_only(
+        add_value(command, "--offset p", o.offset,
                   "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W) on spa and grande, 0 on "
                   "the other machines",
-                  "Offset of the cyclic mapping; default: 16")
-            ->type_name("p"),
-        kRingOnlyNote, kNoPixels);
-    attach_note(
-        add_value(
-            command, "--mapping", o.mapping,
-            "Assignment of pixels to PEs: cyclic (slots of a sheared image, --offset), cyclic:p, column (cyclic with "
-            "offset 0: whole columns), rows (scan lines round robin), blocks (contiguous scan lines), grid:AxB (A rows "
-            "of B PEs; a PE has every B-th pixel of every A-th line), tiles:WxH (tiles of W x H pixels round robin), "
-            "random:seed (default seed 1); dynamic:CHUNK[,OVERHEAD[,ROOT]]: PEs request CHUNK pixels at a time, each "
-            "request costs the PE OVERHEAD cycles and occupies the root, which answers one at a time, for ROOT cycles; "
-            "hybrid:CHUNK[,OVERHEAD[,SHARE[,ROOT]]]: PEs request pixels after rendering a fraction SHARE (0.5) of "
-            "their "
-            "cyclic pixels; the loads of dynamic and hybrid are simulated; default: the machine's, cyclic on spa",
-            "Pixels to PEs: cyclic, column, rows, blocks, grid:AxB, tiles:WxH, random, dynamic:CHUNK, hybrid:CHUNK")
-            ->type_name("NAME"),
-        kRingOnlyNote, kNoPixels);
-    attach_note(add_choice(command, "--fold", o.fold, kFoldChoices,
-                           "PE of slot c if P is not W: cyclic (c mod P) or block (c P div W); default: cyclic"),
-                kRingOnlyNote, kNoPixels);
-    attach_note(add_value(command, "--accel", o.accel,
-                          "Acceleration structure in each PE's memory, which does not change the hits: none: every ray "
-                          "is tested against "
-                          "all objects; bvh: faster from a few hundred objects on; grid: a uniform grid of A x B x C "
-                          "voxels along x, y, "
-                          "z, by default a few voxels per object; default: none; on grande bvh if it is faster, from "
-                          "about 100 spheres "
-                          "or 30 polygons on",
-                          "Acceleration structure in each PE's memory")
-                    ->type_name("none|bvh|grid[:AxBxC]"),
-                kRingOnlyNote, "its voxels are the grid; refine it with --voxels AxBxC");
+                  "Offset of the cyclic mapping; default: 16"));
+    ring_only(add_value(
+        command, "--mapping NAME", o.mapping,
+        "Assignment of pixels to PEs: cyclic (slots of a sheared image, --offset), cyclic:p, column (cyclic with "
+        "offset 0: whole columns), rows (scan lines round robin), blocks (contiguous scan lines), grid:AxB (A rows "
+        "of B PEs; a PE has every B-th pixel of every A-th line), tiles:WxH (tiles of W x H pixels round robin), "
+        "random:seed (default seed 1); dynamic:CHUNK[,OVERHEAD[,ROOT]]: PEs request CHUNK pixels at a time, each "
+        "request costs the PE OVERHEAD cycles and occupies the root, which answers one at a time, for ROOT cycles; "
+        "hybrid:CHUNK[,OVERHEAD[,SHARE[,ROOT]]]: PEs request pixels after rendering a fraction SHARE (0.5) of "
+        "their "
+        "cyclic pixels; the loads of dynamic and hybrid are simulated; default: the machine's, cyclic on spa",
+        "Pixels to PEs: cyclic, column, rows, blocks, grid:AxB, tiles:WxH, random, dynamic:CHUNK, hybrid:CHUNK"));
+    ring_only(add_choice(command, "--fold", o.fold, kFoldChoices,
+                         "PE of slot c if P is not W: cyclic (c mod P) or block (c P div W); default: cyclic"));
+    ring_only(add_value(command, "--accel none|bvh|grid[:AxBxC]", o.accel,
+                        "Acceleration structure in each PE's memory, which does not change the hits: none: every ray "
+                        "is tested against "
+                        "all objects; bvh: faster from a few hundred objects on; grid: a uniform grid of A x B x C "
+                        "voxels along x, y, "
+                        "z, by default a few voxels per object; default: none; on grande bvh if it is faster, from "
+                        "about 100 spheres "
+                        "or 30 polygons on",
+                        "Acceleration structure in each PE's memory"));
     in_range(
-        add_value(command, "--pe-memory", o.pe_memory,
+        add_value(command, "--pe-memory BYTES", o.pe_memory,
                   "Memory in bytes of a PE, or of a torus node with all its buffers; default: the machine's, 32768 "
                   "on spa, 4194304 on torus, no limit on grande"),
-        1)
-        ->type_name("BYTES");
+        1);
     group.next(kKernels);
     add_value(
-        command, "--format", o.format,
+        command, "--format NAME", o.format,
         "Number format of the kernels: fp32, spa22 (e6m15), or eXmY[t]: X = 5..8 exponent bits, Y = 4..21 "
         "fraction bits, t truncates; default: the machine's, fp32 on grande and torus, e6m15 on the other machines",
-        "Number format: fp32, spa22 (e6m15) or eXmY[t]")
-        ->type_name("NAME");
+        "Number format: fp32, spa22 (e6m15) or eXmY[t]");
     add_device_option(command, o.device);
     add_choice(command, "--lanes", o.lanes, Choices<std::uint32_t>{{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}},
                "Number V of rays per work-item: 1, 4, 8 or 16; default: as raya tune stored it, else the width of the "
                "device's float vectors")
         ->type_name("V");
-    in_range(add_value(command, "--group", o.group,
+    in_range(add_value(command, "--group L", o.group,
                        "Number L of work-items in the work-group that simulates a PE, 1..1024; default: as raya tune "
                        "stored it, else 1 on a CPU, 128 elsewhere"),
-             1, 1024)
-        ->type_name("L");
+             1, 1024);
     add_tuned_option(command, o.no_tuned);
     add_kernel_source_options(command, o.kernel_dir);
-    offer_render_choices(command);
 }
 
 namespace {
@@ -291,9 +245,6 @@ namespace {
 
 using Sides = std::array<std::uint32_t, 3>;
 
-constexpr const char* kNoNodes =
-    "that machine is a ring of PEs without voxels; leave it out, or choose --machine torus";
-
 }  // namespace
 
 void add_torus_options(CLI::App& command, TorusOptions& t) {
@@ -301,21 +252,15 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
     CLI::Option* machine = command.get_option("--machine");
     machine->description(machine->get_description() +
                          "; torus: nodes of 4 MB that hold voxels of the scene, see the options under Torus machine");
-    std::vector<std::string> machine_names;
-    for (const Machine& known : machines()) machine_names.push_back(known.name);
-    offer_choices(machine, machine_names);
-    const auto add = [&](const std::string& name, auto& value, const std::string& text, const std::string& type,
-                         const std::string& brief = "") {
-        return add_value(command, name, value, text, brief)->type_name(type);
-    };
-    add("--nodes", t.nodes, "Number of nodes along x, y and z of the scene, at most 65,536 in total", "IxJxK",
-        "Nodes of the torus along x, y and z")
+    add_value(command, "--nodes IxJxK", t.nodes,
+              "Number of nodes along x, y and z of the scene, at most 65,536 in total",
+              "Nodes of the torus along x, y and z")
         ->default_str("4x4x4");
-    add("--voxels", t.voxels,
+    add_value(
+        command, "--voxels AxBxC", t.voxels,
         "Number of equal voxels along x, y and z that divide the scene's box, at most 1024 along an axis and 2^24 in "
         "total; more voxels than nodes are assigned cyclically, fewer voxels leave nodes empty; default: one "
-        "for each node",
-        "AxBxC");
+        "for each node");
     add_choice(
         command, "--links", t.links, Choices<Links>{{"torus3d", Links::kTorus3d}, {"torus2d", Links::kTorus2d}},
         "Links of a node: torus3d: six; torus2d: four, as on a T805, in a 2-D torus with the slabs of nodes side "
@@ -327,19 +272,19 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
                "Modelled contents of a return packet: terms: one contribution of a ray (ambient term, light from one "
                "light, or background); rays: all contributions of a ray, in 6 words sent after the ray's shadow rays, "
                "as in Yoshitani & Yamazaki");
-    in_range(add("--packet-words", t.packet_words,
+    in_range(add_value(
+                 command, "--packet-words N", t.packet_words,
                  "Modelled size of a ray packet in 32-bit words, 16..4096, for the time of its creation and transfers; "
-                 "the renderer itself transfers 16 words, Yoshitani & Yamazaki use 22 and more",
-                 "N"),
+                 "the renderer itself transfers 16 words, Yoshitani & Yamazaki use 22 and more"),
              RAYA_PACKET_WORDS, 4096)
         ->default_str("16");
     in_range(
-        add("--queue", t.queue,
+        add_value(
+            command, "--queue N", t.queue,
             "Maximum number of packets queued in a node; if queues deadlock, the render is repeated with twice the "
-            "length, with a warning; default: as many as fit in memory, at most 8192",
-            "N"),
+            "length, with a warning; default: as many as fit in memory, at most 8192"),
         1);
-    add_file(command, FileUse::kWritten, "--packets", t.packets, "FILE.csv.gz",
+    add_file(command, FileUse::kWritten, "--packets FILE.csv.gz", t.packets,
              "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), "
              "compressed; -: "
              "stdout; see docs/packets.md");
@@ -349,15 +294,13 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
 }
 
 void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine) {
-    for (CLI::Option* option : const_cast<CLI::App&>(command).get_options()) {
-        std::string reason = note_of(*option, kRingOnlyNote);
-        if (machine.kind == MachineKind::kRing) {
-            reason = option->get_group() == kTorusMachine ? kNoNodes : "";
-            if (option->get_name() == "--nodes") reason = "its PEs form a ring; set their number with --pes P";
-        }
-        if (!reason.empty() && !option->empty() && option->results().front() != "none")
-            throw UserError(fmt::format("{} {} with --machine {}: {}", option->get_name(), option->results().front(),
-                                        machine.name, reason));
+    const bool ring = machine.kind == MachineKind::kRing;
+    for (const CLI::Option* option : command.get_options()) {
+        const bool refused = ring ? option->get_group() == kTorusMachine : !note_of(*option, kRingOnlyNote).empty();
+        if (refused && !option->empty() && option->results().front() != "none")
+            throw UserError(fmt::format(
+                "{} {} with --machine {}: an option of {}; leave it out, or choose --machine {}", option->get_name(),
+                option->results().front(), machine.name, ring ? "the torus" : "rings", ring ? "torus" : "grande"));
     }
 }
 

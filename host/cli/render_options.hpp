@@ -27,11 +27,8 @@ struct RenderOptions {
     std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
 };
 
-// The note of an option that only ring machines have: the reason why the torus has no such option, which completes an
-// error message.
-inline constexpr const char* kRingOnlyNote = "ring only";
-inline constexpr const char* kNoNeighbours =
-    "its nodes hold no pixels to compare with their neighbours; leave it out, or choose a ring: --machine grande";
+/// Marks an option that only ring machines have.
+CLI::Option* ring_only(CLI::Option* option);
 
 /// Adds the options of RenderOptions except the scene, and except anti-aliasing if `antialiasing` is false.
 void add_render_options(CLI::App& command, RenderOptions& options, bool antialiasing = true);
@@ -63,7 +60,7 @@ struct TorusOptions {
 /// add_render_options().
 void add_torus_options(CLI::App& command, TorusOptions& torus);
 
-/// Throws UserError with option, reason and remedy if a given option does not apply to the machine.
+/// Throws UserError with option and remedy if a given option does not apply to the machine.
 void refuse_options_of_other_machines(const CLI::App& command, const Machine& machine);
 
 /// Returns the settings of the torus renderer. Throws UserError for an option out of range.

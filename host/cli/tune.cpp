@@ -114,33 +114,28 @@ void tune_device(const CLI::App& parser, TuneCommand& command) {
 void add_rendered_options(CLI::App& command, TuneCommand& options) {
     TrialSetup& render = options.render;
     OptionGroup group(command, "Workload");
-    add_file(command, FileUse::kRead, "SCENE", render.scene, "SCENE",
+    add_file(command, FileUse::kRead, "SCENE SCENE", render.scene,
              "Scene in NFF, or mesh (.obj, .ply, .gltf, .glb, .stl), to render with candidates for lanes, group and "
              "other values that change only the time; "
              "default: without accelerator, 30 spheres and a plane; with an accelerator, SPD's balls of 7,381 spheres");
     add_strict_option(command, render.strict);
-    add_value(command, "--variants", options.variants,
+    add_value(command, "--variants none,grid,bvh,torus", options.variants,
               "Kernels to tune, comma-separated: none, grid, bvh: the ring machine with that --accel; torus: 4x4x4 "
               "nodes; default: none in fp32 and in e6m15; grid, bvh and torus in fp32")
         ->delimiter(',')
-        ->allow_extra_args(false)  // so that the scene may follow
-        ->type_name("none,grid,bvh,torus");
-    add_value(command, "--format", options.formats,
+        ->allow_extra_args(false);  // so that the scene may follow
+    add_value(command, "--format NAME,...", options.formats,
               "Formats, comma-separated: fp32, spa22 (e6m15), eXmY[t]; the values of one reduced format apply to all "
               "reduced formats; default: fp32 for the given variants")
         ->delimiter(',')
-        ->allow_extra_args(false)
-        ->type_name("NAME,...");
-    add_value(command, "--size", options.image.size,
-              "Image size in pixels, 1..16384 a side; default: 512; with an accelerator and on the torus: 256")
-        ->type_name("N|WxH");
-    add_value(command, "--pes", render.pes, "Number P of processing elements of the ring, 1..W*H")
-        ->type_name("P")
+        ->allow_extra_args(false);
+    add_value(command, "--size N|WxH", options.image.size,
+              "Image size in pixels, 1..16384 a side; default: 512; with an accelerator and on the torus: 256");
+    add_value(command, "--pes P", render.pes, "Number P of processing elements of the ring, 1..W*H")
         ->capture_default_str();
     add_device_option(command, render.device);
-    in_range(add_value(command, "--seconds", options.seconds, "Duration of the search in seconds, 1..86400"), 1, 86'400,
-             "seconds")
-        ->type_name("S")
+    in_range(add_value(command, "--seconds S", options.seconds, "Duration of the search in seconds, 1..86400"), 1,
+             86'400, "seconds")
         ->capture_default_str();
     group.next(kKernels);
     add_kernel_source_options(command, render.kernel_dir);

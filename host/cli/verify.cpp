@@ -8,6 +8,7 @@
 #include <functional>
 #include <future>
 #include <iomanip>
+#include <map>
 #include <memory>
 #include <sstream>
 
@@ -18,6 +19,7 @@
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
+#include "host/cli/render_command.hpp"
 #include "host/error.hpp"
 #include "host/model/number_format.hpp"
 #include "host/verify/reproduce.hpp"
@@ -107,6 +109,98 @@ void list_checks(const VerifyCommand& command, VerifySettings settings) {
     for (const cl::Device& device : all ? all_devices() : std::vector<cl::Device>{choose_device(command.device)})
         for (const std::string& name : check_names(device, settings))
             fmt::print("{}{}\n", all ? device_info(device).name + ": " : "", name);
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+// Returns the text "57 checks passed, 0 failed, 2 skipped in 12.3 s".
+std::string closing_text(const std::vector<Check>& checks, double seconds) {
+    const std::size_t expected = count_of(checks, Outcome::kExpectedFail),
+                      unexpected = count_of(checks, Outcome::kUnexpectedPass);
+    return fmt::format("{} passed, {} failed, {} skipped{}{} in {:.1f} s",
+                       counted(count_of(checks, Outcome::kPass), "check"), count_of(checks, Outcome::kFail),
+                       count_of(checks, Outcome::kSkip),
+                       expected ? fmt::format(", {} failed as expected", expected) : "",
+                       unexpected ? fmt::format(", {} passed unexpectedly", unexpected) : "", seconds);
+}
+
+void print(const std::string& lines) {
+    clear_status();
+    fmt::print("{}", lines);
+    std::fflush(stdout);
+}
+
+// Prints the checks of one device. In a soak test (verify_at_random()), prints only failures, with all details only for
+// the first failure of a check, and at the end how often each check failed.
+class DeviceOutput {
+  public:
+    // `settings` must outlive this object. `index`: number of the device among those that --device selects.
+    DeviceOutput(const VerifySettings& settings, std::size_t index) : settings_(settings), index_(index) {}
+
+    // The callbacks of SupervisorSink.
+    void device(const DeviceChecks& device, const std::vector<std::string>& unusable_devices, std::size_t devices) {
+        device_count_ = devices;
+        if (soaks() && devices > 1) prefix_ = device.name + ": ";
+        if (is_quiet()) return;
+        if (index_ == 0)
+            for (const std::string& line : unusable_devices) print(line + "\n");
+        print(fmt::format("{} ({}, driver {})\n", device.name, device.platform, device.driver));
+    }
+    void running(const std::string& layer, const std::string& name, double seconds) const {
+        if (shows_progress()) show_status(fmt::format("{}running {} {} ... {:.0f} s", prefix_, layer, name, seconds));
+    }
+    void finished(const Check& check) {
+        const bool unwanted = is_unwanted(check.verdict.outcome);
+        const std::string lines = check_lines(check);
+        if (soaks()) {
+            auto& [runs, failures, first_s] = counts_[check.layer + " " + check.name];
+            ++runs;
+            if (!unwanted) return;
+            const double seconds = seconds_since(start_);
+            if (failures++ == 0) first_s = seconds;
+            print(fmt::format("{}after {:.1f} s: {}", prefix_, seconds,
+                              failures == 1 ? lines : first_line(lines) + "\n"));
+        } else if (!is_quiet() || unwanted) {
+            print(prefix_ + lines);
+        }
+    }
+
+    // Prints the counts after the last check.
+    void ended(const DeviceChecks& all) const {
+        std::string lines;
+        for (const auto& [name, count] : counts_)
+            if (count.failures > 0)
+                lines += fmt::format("{}: failed {} of {}, first after {:.1f} s\n", name, count.failures,
+                                     counted(count.runs, "time"), count.first_s);
+        if (soaks()) lines += fmt::format("random checks with --seed {}\n", settings_.seed);
+        if (!is_quiet() || device_count_ == 1 || !all.all_passed())
+            lines += fmt::format("{}: {}\n", all.name, closing_text(all.checks, all.seconds));
+        if (!lines.empty()) print(lines);
+    }
+
+  private:
+    struct Count {
+        std::size_t runs = 0, failures = 0;
+        double first_s = 0;  // time of the first failure
+    };
+
+    bool soaks() const { return settings_.soak_s > 0; }
+
+    const VerifySettings& settings_;
+    std::size_t index_ = 0, device_count_ = 1;
+    Clock::time_point start_ = Clock::now();
+    std::map<std::string, Count> counts_;  // by "LAYER NAME"
+    std::string prefix_;                   // the device's name, if several soak tests run at once
+};
+
+void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
+    std::vector<Check> checks;
+    double seconds = 0;
+    for (const DeviceChecks& device : device_checks) {
+        checks.insert(checks.end(), device.checks.begin(), device.checks.end());
+        seconds += device.seconds;
+    }
+    fmt::print("{}: {}\n", counted(device_checks.size(), "device"), closing_text(checks, seconds));
 }
 
 // Verifies device number `index` of those that --device selects, and prints each check. Before the first check, calls
@@ -210,46 +304,38 @@ void add_verify_command(CLI::App& program) {
         "All formats, lanes and group sizes: about five minutes with PoCL on an idle CPU, longer if the compiler is "
         "slow on wide vectors");
     add_value(
-        *command, "--lanes", options->lanes,
+        *command, "--lanes V", options->lanes,
         "Check only this number of lanes, for compilers that are slow on wide vectors; if not given: the device's "
         "default number of lanes, or with --full, every number of lanes")
-        ->check(CLI::IsMember({1, 4, 8, 16}))
-        ->type_name("V");
-    add_value(*command, "--as", options->as,
+        ->check(CLI::IsMember({1, 4, 8, 16}));
+    add_value(*command, "--as \"render ...\"", options->as,
               "Check only what this render uses, such as \"render scene.nff --lanes 8 --accel bvh\": its format and "
-              "lanes, its image, and reference images with its options")
-        ->type_name("\"render ...\"");
-    add_value(*command, "--only", options->only,
+              "lanes, its image, and reference images with its options");
+    add_value(*command, "--only TEXT", options->only,
               "Run only checks whose printed \"LAYER NAME\" contains this text: number, \"image glass\", spa22, ...; * "
-              "stands for any text")
-        ->type_name("TEXT");
-    add_value(*command, "--skip", options->skip, "Run no check whose \"LAYER NAME\" contains this text, as for --only")
-        ->type_name("TEXT");
+              "stands for any text");
+    add_value(*command, "--skip TEXT", options->skip,
+              "Run no check whose \"LAYER NAME\" contains this text, as for --only");
     command->add_flag("--list", options->list, "Print the names of the selected checks, and run none");
-    in_range(
-        add_value(*command, "--repeat", options->repeat, "Number of runs of each check; it fails if one of them fails"),
-        1, 1e6)
-        ->type_name("N");
-    add_value(*command, "--shard", options->shard,
-              "Run the I-th of N parts of the selected checks, to divide them over N jobs")
-        ->type_name("I/N");
-    in_range(add_value(*command, "--timeout", options->timeout_s,
+    in_range(add_value(*command, "--repeat N", options->repeat,
+                       "Number of runs of each check; it fails if one of them fails"),
+             1, 1e6);
+    add_value(*command, "--shard I/N", options->shard,
+              "Run the I-th of N parts of the selected checks, to divide them over N jobs");
+    in_range(add_value(*command, "--timeout S", options->timeout_s,
                        "Seconds after which a check counts as failed and its process is ended, builds included; 0: "
                        "never"),
              0, kMaxTimeS, "seconds")
-        ->type_name("S")
         ->capture_default_str();
-    in_range(add_value(*command, "--soak", options->soak_s,
+    in_range(add_value(*command, "--soak TIME", options->soak_s,
                        "Run random checks with random numbers of lanes for this time, such as 60s, 30m, 2h; print only "
                        "failures"),
              0, kMaxTimeS, "seconds")
-        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}))
-        ->type_name("TIME");
-    add_value(*command, "--seed", options->seed, "Seed of --soak: the same seed gives the same sequence of checks")
-        ->type_name("N")
+        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}));
+    add_value(*command, "--seed N", options->seed, "Seed of --soak: the same seed gives the same sequence of checks")
         ->default_str("1");
     add_file(
-        *command, FileUse::kRead, "--expect", options->expect, "FILE",
+        *command, FileUse::kRead, "--expect FILE", options->expect,
         "Checks that are known to fail, one on each line: PATTERN | REASON | LINK, with a pattern as for --only. Their "
         "failures do not count; if one passes, the exit code is 4");
     add_device_option(*command, options->device);
@@ -259,125 +345,22 @@ void add_verify_command(CLI::App& program) {
     group.next(kKernels);
     add_kernel_source_options(*command, options->kernel_dir);
     group.next(kDiagnostics);
-    add_file(*command, FileUse::kWritten, "--report", options->report, "FILE.json",
+    add_file(*command, FileUse::kWritten, "--report FILE.json", options->report,
              "Write all checks and their failures as JSON; -: stdout; the lines about the checks then go to stderr");
-    add_file(*command, FileUse::kWritten, "--junit", options->junit, "FILE.xml", "Write the results as JUnit XML");
+    add_file(*command, FileUse::kWritten, "--junit FILE.xml", options->junit, "Write the results as JUnit XML");
     add_file(
-        *command, FileUse::kWrittenFolder, "--reproduce", options->reproduce, "DIR",
+        *command, FileUse::kWrittenFolder, "--reproduce DIR", options->reproduce,
         "If a check fails: write the kernel launch that computes wrong words as a self-contained case, a C program "
         "with kernel, inputs and expected words, into this new folder");
     CLI::Option* const bisected =
-        add_value(*command, "--bisect", options->bisect,
+        add_value(*command, "--bisect TEXT", options->bisect,
                   "Run the checks whose names contain this text, as --only; then find the smallest change of build "
-                  "options, macros, lanes, groups or PoCL's variables with which the first that fails passes")
-            ->type_name("TEXT");
+                  "options, macros, lanes, groups or PoCL's variables with which the first that fails passes");
     bisected->excludes("--only");
-    add_file(*command, FileUse::kWritten, "--page", options->page, "FILE.html",
+    add_file(*command, FileUse::kWritten, "--page FILE.html", options->page,
              "Write all checks, and the first failure in full, as an HTML page; raya page makes the same page from a "
              "report");
     command->callback([options] { run_verify(*options); });
-}
-
-namespace {
-
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-std::string first_wrong(const Verdict& verdict) {
-    const Fault& f = verdict.fault;
-    if (f.where.empty() || f.got.empty()) return first_line(verdict.result);
-    return fmt::format("{}: expected {}, got {}", first_line(f.where), first_line(f.expected), first_line(f.got));
-}
-
-}  // namespace
-
-std::string SoakCounts::add(const Check& check, double seconds) {
-    Count& count = counts_[check.layer + " " + check.name];
-    ++count.runs;
-    const Outcome outcome = check.verdict.outcome;
-    if (outcome != Outcome::kFail && outcome != Outcome::kUnexpectedPass) return "";
-    const std::string wrong = first_wrong(check.verdict);
-    if (count.failures++ == 0) {
-        count.first_s = seconds;
-        count.first_wrong = wrong;
-    }
-    count.repeats += wrong == count.first_wrong;
-    const std::string lines = check_lines(check);
-    return fmt::format("after {:.1f} s: {}", seconds, count.failures == 1 ? lines : first_line(lines) + "\n");
-}
-
-std::string SoakCounts::summary() const {
-    std::string lines;
-    for (const auto& [name, count] : counts_)
-        if (count.failures > 0)
-            lines +=
-                fmt::format("{}: failed {} of {}, first after {:.1f} s; {} of {} with the same first wrong word: {}\n",
-                            name, count.failures, counted(count.runs, "time"), count.first_s, count.repeats,
-                            counted(count.failures, "failure"), count.first_wrong);
-    return lines;
-}
-
-namespace {
-
-// Returns the text "57 checks passed, 0 failed, 2 skipped in 12.3 s".
-std::string closing_text(const std::vector<Check>& checks, double seconds) {
-    const std::size_t expected = count_of(checks, Outcome::kExpectedFail),
-                      unexpected = count_of(checks, Outcome::kUnexpectedPass);
-    return fmt::format("{} passed, {} failed, {} skipped{}{} in {:.1f} s",
-                       counted(count_of(checks, Outcome::kPass), "check"), count_of(checks, Outcome::kFail),
-                       count_of(checks, Outcome::kSkip),
-                       expected ? fmt::format(", {} failed as expected", expected) : "",
-                       unexpected ? fmt::format(", {} passed unexpectedly", unexpected) : "", seconds);
-}
-
-void print(const std::string& lines) {
-    clear_status();
-    fmt::print("{}", lines);
-    std::fflush(stdout);
-}
-
-}  // namespace
-
-DeviceOutput::DeviceOutput(const VerifySettings& settings, std::size_t index) : settings_(settings), index_(index) {}
-
-void DeviceOutput::device(const DeviceChecks& device, const std::vector<std::string>& unusable_devices,
-                          std::size_t devices) {
-    device_count_ = devices;
-    if (soaks() && devices > 1) prefix_ = device.name + ": ";
-    if (is_quiet()) return;
-    if (index_ == 0)
-        for (const std::string& line : unusable_devices) print(line + "\n");
-    print(fmt::format("{} ({}, driver {})\n", device.name, device.platform, device.driver));
-}
-
-void DeviceOutput::running(const std::string& layer, const std::string& name, double seconds) const {
-    if (shows_progress()) show_status(fmt::format("{}running {} {} ... {:.0f} s", prefix_, layer, name, seconds));
-}
-
-void DeviceOutput::finished(const Check& check) {
-    std::string lines;
-    if (soaks())
-        lines = counts_.add(check, seconds_since(start_));
-    else if (!is_quiet() || is_unwanted(check.verdict.outcome))
-        lines = check_lines(check);
-    if (!lines.empty()) print(prefix_ + lines);
-}
-
-void DeviceOutput::ended(const DeviceChecks& all) const {
-    std::string lines;
-    if (soaks()) lines = fmt::format("{}random checks with --seed {}\n", counts_.summary(), settings_.seed);
-    if (!is_quiet() || device_count_ == 1 || !all.all_passed())
-        lines += fmt::format("{}: {}\n", all.name, closing_text(all.checks, all.seconds));
-    if (!lines.empty()) print(lines);
-}
-
-void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
-    std::vector<Check> checks;
-    double seconds = 0;
-    for (const DeviceChecks& device : device_checks) {
-        checks.insert(checks.end(), device.checks.begin(), device.checks.end());
-        seconds += device.seconds;
-    }
-    fmt::print("{}: {}\n", counted(device_checks.size(), "device"), closing_text(checks, seconds));
 }
 
 void members_of(Members& m, const VerifyReport& report) {

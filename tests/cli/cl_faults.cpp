@@ -1,10 +1,7 @@
 // Fault injection into OpenCL: a library that is preloaded into raya (LD_PRELOAD) and changes one kind of call.
 //   RAYA_FAULT="clCreateBuffer 3 -4"          the third clCreateBuffer and all later ones return -4 and do nothing
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 lost"   every third clEnqueueCopyBuffer completes without copying.
-//                                             `lost` and `astray` also work for clEnqueueCopyBufferRect.
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 astray" every third copy goes to target offset + size, the memory of another
-//                                             PE (at the end of the buffer: to target offset - size)
-//   RAYA_FAULT="clEnqueueCopyBuffer 3 flip"   every third copy has a wrong bit in its first byte
+//                                             `lost` also works for clEnqueueCopyBufferRect.
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 crash"  the third call raises SIGSEGV
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 overflow"   the third call overflows the stack of its thread
 //   RAYA_FAULT="clEnqueueCopyBuffer 3 exit"   the third call ends the program with exit code 1
@@ -35,8 +32,8 @@ namespace {
 
 struct Fault {
     std::string call;
-    int number = 0;      // first failing call (from 1), period (`lost`, `astray`), query, or minimum bytes (`new`)
-    std::string action;  // "lost", "astray", "crash", "overflow", "exit", "slow" or empty
+    int number = 0;              // first failing call (from 1), period (`lost`), query, or minimum bytes (`new`)
+    std::string action;          // "lost", "crash", "overflow", "exit", "slow" or empty
     cl_int result = CL_SUCCESS;  // returned by the failing call; or the answer to the query
 
     Fault() {
@@ -64,9 +61,7 @@ int overflow(int depth) {
 cl_int inject_fault(const char* call) {
     const Fault& fault = injected_fault();
     static std::atomic<int> calls{0};
-    if (fault.call != call || fault.action == "lost" || fault.action == "astray" || fault.action == "flip" ||
-        ++calls < fault.number)
-        return CL_SUCCESS;
+    if (fault.call != call || fault.action == "lost" || ++calls < fault.number) return CL_SUCCESS;
     if (fault.action == "crash") std::raise(SIGSEGV);
     if (fault.action == "overflow") std::_Exit(overflow(1));
     if (fault.action == "exit") std::_Exit(1);
@@ -74,11 +69,11 @@ cl_int inject_fault(const char* call) {
     return fault.result;
 }
 
-/// Counts the copy. Returns true if `action`, "lost" or "astray", is injected and must corrupt this copy.
-bool corrupts_copy(const char* call, const char* action) {
+/// Counts the copy. Returns true if `lost` is injected and must prevent this copy.
+bool loses_copy(const char* call) {
     const Fault& fault = injected_fault();
     static std::atomic<int> calls{0};
-    return fault.action == action && fault.call == call && ++calls % fault.number == 0;
+    return fault.action == "lost" && fault.call == call && ++calls % fault.number == 0;
 }
 
 /// Returns true if the injected fault is a compiler that replaces calls of a function.
@@ -107,14 +102,6 @@ auto create_or_fail(const char* name, cl_int* error, Args... args)
     if (fault == CL_SUCCESS) return driver_function<Function>(name)(args..., error);
     if (error != nullptr) *error = fault;
     return nullptr;
-}
-
-/// Returns the target offset of a misdirected copy; `offset` itself if the buffer has no space for another `size`
-/// bytes.
-size_t displaced_offset(cl_mem buffer, size_t offset, size_t size) {
-    size_t bytes = 0;
-    clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr);
-    return offset + 2 * size <= bytes ? offset + size : offset >= size ? offset - size : offset;
 }
 
 /// If the injected fault names this query, replaces the driver's answer and returns CL_SUCCESS; else returns `error`.
@@ -209,16 +196,7 @@ cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl
 cl_int CL_API_CALL clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset,
                                        size_t to_offset, size_t size, cl_uint waits, const cl_event* wait_list,
                                        cl_event* event) {
-    if (corrupts_copy("clEnqueueCopyBuffer", "lost")) return command_without_copy(queue, from, waits, wait_list, event);
-    if (corrupts_copy("clEnqueueCopyBuffer", "flip")) {
-        unsigned char byte = 0;
-        driver_function<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer")(queue, from, CL_TRUE, from_offset, 1,
-                                                                              &byte, waits, wait_list, nullptr);
-        byte ^= 1;
-        driver_function<decltype(clEnqueueWriteBuffer)>("clEnqueueWriteBuffer")(queue, from, CL_TRUE, from_offset, 1,
-                                                                                &byte, 0, nullptr, nullptr);
-    }
-    if (corrupts_copy("clEnqueueCopyBuffer", "astray")) to_offset = displaced_offset(to, to_offset, size);
+    if (loses_copy("clEnqueueCopyBuffer")) return command_without_copy(queue, from, waits, wait_list, event);
     return call_or_fail<decltype(clEnqueueCopyBuffer)>("clEnqueueCopyBuffer", queue, from, to, from_offset, to_offset,
                                                        size, waits, wait_list, event);
 }
@@ -227,13 +205,9 @@ cl_int CL_API_CALL clEnqueueCopyBufferRect(cl_command_queue queue, cl_mem from, 
                                            const size_t* to_origin, const size_t* region, size_t from_row,
                                            size_t from_slice, size_t to_row, size_t to_slice, cl_uint waits,
                                            const cl_event* wait_list, cl_event* event) {
-    if (corrupts_copy("clEnqueueCopyBufferRect", "lost"))
-        return command_without_copy(queue, from, waits, wait_list, event);
-    size_t origin[] = {to_origin[0], to_origin[1], to_origin[2]};
-    if (corrupts_copy("clEnqueueCopyBufferRect", "astray"))
-        origin[0] = displaced_offset(to, origin[0], (region[1] - 1) * to_row + region[0]);
+    if (loses_copy("clEnqueueCopyBufferRect")) return command_without_copy(queue, from, waits, wait_list, event);
     return call_or_fail<decltype(clEnqueueCopyBufferRect)>("clEnqueueCopyBufferRect", queue, from, to, from_origin,
-                                                           origin, region, from_row, from_slice, to_row, to_slice,
+                                                           to_origin, region, from_row, from_slice, to_row, to_slice,
                                                            waits, wait_list, event);
 }
 

@@ -10,9 +10,7 @@
 // The library simulates a full disk, because only root can mount a small file system.
 #include <dlfcn.h>
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
-#include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +19,6 @@
 #include <cerrno>
 #include <climits>
 #include <cstdarg>
-#include <cstdio>
 #include <cstdlib>
 #include <string>
 
@@ -103,22 +100,17 @@ bool is_call_by_raya(const void* caller) {
     return module != nullptr && (raya::is_raya(module) || raya::begins_with(module, "libstdc++"));
 }
 
-/// Counts the call and returns true if it must fail. A short write or EINTR is injected only into calls whose manual
-/// page (section 2) documents it.
-bool next_call_fails(const char* call, bool can_be_short, bool can_be_interrupted) {
+/// Counts a call by raya or the C++ library and returns true if it must fail. Calls by other libraries are not counted
+/// and do not fail. A short write or EINTR is injected only into calls whose manual page (section 2) documents it.
+bool fails(const char* call, const void* caller, bool can_be_short, bool can_be_interrupted) {
     static std::atomic<long> calls{0};
+    if (!is_call_by_raya(caller)) return false;
     const WriteFault& fault = write_fault();
     const bool fails_now =
         ++calls == fault.number && (!fault.is_short || can_be_short) && (fault.error != EINTR || can_be_interrupted);
     record_call(call, fails_now);
     if (fails_now) errno = fault.error;
     return fails_now;
-}
-
-/// Returns next_call_fails() for a call by raya or the C++ library. Calls by other libraries are not counted and do not
-/// fail.
-bool fails(const char* call, const void* caller, bool can_be_short, bool can_be_interrupted) {
-    return is_call_by_raya(caller) && next_call_fails(call, can_be_short, can_be_interrupted);
 }
 
 /// Returns true if the descriptor refers to a regular file other than the one to which stderr is redirected.
@@ -152,20 +144,6 @@ ssize_t write_within_limits(int descriptor, const void* bytes, std::size_t count
     return written;
 }
 
-/// Write function of stdout (fopencookie). The C library's own write function would bypass the preloaded write().
-ssize_t write_stdout(void*, const char* bytes, std::size_t count) {
-    static auto* const next = library_function("write", &::write);
-    if (is_file(STDOUT_FILENO) && next_call_fails("stdout", false, true)) return 0;
-    return std::max<ssize_t>(next(STDOUT_FILENO, bytes, count), 0);
-}
-
-[[gnu::constructor]] void replace_stdout() {
-    if (std::getenv("RAYA_WRITE_FAULT") == nullptr) return;
-    cookie_io_functions_t functions{};
-    functions.write = write_stdout;
-    stdout = ::fopencookie(nullptr, "w", functions);
-}
-
 }  // namespace
 
 #define CALLER __builtin_return_address(0)
@@ -180,22 +158,6 @@ ssize_t write(int descriptor, const void* bytes, std::size_t count) {
     return write_within_limits(descriptor, bytes, count);
 }
 
-ssize_t writev(int descriptor, const iovec* parts, int count) {
-    if (is_file(descriptor) && fails("writev", CALLER, count > 1, true)) {
-        if (!write_fault().is_short) return -1;
-        count /= 2;
-    }
-    return library_function("writev", &::writev)(descriptor, parts, count);
-}
-
-ssize_t pwrite(int descriptor, const void* bytes, std::size_t count, off_t at) {
-    if (is_file(descriptor) && fails("pwrite", CALLER, count > 1, true)) {
-        if (!write_fault().is_short) return -1;
-        count /= 2;
-    }
-    return library_function("pwrite", &::pwrite)(descriptor, bytes, count, at);
-}
-
 int open(const char* path, int flags, ...) {
     std::va_list mode_argument;
     va_start(mode_argument, flags);
@@ -203,15 +165,6 @@ int open(const char* path, int flags, ...) {
     va_end(mode_argument);
     if (opens_for_writing(flags) && fails("open", CALLER, false, true)) return -1;
     return library_function("open", &::open)(path, flags, mode);
-}
-
-int open64(const char* path, int flags, ...) {
-    std::va_list mode_argument;
-    va_start(mode_argument, flags);
-    const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(mode_argument, mode_t) : 0;
-    va_end(mode_argument);
-    if (opens_for_writing(flags) && fails("open", CALLER, false, true)) return -1;
-    return library_function("open64", &::open64)(path, flags, mode);
 }
 
 int close(int descriptor) {
@@ -223,38 +176,13 @@ int close(int descriptor) {
     return -1;
 }
 
-int fsync(int descriptor) {
-    return fails("fsync", CALLER, false, true) ? -1 : library_function("fsync", &::fsync)(descriptor);
-}
-
-int fdatasync(int descriptor) {
-    return fails("fdatasync", CALLER, false, true) ? -1 : library_function("fdatasync", &::fdatasync)(descriptor);
-}
-
-int ftruncate(int descriptor, off_t length) noexcept {
-    return fails("ftruncate", CALLER, false, true) ? -1
-                                                   : library_function("ftruncate", &::ftruncate)(descriptor, length);
-}
-
-int flock(int descriptor, int operation) noexcept {
-    return fails("flock", CALLER, false, true) ? -1 : library_function("flock", &::flock)(descriptor, operation);
-}
-
 int rename(const char* from, const char* to) noexcept {
     if (disk().blocking_call == "rename" && std::string(to).find(disk().folder) == 0) block();
     return fails("rename", CALLER, false, false) ? -1 : library_function("rename", &::rename)(from, to);
 }
 
-int mkdir(const char* path, mode_t mode) noexcept {
-    return fails("mkdir", CALLER, false, false) ? -1 : library_function("mkdir", &::mkdir)(path, mode);
-}
-
 char* mkdtemp(char* path) noexcept {
     return fails("mkdtemp", CALLER, false, false) ? nullptr : library_function("mkdtemp", &::mkdtemp)(path);
-}
-
-int dup2(int from, int to) noexcept {
-    return fails("dup2", CALLER, false, true) ? -1 : library_function("dup2", &::dup2)(from, to);
 }
 
 }  // extern "C"

@@ -211,14 +211,6 @@ inline std::string file_contents(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Replaces each sequence of white space by one blank, so that help texts of different widths compare equal.
-inline std::string squeezed(const std::string& text) {
-    std::string all;
-    std::istringstream tokens(text);
-    for (std::string token; tokens >> token;) all += (all.empty() ? "" : " ") + token;
-    return all;
-}
-
 /// Returns true if a line of the text matches the regular expression. Matches each line separately, because std::regex
 /// recurses once per character and would overflow the stack on a long text.
 inline bool has_line(const std::string& text, const std::string& pattern) {
@@ -242,12 +234,6 @@ inline std::vector<std::string> lines_of(const std::string& text) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) all.push_back(line);
     return all;
-}
-
-inline std::size_t longest_line(const std::string& text) {
-    std::size_t longest = 0;
-    for (const std::string& line : lines_of(text)) longest = std::max(longest, line.size());
-    return longest;
 }
 
 inline bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }

@@ -1,4 +1,4 @@
-// render --checkpoint and --resume: resumed renders, and files that a checkpoint must not overwrite.
+// render --checkpoint and --resume: a resumed render.
 #include <filesystem>
 
 #include "host/base/checkpoint.hpp"
@@ -51,50 +51,6 @@ TEST_CASE("render --checkpoint: a resumed render writes the same image file as a
     const Document report = Document::parse(file_contents(folder / "x.json"));
     CHECK_THAT(run.err, Catch::Contains("continuing at "));
     CHECK(report["measured"]["earlier_s"] < report["measured"]["render_s"]);
-}
-
-TEST_CASE("render --checkpoint, --resume: refuse missing, invalid and conflicting options", "[cli][checkpoint]") {
-    const ScratchFolder folder;
-    const auto refused = [&](const Arguments& extra_options, const Arguments& message) {
-        check_refused(folder, render_arguments(folder, extra_options), 2, message);
-    };
-    refused({"--resume"}, {"--resume requires --checkpoint"});
-    refused({"--checkpoint-every", "5"}, {"--checkpoint-every requires --checkpoint"});
-    refused({"--checkpoint", "-"}, {"--checkpoint -"});
-    refused({"--checkpoint", folder / "s.rst", "--checkpoint-every", "-1"}, {"--checkpoint-every -1", "0..86400"});
-    refused({"--checkpoint", folder / "none/s.rst"}, {"none"});
-    refused({"--checkpoint", folder / "x.pfm"}, {"--checkpoint", "the same file as --output"});
-    for (const Arguments& records :
-         {Arguments{"--packets", folder / "p.csv.gz"}, {"--async"}, {"--trace", folder / "t.json"}}) {
-        Arguments torus = {"--checkpoint", folder / "s.rst", "--machine", "torus"};
-        torus.insert(torus.end(), records.begin(), records.end());
-        refused(torus, {"--checkpoint with --machine torus", records.front()});
-    }
-}
-
-TEST_CASE("render --checkpoint: refuses a file that is not a checkpoint, and leaves it unchanged",
-          "[cli][checkpoint]") {
-    const ScratchFolder folder;
-    const std::string file = folder / "s.rst";
-    const auto refused = [&](const Arguments& extra_options, const std::string& message) {
-        const std::string before = file_contents(file);
-        const RunOutcome run = run_raya(render_arguments(folder, extra_options));
-        INFO(run.describe());
-        CHECK(run.code == 2);
-        CHECK_THAT(run.err, Catch::Contains("--checkpoint " + file) && Catch::Contains(message));
-        CHECK_THAT(run.err,
-                   !Catch::Contains("remove"));  // the file may be a scene, so raya must not advise removing it
-        CHECK(file_contents(file) == before);
-        CHECK(folder.entries() == 1);
-    };
-    for (const std::string& content :
-         {std::string("hours of work"), file_contents(scene_file("planes")), std::string()}) {
-        write_whole_file(file, content);
-        refused({"--checkpoint", file}, "is not a checkpoint; name another file");
-        refused({"--checkpoint", file, "--resume"}, "is not a checkpoint; name another file");
-    }
-    write_whole_file(file, std::string(kStateMagic) + "hours of work");
-    refused({"--checkpoint", file}, "add --resume");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Meshes on the command line: the example of docs/meshes.md, every command, camera options, reports and refusals.
+// Meshes on the command line: the example of docs/meshes.md, equal images, and files of somebody who wishes ill.
 #include <fmt/core.h>
 #include <sys/stat.h>
 
@@ -12,6 +12,7 @@ namespace raya {
 namespace {
 
 using Catch::Contains;
+namespace fs = std::filesystem;
 
 /// Options of a run without OpenCL drivers.
 const RunOptions kNoDriver{.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}};
@@ -92,23 +93,6 @@ TEST_CASE("a mesh renders as the same scene in NFF does; the report lists what w
           hash);
 }
 
-TEST_CASE("meshes: refusals name the file and leave no output", "[cli][mesh]") {
-    const ScratchFolder folder, outputs;
-    write_whole_file(folder / "empty.stl", "solid\nendsolid\n");
-    write_whole_file(folder / "bad.ply", "ply\n");
-    write_whole_file(folder / "bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\n");
-    check_refused(outputs, render_into(outputs, folder / "empty.stl"), 2, {"raya: ", "empty.stl: "});
-    check_refused(outputs, render_into(outputs, folder / "bad.ply"), 2, {"bad.ply: cannot read the mesh: PLY: "});
-    check_refused(outputs, render_into(outputs, folder / "bad.obj"), 2,
-                  {"bad.obj: mesh 'defaultobject', face 1: polygon without area, left out",
-                   "bad.obj: it has no triangle: the image would be empty"});
-    check_refused(outputs, render_into(outputs, folder / "none.glb"), 2,
-                  {"none.glb: cannot read the mesh: No such file or directory"});
-    const std::string mesh = write_example(folder, "mtllib none.mtl\n");
-    check_refused(outputs, render_into(outputs, mesh, {"--strict"}), 2,
-                  {kExample + ": file '", "none.mtl': file that cannot be opened has no counterpart in raya"});
-}
-
 TEST_CASE("meshes: a crash of the import program ends raya with exit code 2", "[cli][mesh]") {
     const ScratchFolder folder, outputs;
     const std::string mesh = write_example(folder), program = folder / "raya";
@@ -131,6 +115,68 @@ TEST_CASE("meshes: the import program obeys a limit on memory", "[cli][mesh]") {
                   {.max_memory_bytes = std::size_t{150} << 20});
 }
 #endif
+
+constexpr const char *kTriangle = "usemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", *kMaterial = "newmtl a\nKd 1 0 0\n";
+
+TEST_CASE("no output overwrites a file that --as or a mesh names", "[cli][hostile]") {
+    const ScratchFolder inputs, outputs;
+    const std::string image = outputs / "x.pfm", scene = inputs / "s.nff", mesh = inputs / "x.obj",
+                      material = inputs / "m.mtl";
+    fs::copy_file(scene_file("centre"), scene);
+    write_whole_file(mesh, std::string("mtllib m.mtl\n") + kTriangle);
+    write_whole_file(material, kMaterial);
+    fs::create_hard_link(material, inputs / "other.json");
+    write_whole_file(inputs / "b.bin", std::string(36, '\0'));
+    write_whole_file(inputs / "x.gltf",
+                     R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 36, "uri": "b.bin"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]})");
+    for (const Arguments& arguments :
+         {Arguments{"verify", "--as", "render " + scene, "--only", "number", "--report", scene},
+          {"verify", "--as", "render " + scene, "--only", "number", "--junit", scene},
+          {"verify", "--as", "render " + mesh, "--report", material},
+          {"render", mesh, "-o", image, "--report", material},
+          {"render", mesh, "-o", image, "--report", inputs / "other.json"},
+          {"render", inputs / "x.gltf", "-o", image, "--report", inputs / "b.bin"}}) {
+        const std::string before = file_contents(arguments.back());
+        check_refused(outputs, arguments, 2, {*(arguments.end() - 2), "would overwrite the input"});
+        CHECK(file_contents(arguments.back()) == before);
+    }
+}
+
+TEST_CASE("meshes: files outside the mesh's folder are refused, pipes are not opened", "[cli][hostile]") {
+    const ScratchFolder folder, outputs;
+    fs::create_directory(folder / "mesh");
+    write_whole_file(folder / "m.mtl", kMaterial);
+    fs::create_symlink(folder / "m.mtl", folder / "mesh/link.mtl");
+    REQUIRE(::mkfifo((folder / "mesh/pipe.mtl").c_str(), 0600) == 0);
+    for (const std::string library : {"../m.mtl", "link.mtl", "pipe.mtl"}) {
+        write_whole_file(folder / "mesh/x.obj", "mtllib " + library + "\n" + kTriangle);
+        const RunOutcome run = run_raya({"info", folder / "mesh/x.obj"}, {.variables = {{"RAYA_MESH_TIMEOUT", "60"}}});
+        INFO(run.describe());
+        CHECK(run.code == (library == "pipe.mtl" ? 0 : 2));
+        CHECK_THAT(run.err, Contains(library) && Contains(library == "pipe.mtl" ? "" : "is not in the mesh's folder"));
+    }
+}
+
+TEST_CASE("meshes: a face of 96,000 corners is refused at once", "[cli][hostile]") {
+    const ScratchFolder folder, outputs;
+    std::string points, face = "f";
+    for (int i = 0; i < 96'000; ++i) {
+        points += "v " + std::to_string(std::cos(i * 6.545e-5)) + " " + std::to_string(std::sin(i * 6.545e-5)) + " 0\n";
+        face += " " + std::to_string(i + 1);
+    }
+    write_whole_file(folder / "x.obj", points + face + "\n");
+    check_refused(outputs, {"info", folder / "x.obj"}, 2, {"x.obj", "face 1", "corners", "the most is 10000"},
+                  {.variables = {{"RAYA_MESH_TIMEOUT", "20"}}});
+    write_whole_file(
+        folder / "x.ply",
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4294967299\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n" +
+            std::string(36, '\0'));
+    check_refused(outputs, {"info", folder / "x.ply"}, 2, {"x.ply", "more elements than raya reads"});
+}
 
 }  // namespace
 }  // namespace raya

@@ -1,5 +1,4 @@
-// raya page, and --page of the commands that write reports: both make equal pages. raya page refuses files that are not
-// reports.
+// raya page, and --page of the commands that write reports: both make equal pages; raya explore.
 #include <catch2/catch.hpp>
 
 #include "tests/base/scratch_folder.hpp"
@@ -65,19 +64,6 @@ TEST_CASE("render --page: equals the page that raya page makes from the report",
     }
 }
 
-TEST_CASE("render --page: needs no --report, and raya page needs only the report", "[cli][page]") {
-    const ScratchFolder folder;
-    const RunOutcome run = run_raya(render_24x16(folder, {"--page", folder / "r.html"}));
-    INFO(run.describe());
-    CHECK(run.code == 0);
-    CHECK(folder.entries() == 2);
-    REQUIRE(run_raya(render_24x16(folder, {"--report", folder / "r.json"})).code == 0);
-    const RunOutcome page_run = page_of_file(folder / "r.json", folder / "again.html", {"--quiet"});
-    CHECK(page_run.code == 0);
-    CHECK(page_run.out.empty());
-    CHECK_THAT(file_contents(folder / "again.html"), !Contains("copy_bytes_per_s\":"));
-}
-
 TEST_CASE("verify --page: equals the page of its report, also after a failure", "[cli][page]") {
     const ScratchFolder folder;
     const std::string kernels = write_kernels(folder / "kernels", {kMappingFault});
@@ -99,52 +85,23 @@ TEST_CASE("bench --page: has rates, comparison and roofline", "[cli][page]") {
     CHECK(Document::parse(file_contents(folder / "r.json"))["compared"]["rows"].size() == 1);
 }
 
-TEST_CASE("page: the error for a file that is not a report names the reason, and raya writes no page", "[cli][page]") {
-    const ScratchFolder folder, inputs;
-    REQUIRE(run_raya(render_24x16(inputs, {"--report", inputs / "r.json"})).code == 0);
-    const Document valid_report = Document::parse(file_contents(inputs / "r.json"));
-    const auto write_changed_report = [&](const std::string& name, const auto& change) {
-        Document report = valid_report;
-        change(report);
-        std::ofstream(inputs / name) << report.dump();
-        return inputs / name;
-    };
-    struct Row {
-        std::string report, page, reason;
-    };
-    const std::string page = folder / "p.html";
-    std::ofstream(inputs / "broken.json") << "{\"kind\": \"raya render\",";
-    std::ofstream(inputs / "list.json") << "[1, 2]";
-    const std::vector<Row> rows = {
-        {inputs / "none.json", page, "cannot be read: No such file"},
-        {inputs / "c.pfm", page, "not valid JSON: "},
-        {inputs / "broken.json", page, "not valid JSON: "},
-        {inputs / "list.json", page, "not a report of raya render, bench, verify or gpu_day"},
-        {scene_file("planes"), page, "not valid JSON"},
-        {inputs / "r.json", folder / "p.png", "choose a name that ends in .html"},
-        {inputs / "r.json", folder / "no/p.html", "does not exist; make it first"},
-        {write_changed_report("old.json", [](Document& r) { r.erase("kind"), r.erase("raya"); }), page,
-         "a report of an older raya"},
-        {write_changed_report("other.json", [](Document& r) { r["kind"] = "raya ping"; }), page,
-         "not a report of raya render"},
-        {write_changed_report("warnings.json", [](Document& r) { r["warnings"] = {1}; }), page, "warnings"}};
-    for (const Row& row : rows) {
-        const RunOutcome run = page_of_file(row.report, row.page);
+TEST_CASE("explore: two runs write equal pages, without folders", "[cli][page]") {
+    const ScratchFolder folder;
+    for (const char* page : {"a.html", "b.html"}) {
+        const RunOutcome run =
+            run_raya({"explore", scene_file("spheres"), "--size", "24x16", "--lanes", "4", "-o", folder / page, "--pes",
+                      "20", "--mapping", "cyclic:3", "--fold", "block", "--from", "3,-6,4"});
         INFO(run.describe());
-        CHECK(run.code == 2);
-        CHECK_THAT(run.err, Contains(row.reason));
-        CHECK(folder.entries() == 0);
+        REQUIRE(run.code == 0);
+        CHECK_THAT(run.out, Contains("24 x 16 pixels; the page opens with cyclic:3 on 20 PEs: u = "));
     }
-    const RunOutcome unknown_member_run = page_of_file(write_changed_report("more.json",
-                                                                            [](Document& r) {
-                                                                                r["later"] = {{"a", 1}};
-                                                                            }),
-                                                       page);
-    INFO(unknown_member_run.describe());
-    CHECK(unknown_member_run.code == 0);
-    const RunOutcome same_file_run = run_raya(render_24x16(folder, {"--report", page, "--page", page}));
-    CHECK(same_file_run.code == 2);
-    CHECK_THAT(same_file_run.err, Contains("the same file as --report"));
+    const std::string html = file_contents(folder / "a.html");
+    CHECK(html == file_contents(folder / "b.html"));
+    CHECK_THAT(html, StartsWith("<!doctype html>") && !Contains(RAYA_SOURCE_DIR));
+    for (const char* member :
+         {"\"scene\": \"spheres.nff\"", "\"mapping\": \"cyclic\"", "\"offset\": 3", "\"fold\": \"block\"",
+          "\"pes\": 20", "raya render spheres.nff -o image.png --size 24x16 --from 3,-6,4"})
+        CHECK_THAT(html, Contains(member));
 }
 
 }  // namespace

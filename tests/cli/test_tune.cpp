@@ -106,19 +106,5 @@ TEST_CASE("tune: refuses a device whose defaults fail", "[cli]") {
     CHECK(std::distance(fs::directory_iterator(cache / "raya"), {}) == 0);
 }
 
-TEST_CASE("tune: refuses wrong options in one line", "[cli]") {
-    const ScratchFolder outputs;
-    const auto refused = [&](Arguments arguments, const Arguments& parts) {
-        check_refused(outputs, arguments, 2, parts);
-    };
-    refused({"tune", "--lanes", "4"}, {"tune: no option --lanes"});
-    refused({"tune", "--seconds", "0"}, {"--seconds 0", "1..86400 seconds"});
-    refused({"tune", "--variants", "octree"}, {"--variants octree", "none, grid, bvh or torus"});
-    refused({"tune", "--size", "0"}, {"--size 0"});
-    refused({"tune", "--size", "20000"}, {"--size 20000x20000", "1..16384 pixels"});
-    check_refused(outputs, {"tune"}, 2, {"XDG_CACHE_HOME", "HOME"},
-                  {.variables = {{"XDG_CACHE_HOME", ""}, {"HOME", ""}}});
-}
-
 }  // namespace
 }  // namespace raya
