@@ -1,9 +1,10 @@
 #include "host/cl/commands.hpp"
 
-#include <fmt/ranges.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <mutex>
 #include <stdexcept>
@@ -12,8 +13,6 @@
 
 namespace raya {
 namespace {
-
-HostMemory::Kind memory_kind(bool pinned) { return pinned ? HostMemory::Kind::kPinned : HostMemory::Kind::kPlain; }
 
 /// State shared by all sessions of a device. Never destroyed, because the driver may be unloaded before static objects
 /// are destroyed.
@@ -39,15 +38,11 @@ SharedContext& shared_context(const cl::Device& device) {
 
 }  // namespace
 
-Session::Session(const cl::Device& device, Timing timing, Transfers transfers)
+Session::Session(const cl::Device& device, Timing timing)
     : device_(device), info_(device_info(device)), profile_(timing == Timing::kOn && info_.profiling) {
     guarded(fmt::format("opening a session on {} {}", info_.platform, info_.name), [&] {
         context_ = shared_context(device_).context;
-        queue_ =
-            std::make_unique<cl::CommandQueue>(context_, device_, profile_.timed() ? CL_QUEUE_PROFILING_ENABLE : 0);
-        pinned_ = transfers == Transfers::kStaged || (transfers == Transfers::kAutomatic && info_.separate_memory);
-        staging_ = std::make_unique<Staging>(context_, *queue_, memory_kind(pinned_),
-                                             pinned_ ? kPinnedHalfBytes : kPlainHalfBytes);
+        queue_ = cl::CommandQueue(context_, device_, profile_.timed() ? CL_QUEUE_PROFILING_ENABLE : 0);
     });
     if (const char* log = std::getenv("RAYA_KERNEL_LOG")) {
         build_log_ = std::make_unique<KernelBuilds>(log);
@@ -62,10 +57,10 @@ void Session::for_each_observer(const Call& call) const {
 }
 
 Session::~Session() {
-    if (!queue_) return;  // another object has taken the contents of this session
+    if (queue_() == nullptr) return;  // another object has taken the contents of this session
     // The device must be idle when the program ends: PoCL's threads, which may still be compiling a kernel, crash with
     // SIGSEGV if PoCL's library is unloaded while they run. clFinish() does not throw.
-    clFinish((*queue_)());
+    clFinish(queue_());
     if (!profile_.timed() || verbosity() < kDetailed || std::uncaught_exceptions() > 0) return;
     try {
         for (const LabelSummary& label : profile().summary())
@@ -112,18 +107,13 @@ cl::Buffer Session::allocate(const std::string& name, std::size_t count, std::si
             name, count, element_bytes, double(count) * double(element_bytes), info_.name, info_.max_allocation_bytes));
     }
     bytes_taken_ += count * element_bytes;
-    const bool shared = host != nullptr && !pinned_ && count * element_bytes >= kMinSharedBytes;
+    const bool shared = host != nullptr && !info_.separate_memory && count * element_bytes >= kMinSharedBytes;
     const cl_mem_flags flags = shared ? CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR : CL_MEM_READ_WRITE;
     void* const memory = shared ? const_cast<void*>(host) : nullptr;
     const cl::Buffer buffer = guarded(fmt::format("allocating buffer '{}' ({} bytes)", name, count * element_bytes),
                                       [&] { return cl::Buffer(context_, flags, count * element_bytes, memory); });
-    if (Capture::active() != nullptr) Capture::active()->add_buffer(*queue_, buffer, name, count * element_bytes);
+    if (Capture::active() != nullptr) Capture::active()->add_buffer(queue_, buffer, name, count * element_bytes);
     return buffer;
-}
-
-std::unique_ptr<HostMemory> Session::host_memory(const std::string& name, std::size_t bytes) const {
-    return guarded(fmt::format("allocating {} bytes of host memory for '{}'", bytes, name),
-                   [&] { return std::make_unique<HostMemory>(context_, *queue_, memory_kind(pinned_), bytes); });
 }
 
 void Session::check_range(const std::string& label, const std::string& buffer, std::size_t size, std::size_t offset,
@@ -142,6 +132,60 @@ void Session::check_blocks(const std::string& label, const std::string& buffer, 
             fmt::format("'{}': {} blocks of {} elements from element {} on exceed buffer '{}' of {} elements", label,
                         blocks, layout.pitch, layout.first, buffer, size));
     }
+}
+
+void Session::write_bytes(const std::string& label, const cl::Buffer& target, const std::string& name,
+                          std::size_t offset, std::size_t bytes, const void* source) {
+    // A small source is copied, because waking and awaiting the driver's thread takes longer.
+    constexpr std::size_t kMaxCopiedBytes = 64u << 10;
+    if (bytes == 0) return;
+    const bool is_copied = bytes <= kMaxCopiedBytes;
+    std::vector<std::byte> copy(is_copied ? bytes : 0);
+    if (is_copied) std::memcpy(copy.data(), source, bytes);
+    submit(fmt::format("'{}': writing {} bytes into buffer '{}'", label, bytes, name),
+           {.label = label, .kind = "write", .bytes = bytes, .target_name = name}, [&](cl::Event* event) {
+               queue_.enqueueWriteBuffer(target, is_copied ? CL_FALSE : CL_TRUE, offset, bytes,
+                                         is_copied ? copy.data() : source, nullptr, event);
+           });
+    pending_.back().source = std::move(copy);
+}
+
+void Session::read_bytes(const std::string& label, const cl::Buffer& source, const std::string& name,
+                         std::size_t offset, std::size_t bytes, void* target, cl::Event* done) {
+    if (bytes == 0) return;
+    submit(fmt::format("'{}': reading {} bytes of buffer '{}'", label, bytes, name),
+           {.label = label, .kind = "read", .bytes = bytes, .target_name = name}, [&](cl::Event* event) {
+               queue_.enqueueReadBuffer(source, done == nullptr ? CL_TRUE : CL_FALSE, offset, bytes, target, nullptr,
+                                        event);
+           });
+    if (done != nullptr) *done = pending_.back().event;
+}
+
+void Session::wait_for(const std::string& label, cl::Event& read) {
+    if (read() == nullptr) return;
+    guarded(fmt::format("'{}': waiting for a read", label), [&] { std::exchange(read, {}).wait(); });
+}
+
+void Session::copy_bytes(const std::string& label, const CopyEnd& source, const CopyEnd& target, std::size_t bytes) {
+    if (bytes == 0) return;
+    submit(
+        fmt::format("'{}': copying {} bytes of buffer '{}' into buffer '{}'", label, bytes, source.name, target.name),
+        {.label = label, .kind = "copy", .bytes = bytes, .target_name = source.name + " -> " + target.name},
+        [&](cl::Event* event) {
+            queue_.enqueueCopyBuffer(source.memory, target.memory, source.offset, target.offset, bytes, nullptr, event);
+        });
+}
+
+void Session::copy_rows(const std::string& label, const CopyEnd& source, std::size_t source_pitch,
+                        const CopyEnd& target, std::size_t target_pitch, std::size_t bytes, std::size_t rows) {
+    if (bytes == 0 || rows == 0) return;
+    submit(fmt::format("'{}': copying {} rows of {} bytes of buffer '{}' into buffer '{}'", label, rows, bytes,
+                       source.name, target.name),
+           {.label = label, .kind = "copy", .bytes = bytes * rows, .target_name = source.name + " -> " + target.name},
+           [&](cl::Event* event) {
+               queue_.enqueueCopyBufferRect(source.memory, target.memory, {source.offset, 0, 0}, {target.offset, 0, 0},
+                                            {bytes, rows, 1}, source_pitch, 0, target_pitch, 0, nullptr, event);
+           });
 }
 
 void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes) {
@@ -163,15 +207,15 @@ void Session::launch_kernel(CommandRecord record, const cl::Kernel& kernel, std:
                         operation, info_.name, max_size, max_size));
     }
     guarded(operation, [&] {
-        for_each_observer([&](SessionObserver& observer) { observer.launch_begins(*queue_, kernel, record); });
+        for_each_observer([&](SessionObserver& observer) { observer.launch_begins(queue_, kernel, record); });
     });
     submit(operation, std::move(record), [&](cl::Event* event) {
-        queue_->enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
-                                     nullptr, event);
+        queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group_size), cl::NDRange(group_size),
+                                    nullptr, event);
     });
     guarded(operation, [&] {
         for_each_observer(
-            [&](SessionObserver& observer) { observer.launch_ended(*queue_, kernel, pending_.back().record); });
+            [&](SessionObserver& observer) { observer.launch_ended(queue_, kernel, pending_.back().record); });
     });
 }
 
@@ -190,12 +234,12 @@ CommandRecord Session::finished_record(const PendingCommand& pending) const {
 }
 
 void Session::flush() {
-    guarded("flushing the command queue", [this] { queue_->flush(); });
+    guarded("flushing the command queue", [this] { queue_.flush(); });
 }
 
 void Session::finish() {
     const std::vector<PendingCommand> done = std::exchange(pending_, {});  // cleared even if a command failed
-    guarded("waiting for the device", [this] { queue_->finish(); });
+    guarded("waiting for the device", [this] { queue_.finish(); });
     for (const PendingCommand& command : done) profile_.add(finished_record(command));
 }
 

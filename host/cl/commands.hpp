@@ -24,11 +24,6 @@ namespace raya {
 /// kOn: the device records the times of commands, if it supports profiling. kOff: it records no times.
 enum class Timing { kOn, kOff };
 
-/// Transfers between host and device. kStaged: all transfers go through a pinned staging buffer (host/cl/memory.hpp).
-/// kDirect: only small writes go through a staging buffer, in plain memory. kAutomatic: kStaged on a device whose
-/// memory is separate from the host's, else kDirect.
-enum class Transfers { kAutomatic, kDirect, kStaged };
-
 /// A context and an in-order queue: commands run one after another, in the order in which they were enqueued.
 ///
 /// All offsets and counts are in elements. A range beyond a buffer's end throws std::out_of_range. A launch without
@@ -37,8 +32,7 @@ enum class Transfers { kAutomatic, kDirect, kStaged };
 /// buffers or the kernel, the error's name and a remedy. A transfer of no elements does nothing and is not recorded.
 class Session {
   public:
-    explicit Session(const cl::Device& device, Timing timing = Timing::kOn,
-                     Transfers transfers = Transfers::kAutomatic);
+    explicit Session(const cl::Device& device, Timing timing = Timing::kOn);
     Session(Session&&) = default;  // not copyable: a copy would report the same commands twice
     /// Waits for all commands, also during stack unwinding. Logs their times at level kDetailed (host/base/log.hpp).
     ~Session();
@@ -61,7 +55,7 @@ class Session {
     template <class T>
     Buffer<T> buffer_of(const std::string& name, std::span<const T> host) const {
         return Buffer<T>(allocate(name, host.size(), sizeof(T), host.data()), name, host.size(),
-                         std::shared_ptr<void>(nullptr, [queue = *queue_](void*) { clFinish(queue()); }));
+                         std::shared_ptr<void>(nullptr, [queue = queue_](void*) { clFinish(queue()); }));
     }
 
     /// Builds a program, see Program. All sessions of a device share their programs: each combination of source and
@@ -94,7 +88,7 @@ class Session {
     }
 
     /// Host to device: writes `source` into `target` from element `offset` on. The caller may change `source`
-    /// afterwards, because the call either waits or copies the bytes into staging memory.
+    /// afterwards, because the call either waits or copies the elements.
     template <class T>
     void write(const std::string& label, Buffer<T>& target, std::span<const std::type_identity_t<T>> source,
                std::size_t offset = 0) {
@@ -107,13 +101,8 @@ class Session {
     void read(const std::string& label, const Buffer<T>& source, std::span<std::type_identity_t<T>> target,
               std::size_t offset = 0) {
         check_range(label, source.name(), source.size(), offset, target.size());
-        read_bytes(label, source.memory(), source.name(), offset * sizeof(T), target.size_bytes(), target.data());
-    }
-
-    /// Allocates host memory for asynchronous reads of `count` > 0 elements. Throws DeviceError on failure.
-    template <class T>
-    Readback<T> readback(const std::string& name, std::size_t count) const {
-        return {host_memory(name, count * sizeof(T)), count};
+        read_bytes(label, source.memory(), source.name(), offset * sizeof(T), target.size_bytes(), target.data(),
+                   nullptr);
     }
 
     /// Device to host: reads `count` elements of `source`, starting at element `offset`, into `target`, starting at
@@ -124,14 +113,14 @@ class Session {
               std::size_t target_offset, std::size_t count) {
         check_range(label, source.name(), source.size(), offset, count);
         check_range(label, "readback of " + source.name(), target.size(), target_offset, count);
-        read_async(label, source.memory(), source.name(), offset * sizeof(T), count * sizeof(T), target.memory(),
-                   target_offset * sizeof(T));
+        read_bytes(label, source.memory(), source.name(), offset * sizeof(T), count * sizeof(T),
+                   target.data() + target_offset, &target.last_read());
     }
 
     /// Waits for all reads into `readback`. Throws DeviceError, with the label, if a read failed.
     template <class T>
     void wait(const std::string& label, Readback<T>& readback) {
-        wait_for(label, readback.memory());
+        wait_for(label, readback.last_read());
     }
 
     /// Device to device: copies `count` elements. Within one buffer the two ranges must not overlap. Does not wait.
@@ -167,7 +156,11 @@ class Session {
     void fill(const std::string& label, Buffer<T>& target, const std::type_identity_t<T>& value) {
         static_assert(sizeof(T) <= 128 && (sizeof(T) & (sizeof(T) - 1)) == 0,
                       "OpenCL fills with 1, 2, 4, ... 128 bytes");
-        fill_bytes(label, target.memory(), target.name(), target.bytes(), &value, sizeof(T));
+        submit(fmt::format("'{}': filling buffer '{}' of {} bytes", label, target.name(), target.bytes()),
+               {.label = label, .kind = "fill", .bytes = target.bytes(), .target_name = target.name()},
+               [&](cl::Event* event) {
+                   queue_.enqueueFillBuffer(target.memory(), value, 0, target.bytes(), nullptr, event);
+               });
     }
 
     /// For traces: from now on, span() and build() add entries to `spans`, which must outlive the session. The profile
@@ -213,6 +206,7 @@ class Session {
     struct PendingCommand {  // a command whose times have not been read yet
         CommandRecord record;
         cl::Event event;
+        std::vector<std::byte> source{};  // of a write that copies its source
     };
 
     static void check_range(const std::string& label, const std::string& buffer, std::size_t size, std::size_t offset,
@@ -221,28 +215,20 @@ class Session {
                              std::size_t count, std::size_t blocks);
     /// `host`: memory to use on a device that uses the host's memory, or nullptr.
     cl::Buffer allocate(const std::string& name, std::size_t count, std::size_t element_bytes, const void* host) const;
-    std::unique_ptr<HostMemory> host_memory(const std::string& name, std::size_t bytes) const;
     /// Calls call(observer) for all observers, and for the Capture if there is one.
     template <class Call>
     void for_each_observer(const Call& call) const;
     void launch_kernel(CommandRecord record, const cl::Kernel& kernel, std::size_t local_bytes);
     void write_bytes(const std::string& label, const cl::Buffer& target, const std::string& name, std::size_t offset,
                      std::size_t bytes, const void* source);
+    /// Waits, unless `done` is given: it becomes the read's event.
     void read_bytes(const std::string& label, const cl::Buffer& source, const std::string& name, std::size_t offset,
-                    std::size_t bytes, void* target);
-    void read_async(const std::string& label, const cl::Buffer& source, const std::string& name, std::size_t offset,
-                    std::size_t bytes, HostMemory& target, std::size_t target_offset);
-    static void wait_for(const std::string& label, HostMemory& memory);
-    void write_staged(const std::string& label, const cl::Buffer& target, const std::string& name, std::size_t offset,
-                      std::size_t bytes, const std::byte* source);
-    void read_staged(const std::string& label, const cl::Buffer& source, const std::string& name, std::size_t offset,
-                     std::size_t bytes, std::byte* target);
+                    std::size_t bytes, void* target, cl::Event* done);
+    static void wait_for(const std::string& label, cl::Event& read);
     void copy_bytes(const std::string& label, const CopyEnd& source, const CopyEnd& target, std::size_t bytes);
     /// Copies `rows` rows of `bytes` bytes. Pitches are in bytes too.
     void copy_rows(const std::string& label, const CopyEnd& source, std::size_t source_pitch, const CopyEnd& target,
                    std::size_t target_pitch, std::size_t bytes, std::size_t rows);
-    void fill_bytes(const std::string& label, const cl::Buffer& target, const std::string& name, std::size_t bytes,
-                    const void* value, std::size_t value_bytes);
 
     /// Enqueues one command by `enqueue(cl::Event*)` and records it. `operation`: description of the command for error
     /// messages.
@@ -261,9 +247,7 @@ class Session {
     DeviceInfo info_;
     mutable std::uint64_t bytes_taken_ = 0;
     cl::Context context_;
-    std::unique_ptr<cl::CommandQueue> queue_;  // its address is stable when the session moves
-    bool pinned_ = false;                      // true: Transfers::kStaged is in effect; false: kDirect
-    std::unique_ptr<Staging> staging_;
+    cl::CommandQueue queue_;
     std::vector<PendingCommand> pending_;
     Profile profile_;
     std::map<std::string, std::uint32_t> launch_limits_;

@@ -4,9 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <cstdlib>
-#include <optional>
 
 #include "host/base/encoding.hpp"
 #include "host/base/log.hpp"
@@ -90,51 +87,37 @@ std::size_t named_index(const std::string& wanted, const std::vector<DeviceInfo>
     return static_cast<std::size_t>(found - devices.begin());
 }
 
-std::vector<cl::Platform> all_platforms() {
+}  // namespace
+
+std::vector<cl::Device> all_devices() {
     set_driver_cache_folder();
-    const DriverCall call("looking for platforms");
+    const DeviceSearch search;
     std::vector<cl::Platform> platforms;
     try {
+        const DriverCall call("looking for platforms");
         cl::Platform::get(&platforms);
     } catch (const cl::Error& error) {
         constexpr cl_int kPlatformNotFound = -1001;  // from the ICD loader: no driver is installed
         if (error.err() != kPlatformNotFound) throw device_error(error.what(), error.err(), "looking for platforms");
     }
-    return platforms;
-}
-
-std::vector<cl::Device> devices_of(const cl::Platform& platform) {
-    const DriverCall call("looking for devices");
-    std::vector<cl::Device> devices;
-    try {
-        platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
-    } catch (const cl::Error& error) {
-        if (error.err() != CL_DEVICE_NOT_FOUND) throw device_error(error.what(), error.err(), "looking for devices");
-    }
-    for (const cl::Device& device : devices) device_info(device);  // a driver may hang or fail only here
-    return devices;
-}
-
-std::string name_of(const cl::Platform& platform) try {
-    return platform.getInfo<CL_PLATFORM_NAME>();
-} catch (const cl::Error&) {
-    return "without a name";
-}
-
-}  // namespace
-
-std::vector<cl::Device> all_devices() {
-    const DeviceSearch search;
     std::vector<cl::Device> all;
     std::vector<std::string> errors;
-    for (const cl::Platform& platform : all_platforms()) try {
-            for (const cl::Device& device :
-                 devices_of(platform))  // a driver with two ICD files reports its devices twice
-                if (std::none_of(all.begin(), all.end(), [&](const cl::Device& known) { return known() == device(); }))
+    for (const cl::Platform& platform : platforms) {
+        std::string name = "without a name";
+        try {
+            std::vector<cl::Device> devices;
+            guarded("looking for devices", [&] {
+                name = platform.getInfo<CL_PLATFORM_NAME>();
+                platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+            });
+            for (const cl::Device& device : devices) device_info(device);  // a driver may hang or fail only here
+            for (const cl::Device& device : devices)  // a driver with two ICD files reports its devices twice
+                if (std::ranges::none_of(all, [&](const cl::Device& d) { return d() == device(); }))
                     all.push_back(device);
         } catch (const DeviceError& error) {
-            errors.push_back(fmt::format("platform {}: {}", name_of(platform), error.what()));
+            errors.push_back(fmt::format("platform {}: {}", name, error.what()));
         }
+    }
     if (all.empty() && !errors.empty()) throw DeviceError(errors.front());
     for (const std::string& error : errors) warn("warning: " + error + "; its devices are left out");
     return all;
@@ -165,12 +148,9 @@ DeviceInfo device_info(const cl::Device& device) {
         info.max_group_size = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
         info.ends_loops_early = info.name.find("llvmpipe") != std::string::npos;
         info.native_float_width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
-        info.preferred_float_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>();
         info.correctly_rounded_divide_sqrt = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
         info.fused_multiply_add = (floats & CL_FP_FMA) != 0;
         info.denormals = (floats & CL_FP_DENORM) != 0;
-        info.round_to_nearest = (floats & CL_FP_ROUND_TO_NEAREST) != 0;
-        info.inf_nan = (floats & CL_FP_INF_NAN) != 0;
         info.profiling = (device.getInfo<CL_DEVICE_QUEUE_PROPERTIES>() & CL_QUEUE_PROFILING_ENABLE) != 0;
         info.il_versions = il_versions(device);
         info.available = device.getInfo<CL_DEVICE_AVAILABLE>() == CL_TRUE;

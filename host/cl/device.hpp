@@ -25,12 +25,11 @@ struct DeviceInfo {
     // The device may end long loops without an error: Mesa's llvmpipe before version 25, after 65,535 iterations of a
     // work-item (tests/portability/nested_loops.cl). Kernels detect it (kernels/shared/loop_canary.clh).
     bool ends_loops_early = false;
-    std::uint32_t native_float_width = 0, preferred_float_width = 0;
+    std::uint32_t native_float_width = 0;
     bool correctly_rounded_divide_sqrt = false;  // supports -cl-fp32-correctly-rounded-divide-sqrt
     bool fused_multiply_add = false;             // CL_FP_FMA; kernels find FP_FAST_FMAF defined if it is fast
-    // Properties of fp32: CL_FP_DENORM, CL_FP_ROUND_TO_NEAREST, CL_FP_INF_NAN.
-    bool denormals = false, round_to_nearest = false, inf_nan = false;
-    bool profiling = false;  // the device can record the times of commands
+    bool denormals = false;                      // CL_FP_DENORM of fp32
+    bool profiling = false;                      // the device can record the times of commands
     bool available = false, compiler_available = false;
     std::string il_versions{};  // as in il_versions(): versions of SPIR-V that the device accepts
 };

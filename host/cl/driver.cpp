@@ -32,9 +32,8 @@ namespace {
 std::atomic<const char*> current_operation{nullptr};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-constexpr unsigned kSearchLimit_s = 20;  // seconds that the drivers may take to list their devices
 std::atomic<bool> is_searching{false};
-void (*on_long_search)(int) = SIG_IGN;  // handler of SIGALRM; SIG_IGN unless install_crash_handlers() was called
+bool has_handlers = false;  // install_crash_handlers() was called
 
 constexpr std::array kCrashSignals = {SIGABRT, SIGSEGV, SIGBUS, SIGILL};  // PoCL handles SIGFPE: kernels divide by 0
 
@@ -50,6 +49,15 @@ using AlternateStack = std::array<std::byte, 80 << 10>;
 /// Writes `text` to stderr. Async-signal-safe.
 void write_message(const char* text) {
     if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // stderr is closed: the message is lost
+}
+
+constexpr const char* kLeaveOut =
+    "; remedy: leave out the driver: set OCL_ICD_VENDORS to the .icd file of another one (/etc/OpenCL/vendors)\n";
+
+extern "C" void report_long_search(int) {
+    if (verbosity() <= kErrorsOnly) return;
+    write_message("raya: warning: the OpenCL drivers need long to list their devices; one may hang");
+    write_message(kLeaveOut);
 }
 
 extern "C" void report_driver_crash(int signal) {
@@ -69,14 +77,13 @@ extern "C" void report_driver_crash(int signal) {
     if (crash_delay_us > 0) ::usleep(crash_delay_us);
     write_message("\nraya: ");
     write_message(crash_prefix.data());
-    write_message(signal == SIGALRM ? "the OpenCL driver hangs (SIG" : "the OpenCL driver crashed (SIG");
+    write_message("the OpenCL driver crashed (SIG");
     write_message(::sigabbrev_np(signal));
     write_message(") while ");
     write_message(operation);
     write_message(
         is_searching
-            ? "; remedy: leave out the driver: set OCL_ICD_VENDORS to the .icd file of another one "
-              "(/etc/OpenCL/vendors)\n"
+            ? kLeaveOut
             : "; remedy: smaller work-groups (--group) or fewer lanes (--lanes), an empty folder as POCL_CACHE_DIR in "
               "case the cache is damaged, more memory (ulimit -v), a mounted /sys, or another driver (raya devices); "
               "raya verify shows the driver's errors\n");
@@ -135,7 +142,7 @@ void set_crash_prefix(const std::string& prefix, double delay_s) {
 }
 
 void install_crash_handlers(bool is_worker) {
-    on_long_search = is_worker ? SIG_DFL : report_driver_crash;
+    has_handlers = true;
     if (!is_worker) {
         std::atexit(report_driver_exit);
         for (const int signal : kCrashSignals) handle_signal(signal, report_driver_crash);
@@ -192,10 +199,11 @@ std::string driver_cache_problem() {
 }
 
 DeviceSearch::DeviceSearch() {
-    if (on_long_search == SIG_IGN) return;
+    constexpr unsigned kLongSearch_s = 10;
+    if (!has_handlers) return;
     is_searching = true;
-    std::signal(SIGALRM, on_long_search);
-    ::alarm(kSearchLimit_s);
+    std::signal(SIGALRM, report_long_search);
+    ::alarm(kLongSearch_s);
 }
 
 DeviceSearch::~DeviceSearch() {

@@ -1,4 +1,4 @@
-// Error reports for drivers that crash, hang or end the program, and the folder of PoCL's kernel cache.
+// Messages about drivers that crash, hang or end the program, and the folder of PoCL's kernel cache.
 #pragma once
 #include <string>
 
@@ -40,8 +40,8 @@ void set_driver_cache_folder();
 /// reason and the remedy if it cannot, else an empty string.
 std::string driver_cache_problem();
 
-/// Marks a search for devices while this object exists. If it takes more than 20 s, because a driver hangs, the program
-/// ends as after a crash; a worker ends by SIGALRM. Does nothing unless install_crash_handlers() was called.
+/// Marks a search for devices while this object exists. If it takes more than 10 s, because a driver may hang, prints a
+/// warning with the remedy. Does nothing unless install_crash_handlers() was called.
 class DeviceSearch {
   public:
     DeviceSearch();

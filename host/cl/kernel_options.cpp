@@ -143,9 +143,7 @@ Kernels::Kernels(Session& session, const KernelOptions& options, const KernelSou
     build_options_.insert(build_options_.end(), sources.more_options.begin(), sources.more_options.end());
 }
 
-const Program& Kernels::program(const std::string& file) {
-    const auto found = programs_.find(file);
-    if (found != programs_.end()) return found->second;
+Program Kernels::program(const std::string& file) const {
     const std::string source = kernel_source(file, sources_);
     std::vector<std::string> options = build_options_;
     // The driver's cache would not recognise a file that is built again with another value of a macro that it does not
@@ -153,8 +151,7 @@ const Program& Kernels::program(const std::string& file) {
     std::erase_if(options, [&](const std::string& option) {
         return option.starts_with("-DRAYA_") && source.find(option.substr(2, option.find('=') - 2)) == source.npos;
     });
-    const Program program = session_.build(file, source, options);
-    return programs_.emplace(file, program).first->second;
+    return session_.build(file, source, options);
 }
 
 Program Kernels::build(const std::string& name, const std::string& text) const {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -150,21 +149,21 @@ struct DescribedKernel : Kernel<Params...> {
         : Kernel<Params...>(program.kernel<Params...>(std::string(Name.text))) {}
 };
 
-/// The kernels for one device with one set of build options. Each requested file is built as one program.
+/// The kernels for one device with one set of build options. Each file is built as one program.
 class Kernels {
   public:
     /// Makes kernels for the device of `session`, which must outlive this object. Throws as build_options().
     Kernels(Session& session, const KernelOptions& options, const KernelSources& sources = {});
 
-    /// Returns the kernel `K`, a DescribedKernel. Builds its file when the first of the file's kernels is requested.
-    /// Throws UserError if there is no such file, DeviceError if the build fails or the number of parameters differs.
+    /// Returns the kernel `K`, a DescribedKernel. Throws UserError if there is no such file, DeviceError if the build
+    /// fails or the number of parameters differs.
     template <class K>
-    K get() {
+    K get() const {
         return K(program(K::kFile));
     }
 
     /// Returns the program built from a file below kernels/. Throws as get().
-    const Program& program(const std::string& file);
+    Program program(const std::string& file) const;
 
     /// Builds the source `text`, which is not a file of kernels/ but may include such files; `name` is for messages.
     Program build(const std::string& name, const std::string& text) const;
@@ -177,7 +176,6 @@ class Kernels {
     KernelOptions options_;
     KernelSources sources_;
     std::vector<std::string> build_options_;
-    std::map<std::string, Program> programs_;
 };
 
 }  // namespace raya

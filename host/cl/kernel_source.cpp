@@ -57,6 +57,7 @@ void append_expanded(std::string& source, const std::string& text, const std::st
                      const KernelSources& sources, std::set<std::string>& included_files) {
     source += fmt::format("#line 1 \"{}\"\n", name);
     std::istringstream lines(text);
+    lines.exceptions(std::ios::badbit);  // a lack of memory must not end the text
     int number = 0;
     bool has_include = false;
     for (std::string line; std::getline(lines, line);) {
@@ -189,11 +190,10 @@ bool uses_il() {
 }
 
 std::string il_versions(const cl::Device& device) {
-    std::size_t size = 0;  // devices without the extension cl_khr_il_program return an error
-    if (::clGetDeviceInfo(device(), CL_DEVICE_IL_VERSION_KHR, 0, nullptr, &size) != CL_SUCCESS || size == 0) return {};
-    std::string versions(size, '\0');
-    if (::clGetDeviceInfo(device(), CL_DEVICE_IL_VERSION_KHR, size, versions.data(), nullptr) != CL_SUCCESS) return {};
-    return versions.substr(0, versions.find('\0'));
+    std::array<char, 4096> versions{};  // devices without the extension cl_khr_il_program return an error
+    const cl_int code =
+        ::clGetDeviceInfo(device(), CL_DEVICE_IL_VERSION_KHR, versions.size() - 1, versions.data(), nullptr);
+    return code == CL_SUCCESS ? versions.data() : "";
 }
 
 cl::Program spirv_program(const cl::Context& context, const cl::Device& device, const std::string& source,

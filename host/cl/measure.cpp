@@ -38,35 +38,6 @@ double copy_bytes_per_s(Session& session, std::uint64_t bytes) {
     return min_ns > 0 ? 2e9 * static_cast<double>(bytes) / static_cast<double>(min_ns) : 0;
 }
 
-// Measures all rates of a device repeatedly, and builds the programs only once.
-class PeakRates {
-  public:
-    PeakRates(Session& session, const NumberFormat& format, std::uint32_t lanes)
-        : session_(session), render_rates_(session, format, lanes) {
-        const NumberFormat fp32{};
-        const std::uint32_t device_lanes = default_lanes(session.device());
-        if (format != fp32 || lanes != device_lanes) default_fp32_rates_.emplace(session, fp32, device_lanes);
-    }
-
-    DevicePeak measure_all() {
-        DevicePeak peak;
-        peak.multiply_per_s = render_rates_.measure(kMultiplyAdd, kSamples);
-        peak.fp32_per_s =
-            default_fp32_rates_ ? default_fp32_rates_->measure(kMultiplyAdd, kSamples) : peak.multiply_per_s;
-        peak.divide_per_s = render_rates_.measure(kDivide, kSamples);
-        peak.sqrt_per_s = render_rates_.measure(kSquareRoot, kSamples);
-        peak.copy_bytes = copied_bytes(session_.device());
-        peak.copy_bytes_per_s = copy_bytes_per_s(session_, peak.copy_bytes);
-        return peak;
-    }
-
-  private:
-    Session& session_;
-    OperationRates render_rates_;
-    std::optional<OperationRates> default_fp32_rates_;  // fp32 with the default lanes; empty if render_rates_ has this
-                                                        // format and number of lanes
-};
-
 }  // namespace
 
 OperationRates::OperationRates(Session& session, const NumberFormat& format, std::uint32_t lanes)
@@ -106,23 +77,27 @@ double OperationRates::measure(std::size_t kind, int samples) {
 
 DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std::uint32_t lanes) {
     constexpr int kMeasurements = 3;
+    DevicePeak highest{.format = format_name(format)};
     Session session(device);
-    DevicePeak highest;
-    if (session.profile().timed()) {
-        PeakRates peak_rates(session, format, lanes);
-        double lowest_fp32_per_s = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < kMeasurements; ++i) {
-            const DevicePeak peak = peak_rates.measure_all();
-            lowest_fp32_per_s = std::min(lowest_fp32_per_s, peak.fp32_per_s);
-            for (double DevicePeak::*rate :
-                 {&DevicePeak::fp32_per_s, &DevicePeak::multiply_per_s, &DevicePeak::divide_per_s,
-                  &DevicePeak::sqrt_per_s, &DevicePeak::copy_bytes_per_s})
-                highest.*rate = std::max(highest.*rate, peak.*rate);
-            highest.copy_bytes = peak.copy_bytes;
-        }
-        highest.scatter = highest.fp32_per_s > 0 ? 1 - lowest_fp32_per_s / highest.fp32_per_s : 0;
+    if (!session.profile().timed()) return highest;
+    OperationRates rates(session, format, lanes);
+    std::optional<OperationRates> default_rates;
+    const std::uint32_t default_lanes = raya::default_lanes(session.device());
+    if (!format.is_fp32() || lanes != default_lanes) default_rates.emplace(session, NumberFormat{}, default_lanes);
+    highest.copy_bytes = copied_bytes(session.device());
+    double lowest_fp32_per_s = std::numeric_limits<double>::infinity();
+    const auto raise = [](double& to, double rate) { to = std::max(to, rate); };
+    for (int i = 0; i < kMeasurements; ++i) {
+        const double multiply_per_s = rates.measure(kMultiplyAdd, kSamples);
+        const double fp32_per_s = default_rates ? default_rates->measure(kMultiplyAdd, kSamples) : multiply_per_s;
+        lowest_fp32_per_s = std::min(lowest_fp32_per_s, fp32_per_s);
+        raise(highest.fp32_per_s, fp32_per_s);
+        raise(highest.multiply_per_s, multiply_per_s);
+        raise(highest.divide_per_s, rates.measure(kDivide, kSamples));
+        raise(highest.sqrt_per_s, rates.measure(kSquareRoot, kSamples));
+        raise(highest.copy_bytes_per_s, copy_bytes_per_s(session, highest.copy_bytes));
     }
-    highest.format = format_name(format);
+    highest.scatter = highest.fp32_per_s > 0 ? 1 - lowest_fp32_per_s / highest.fp32_per_s : 0;
     return highest;
 }
 

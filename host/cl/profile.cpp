@@ -1,14 +1,9 @@
 #include "host/cl/profile.hpp"
 
 #include <fmt/core.h>
-#include <linux/perf_event.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <ctime>
-#include <limits>
 #include <map>
 
 #include "host/base/log.hpp"
@@ -48,22 +43,17 @@ std::uint64_t host_clock_ns() {
            static_cast<std::uint64_t>(time.tv_nsec);
 }
 
-SpanLog::Span::Span(SpanLog* log, const std::string& name) : log_(log) {
-    if (verbosity() >= kVerbose) {
-        logged_name_ = name;
-        started_ = host_clock_ns();
-    }
+SpanLog::Span::Span(SpanLog* log, const std::string& name) : log_(log), name_(name), started_(host_clock_ns()) {
     if (log_ == nullptr) return;
     number_ = log_->spans_.size();
-    log_->spans_.push_back({name, host_clock_ns(), 0, log_->depth_++});
+    log_->spans_.push_back({name, started_, 0, log_->depth_++});
 }
 
 SpanLog::Span::~Span() {
-    if (!logged_name_.empty())
-        log_message(kVerbose,
-                    fmt::format("{}: {:.3f} s", logged_name_, 1e-9 * static_cast<double>(host_clock_ns() - started_)));
+    const std::uint64_t ended = host_clock_ns();
+    log_message(kVerbose, fmt::format("{}: {:.3f} s", name_, 1e-9 * static_cast<double>(ended - started_)));
     if (log_ == nullptr) return;
-    log_->spans_[number_].ended = host_clock_ns();
+    log_->spans_[number_].ended = ended;
     --log_->depth_;
 }
 

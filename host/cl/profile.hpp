@@ -90,8 +90,8 @@ class SpanLog {
       private:
         SpanLog* log_;
         std::size_t number_ = 0;
-        std::string logged_name_{};  // empty: the span is not logged
-        std::uint64_t started_ = 0;
+        std::string name_;
+        std::uint64_t started_;
     };
 
     /// Runs `action` as a span and returns its result.

@@ -1,7 +1,7 @@
 #include "host/cl/program.hpp"
 
-#include <fmt/ranges.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdlib>
 #include <fstream>

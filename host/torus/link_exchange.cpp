@@ -116,7 +116,7 @@ void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<Outgoin
     const std::string label = class_.label + " outgoing";
     if (const std::size_t words = words_of(outgoing_);
         words > 0 && (!outgoing_words_ || outgoing_words_->size() < words))
-        outgoing_words_.emplace(session_.readback<std::uint32_t>(label, words));
+        outgoing_words_.emplace(words);
     std::size_t at = 0;
     for (const auto& [key, m] : outgoing_) {
         const auto [rank, link] = key;

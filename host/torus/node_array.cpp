@@ -57,7 +57,7 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       status_(session_.buffer<std::uint32_t>("status", std::size_t{nodes_} * RAYA_STATUS_WORDS)),
       inbox_of_link_(session_.buffer<std::uint32_t>("inboxes of links", std::size_t{nodes_} * RAYA_LINKS)),
       returns_(session_.buffer<raya_head>("returns", distribution.has(RAYA_ROOT) ? buffers.queue : 1)),
-      returns_readback_(session_.readback<raya_head>("returns", returns_.size())),
+      returns_readback_(returns_.size()),
       events_(session_.buffer<std::uint64_t>("events", std::size_t{nodes_} * RAYA_EVENTS)),
       made_(session_.buffer<std::uint64_t>("packets made", std::size_t{nodes_} * RAYA_KINDS)),
       ended_(session_.buffer<std::uint64_t>("packets ended", std::size_t{nodes_} * RAYA_KINDS)),

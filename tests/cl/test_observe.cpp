@@ -43,16 +43,6 @@ TEST_CASE("an observed session records builds, and the arguments of the given nu
     CHECK(log.spans()[0].name == "build put.cl");
 }
 
-TEST_CASE("a session without an observer records no arguments", "[cl]") {
-    Session session(choose_device(""));
-    auto put =
-        session.build("put.cl", kSource, {}).kernel<Buffer<cl_uint>&, cl_uint, cl_float, LocalMemory<cl_uint>>("put");
-    Buffer<cl_uint> to = session.buffer<cl_uint>("numbers", 8);
-    session.launch("go", put, 4, 2, to, 7U, 0.5F, LocalMemory<cl_uint>{3});
-    const SpanLog::Span span = session.span("nothing");
-    CHECK(session.profile().commands()[0].arguments.empty());
-}
-
 TEST_CASE("a clock offset maps a command's time to between the host's times before and after the command", "[cl]") {
     for (std::uint64_t seed = 0; seed < 500; ++seed) {
         SplitMix random(seed);
