@@ -239,7 +239,8 @@ std::string text_on_terminal(const Arguments& arguments, const std::string& faul
 TEST_CASE("progress: slow commands name their step on a terminal within two seconds; with -q they print none",
           "[cli][slow]") {
     const ScratchFolder folder;
-    Arguments render = {"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12", "--lanes", "4"};
+    Arguments render = {"render", scene_file("planes"), "-o", folder / "x.pfm", "--size", "12", "--lanes", "4", "--pes",
+                        "4"};
     const Arguments one_check = {"verify", "--only", "machine bus", "--lanes", "4"};
     CHECK_THAT(text_on_terminal(render, "clCreateContext 1 slow"),
                Catch::Contains("preparing ... 1 s") && Catch::EndsWith("\r\033[K"));
