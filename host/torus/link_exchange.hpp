@@ -52,7 +52,7 @@ class LinkExchange {
 
     /// For each link with both ends on this device, transfers all packets of the outbox if the inbox is empty, in one
     /// launch, labelled PacketClass::label. Adds the number of words charged for each link to `words`, [node][link].
-    /// `status`, `words` and counts() cover all nodes of all ranks.
+    /// `status`, `words` and messages() cover all nodes of all ranks.
     void exchange(const NodeStatus& status, std::vector<std::uint64_t>& words);
 
     /// Transfers between ranks, in the same superstep as an exchange(). begin_transfers() reads the packets and appends
