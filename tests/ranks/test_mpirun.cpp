@@ -1,4 +1,6 @@
 // Runs of raya under mpirun write the same files as a single process, and print everything once.
+#include <fmt/core.h>
+
 #include <map>
 #include <set>
 
@@ -149,12 +151,15 @@ TEST_CASE("mpirun: a render that a failing device ends is resumed on any number 
     REQUIRE(run_raya(render).code == 0);
     const Files expected = files_in(folder);
     REQUIRE(expected.size() == 2);
-    const std::string fault = "export LD_PRELOAD=" RAYA_CL_FAULTS " RAYA_FAULT='clEnqueueNDRangeKernel 200 -5'";
     for (const Mpi& mpi : installed_mpis()) {
-        const RanksOutcome failed = run_ranks(mpi, RankScript().arguments(mpi, 3, 1, fault, render));
-        INFO(failed.describe());
-        CHECK(failed.code == 3);
-        CHECK_THAT(failed.err, Catch::Contains("raya: rank 1 on "));
+        for (int launch = 20; launch < 150 && !std::filesystem::exists(checkpoint); launch += 20) {
+            const std::string fault =
+                fmt::format("export LD_PRELOAD={} RAYA_FAULT='clEnqueueNDRangeKernel {} -5'", RAYA_CL_FAULTS, launch);
+            const RanksOutcome failed = run_ranks(mpi, RankScript().arguments(mpi, 3, 1, fault, render));
+            INFO(failed.describe());
+            CHECK(failed.code == 3);
+            CHECK_THAT(failed.err, Catch::Contains("raya: rank 1 on "));
+        }
         REQUIRE(std::filesystem::exists(checkpoint));
         const std::string state = file_contents(checkpoint);
         for (const std::uint32_t count : {2u, 1u}) {
