@@ -110,14 +110,15 @@ Verdict check_bus(Session& session) {
     return passed(fmt::format("{} words in each direction", kWords));
 }
 
-// Calls `transfer(round, distance, memory, layout)` `rounds` times with new words in the PEs' memory,
-// [PE][kRows][pitch], and checks the returned blocks, [PE][kRows][words]: PE i must have received the block of PE (i +
-// distance(round)) mod P. A PE's block consists of `words` words of each row, from word kOffset of the row on. Each
-// round has new words, so that the check detects words of an earlier round, and a transfer that does nothing.
+// Rounds of transfers of blocks between PEs. A PE has kRows rows of `pitch` words; its block consists of `words` words
+// of each row, from word kOffset of the row on.
 constexpr std::size_t kRows = 3, kOffset = 2;
 struct Rounds {
     std::size_t pes, words, rounds, pitch = words + 3;
 
+    // Calls transfer(round, distance, memory) in each round, and checks the blocks that it returns, [PE][kRows][words]:
+    // PE i must have received the block of PE (i + distance_of(round)) mod P. Each round has new words, so that words
+    // of an earlier round and a transfer that does nothing are detected. Returns the first failure.
     template <class Distance, class Transfer>
     std::optional<Verdict> check(Session& session, const Distance& distance_of, const Transfer& transfer) const {
         auto memory = session.buffer<float>("memory words", pes * kRows * pitch);
