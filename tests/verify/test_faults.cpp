@@ -112,6 +112,7 @@ TEST_CASE("faults of kernels: exactly the checks that cover the faulty code fail
         REQUIRE(first != checks.end());
         CHECK_THAT(first->verdict.fault.where, Catch::Contains(row.where));
         CHECK_THAT(first->verdict.result, Catch::Contains(row.result));
+        if (row.where[0] == '\0') continue;  // the torus lost packets, an internal error
         CHECK(first->verdict.fault.expected != first->verdict.fault.got);
     }
 }
