@@ -114,6 +114,7 @@ Verdict check_bus(Session& session) {
 // of each row, from word kOffset of the row on.
 constexpr std::size_t kRows = 3, kOffset = 2;
 struct Rounds {
+    const char* kind;  // "rotation"
     std::size_t pes, words, rounds, pitch = words + 3;
 
     // Calls transfer(round, distance, memory) in each round, and checks the blocks that it returns, [PE][kRows][words]:
@@ -133,7 +134,7 @@ struct Rounds {
                 expected[w] = source[(pe * kRows + row) * pitch + kOffset + w % words];
             }
             session.read("blocks", blocks, got);
-            const std::string name = fmt::format("transfer {} of {} PEs, distance {}", round + 1, pes, distance);
+            const std::string name = fmt::format("{} {} of {} PEs", kind, round + 1, pes);
             if (auto verdict = difference(expected, got, name, kRows * words, "PE")) return verdict;
         }
         return {};
@@ -145,7 +146,7 @@ struct Rounds {
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Bus bus(session, counted, Distribution(static_cast<std::uint32_t>(pes)));
-    const Rounds rounds{pes, words, 6};
+    const Rounds rounds{"transfer", pes, words, 6};
     auto blocks = session.buffer<float>("blocks", pes * kRows * words);
     const auto is_broadcast = [](std::size_t round) { return round == 5; };  // every PE sends its block to all
     const auto distance_of = [&](std::size_t round) { return is_broadcast(round) ? 0 : 1 + round * (pes - 1) / 5; };
@@ -167,7 +168,7 @@ Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Ring ring(session, counted, Distribution(static_cast<std::uint32_t>(pes)), kRows, words);
-    const Rounds rounds{pes, words, 12};
+    const Rounds rounds{"rotation", pes, words, 12};
     const auto is_up = [](std::size_t round) { return round % 4 == 3; };
     const auto transfer = [&](std::size_t round, std::size_t, Buffer<float>& memory) -> const Buffer<float>& {
         ring.load(memory, rounds.pitch, kOffset);
