@@ -11,8 +11,8 @@
 #include "host/error.hpp"
 #include "tests/base/test_checkpointing.hpp"
 #include "tests/property/hard_scenes.hpp"
+#include "tests/property/whole_image.hpp"
 #include "tests/ring/small_mapping.hpp"
-#include "tests/ring/whole_image.hpp"
 #include "tests/thorough.hpp"
 #include "tests/torus/random_torus.hpp"
 #include "tests/verify/faults.hpp"
@@ -212,6 +212,11 @@ void compare_counts(Findings& f, const RingSettings& s, const RingResult& result
 
 using Patches = std::vector<SourcePatch>;
 
+/// Ends a render that an injected fault keeps from ending.
+void limit_calls(int& calls, const Patches& patches) {
+    if (!patches.empty() && ++calls > 5'000) throw std::runtime_error("the render does not end");
+}
+
 /// Returns what is wrong with a random render on the ring. `patches` are applied to its kernels.
 std::string check_ring(Session& session, std::uint64_t seed, Seen& seen, const Build* build = nullptr,
                        const Patches& patches = {}) {
@@ -226,7 +231,9 @@ std::string check_ring(Session& session, std::uint64_t seed, Seen& seen, const B
         build->accel == AccelKind::kNone ? simple : RingRenderer(session, scene, simple_settings).render();
     if (random.next() % 2) limit_memory(random, s, counted.pe_memory);
     s.kernels.sources.patches = patches;
-    const ProgressCallback progress = random.next() % 2 ? [](double) {} : ProgressCallback{};
+    ProgressCallback progress;
+    int calls = 0;
+    if (random.next() % 2 || !patches.empty()) progress = [&](double) { limit_calls(calls, patches); };
     INFO(fmt::format("{}x{}, {} on {} PEs of {} bytes, {} by {}, work {}, device pixels {}", s.mapping.width,
                      s.mapping.height, mapping_text(s.mapping), s.mapping.pes, s.machine.pe_memory_bytes.value_or(0),
                      antialias_name(s.antialias.method), exchange_name(s.antialias.exchange), s.work_per_launch,
@@ -389,13 +396,42 @@ TEST_CASE("an injected fault gives another image or count", "[property][faults]"
         const Build& build;
         decltype(&check_ring) check = check_ring;
     };
-    const Fault faults[] = {{{"shared/share_pixels.h", "k / s.slots * s.row_step", "k / s.slots"}, kRingBuilds[0]},
-                            {{"ring/saved_trees.clh", "    transfer_vec(k, &sum);\n", ""}, kRingBuilds[0]},
-                            {kBorderFault, kRingBuilds[0]},
-                            {kGridFault, kRingBuilds[6]},
-                            {kResumedLaunchFault, kTorusBuilds[0], check_torus}};
+    const Build &ring = kRingBuilds[0], &grid = kRingBuilds[6], &bvh = kRingBuilds[8], &reduced_bvh = kRingBuilds[9],
+                &torus = kTorusBuilds[0];
+    const std::vector<Fault> faults = {
+        {{"shared/share_pixels.h", "k / s.slots * s.row_step", "k / s.slots"}, ring},
+        {{"ring/saved_trees.clh", "    transfer_vec(k, &sum);\n", ""}, ring},
+        {kBorderFault, ring},
+        {kResumedLaunchFault, torus, check_torus},
+        {kGridFault, grid},
+        {{"ring/saved_trees.clh", "    transfer_index(k, &t->level);\n", ""}, ring},
+        {{"ring/saved_trees.clh", "if (mask_any((t->pending_levels.all & (index)(1u << level)) != (index)(0)))",
+          "if (level == 0)"},
+         ring},
+        {{"ring/saved_trees.clh", "transfer_index(k, &t->events[e].all)", ""}, ring},
+        {{"ring/saved_trees.clh", "    transfer_vec(k, &p->colour);\n", ""}, ring},
+        {{"ring/trace.cl", "const int resumes = progress[group].left > 0;", "const int resumes = 0;"}, ring},
+        {{"ring/trace.cl", "progress[group].left = mine->left;", "progress[group].left = 0;"}, ring},
+        {{"bvh/boxes.clh", "inverse < 0.0f, (index)((RAYA_BVH_HIGH", "inverse < 2.0f, (index)((RAYA_BVH_HIGH"}, bvh},
+        {{"bvh/meet_leaves.clh", "p->distance.all = h.distance;", "p->distance.all = h.distance * 0.99f;"},
+         reduced_bvh},
+        {{"bvh/leaves.clh", "return popcount(crossed) & 1u;", "return crossed & 1u;"}, bvh},
+        {{"bvh/boxes.clh", "const mask enters = near <= far;", "const mask enters = near + 0.01f <= far;"}, bvh},
+        {{"bvh/boxes.clh", "popcount(entered) - 1", "popcount(entered) - 2 + (popcount(entered) == 1)"}, bvh},
+        {{"bvh/descent.clh", "!(p->entries[lane][at] > p->distance.lane[lane])",
+          "!(p->entries[lane][at] * 1.01f > p->distance.lane[lane])"},
+         bvh},
+        {{"bvh/descent.clh", "!shadow || p->object.lane[lane]", "p->object.lane[lane]"}, bvh},
+        {{"bvh/leaves.clh", "number < h->object;", "number > h->object;"}, bvh},
+        {{"bvh/leaves.clh", "crosses_edge(seen[2], seen[3]) ^ crosses_edge(seen[3], seen[0])",
+          "crosses_edge(seen[2], seen[0])"},
+         bvh},
+        {{"geometry/cone.clh", "choose(in & mask_not(out & (x.t_out <= x.t_in))", "choose(in & mask_not(out)"}, bvh},
+        {{"bvh/meet_leaves.clh", "raya_link_number(p->link[lane]);", "raya_link_number(p->link[lane]) & ~1u;"},
+         reduced_bvh},
+        {{"bvh/ray_pool.clh", "m & mask_not(done);", "m & mask_not(done) & (r->direction.x > 0.0f);"}, bvh}};
     Session session(choose_device(""));
-    for (const Fault& fault : faults) {
+    for (const Fault& fault : quick_of(5, faults)) {
         CAPTURE(fault.patch.file, fault.patch.replace);
         Seen seen;
         bool is_detected = false;

@@ -1,13 +1,12 @@
 // A PE's grid or BVH selects the objects that are tested and never changes the image (`--accel grid`, `--accel bvh`):
-// cases that random scenes (tests/property) rarely have, and faults of the traversal.
+// cases that random scenes (tests/property) rarely have.
 #include <catch2/catch.hpp>
-#include <map>
 
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
-#include "tests/property/hard_scenes.hpp"
 #include "tests/ring/render_scene.hpp"
 #include "tests/thorough.hpp"
+#include "tests/torus/render_torus.hpp"
 
 namespace raya {
 namespace {
@@ -113,55 +112,6 @@ TEST_CASE("a grid or BVH saves 95 % of the tests of many small spheres", "[ring]
     CHECK(image_and_events(tree) == image_and_events(plain));
     CHECK(tests_of(plain.events) > 20 * tests_of(tree.events));
     CHECK(tree.pe_memory.job_words == plain.pe_memory.job_words + tree.accel->words);
-}
-
-// Each fault injected into the BVH's kernels must change an image or a count. One scene has objects of every kind, most
-// of them several BVH nodes deep. In the other scene, rays hit many objects at equal distances.
-TEST_CASE("every injected fault in the BVH traversal is detected", "[ring][accel][faults]") {
-    Session session(choose_device(""));
-    Scene copies = crowded_scene(3);  // gets 20 copies of each sphere, more than a leaf holds
-    const std::vector<Sphere> spheres(copies.spheres.begin(), copies.spheres.begin() + 10);
-    for (int i = 0; i < 20; ++i)
-        for (const Sphere& s : spheres) copies.spheres.push_back({s.centre, 1, i < 7 ? 0 : 1});
-    const std::vector<Scene> scenes = {crowded_scene(2), copies};
-    RingSettings settings = raya::settings_of({.width = 24, .height = 20, .pes = 6, .bounces = 3});
-    settings.accel = bvh;
-    const auto results = [&](const char* format) {
-        settings.format = parse_format(format);
-        std::string text;
-        for (const Scene& scene : scenes) {
-            const RingResult result = RingRenderer(session, scene, settings).render();
-            text += image_and_events(result) + std::to_string(tests_of(result.events)) + " ";
-        }
-        return text;
-    };
-    const std::map<std::string, std::string> expected = {{"fp32", results("fp32")}, {"spa22", results("spa22")}};
-    struct Fault {
-        SourcePatch patch;
-        const char* format = "fp32";
-    };
-    const std::vector<Fault> faults = {
-        {{"bvh/boxes.clh", "inverse < 0.0f, (index)((RAYA_BVH_HIGH", "inverse < 2.0f, (index)((RAYA_BVH_HIGH"}},
-        {{"bvh/meet_leaves.clh", "p->distance.all = h.distance;", "p->distance.all = h.distance * 0.99f;"}, "spa22"},
-        {{"bvh/leaves.clh", "return popcount(crossed) & 1u;", "return crossed & 1u;"}},
-        {{"bvh/boxes.clh", "const mask enters = near <= far;", "const mask enters = near + 0.01f <= far;"}},
-        {{"bvh/boxes.clh", "popcount(entered) - 1", "popcount(entered) - 2 + (popcount(entered) == 1)"}},
-        {{"bvh/descent.clh", "!(p->entries[lane][at] > p->distance.lane[lane])",
-          "!(p->entries[lane][at] * 1.01f > p->distance.lane[lane])"}},
-        {{"bvh/descent.clh", "!shadow || p->object.lane[lane]", "p->object.lane[lane]"}},
-        {{"bvh/leaves.clh", "number < h->object;", "number > h->object;"}},
-        {{"bvh/leaves.clh", "crosses_edge(seen[2], seen[3]) ^ crosses_edge(seen[3], seen[0])",
-          "crosses_edge(seen[2], seen[0])"}},
-        {{"geometry/cone.clh", "choose(in & mask_not(out & (x.t_out <= x.t_in))", "choose(in & mask_not(out)"}},
-        {{"bvh/meet_leaves.clh", "raya_link_number(p->link[lane]);", "raya_link_number(p->link[lane]) & ~1u;"},
-         "spa22"},
-        {{"bvh/ray_pool.clh", "m & mask_not(done);", "m & mask_not(done) & (r->direction.x > 0.0f);"}}};
-    for (const Fault& fault : quick_of(2, faults)) {
-        settings.kernels.sources.patches = {fault.patch};
-        check_patches(settings.kernels.sources);
-        CAPTURE(fault.patch.file, fault.patch.replace);
-        CHECK(results(fault.format) != expected.at(fault.format));
-    }
 }
 
 TEST_CASE("a grid that does not fit a PE is refused; the message gives the PE's memory and a remedy", "[ring][accel]") {

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/property/whole_image.hpp"
 #include "tests/ring/render_scene.hpp"
-#include "tests/ring/whole_image.hpp"
 
 namespace raya {
 namespace {

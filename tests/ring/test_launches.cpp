@@ -58,35 +58,6 @@ TEST_CASE("launches report increasing progress; the first report comes when each
     CHECK(reported.size() > 4);
 }
 
-bool is_detected(Session& session, const Scene& scene, const RingSettings& settings, const LaunchResult& expected) {
-    try {
-        return !(launch_result_of(RingRenderer(session, scene, settings).render()) == expected);
-    } catch (const DeviceError&) {  // raya checks the number of finished pixels
-        return true;
-    }
-}
-
-TEST_CASE("every injected fault in the state saved between launches is detected", "[ring][faults]") {
-    const SourcePatch faults[] = {
-        {"ring/saved_trees.clh", "    transfer_index(k, &t->level);\n", ""},
-        {"ring/saved_trees.clh", "transfer_index(k, &t->events[e].all)", ""},
-        {"ring/trace.cl", "const int resumes = progress[group].left > 0;", "const int resumes = 0;"},
-        {"ring/trace.cl", "progress[group].left = mine->left;", "progress[group].left = 0;"},
-    };
-    const Scene scene = project_scene("glass");
-    Session session(choose_device(""));
-    RingCase c{.width = 20, .height = 15, .pes = 4, .group = 1, .record_costs = true};
-    c.antialias.method = AntialiasMethod::kSupersample;
-    RingSettings settings = settings_of(c);
-    settings.work_per_launch = 300;
-    const LaunchResult expected = launch_result_of(RingRenderer(session, scene, settings).render());
-    for (const SourcePatch& fault : faults) {
-        CAPTURE(fault.file, fault.find);
-        settings.kernels.sources.patches = {fault};
-        CHECK(is_detected(session, scene, settings, expected));
-    }
-}
-
 // Maximum work of a launch that completes on the device that truncating_patches() simulates. The device ends the loops
 // of launches with more work. Such a launch sets the cut flag and corrupts counts, costs, pixels and saved ray trees.
 constexpr std::uint32_t kMaxCompletedWork = 40;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include "host/ring/mapping.hpp"
@@ -204,28 +203,4 @@ TEST_CASE("random mapping: the start of random:1 is the recorded one", "[mapping
     std::vector<std::uint32_t> owners;
     for (std::uint32_t x = 0; x < 12; ++x) owners.push_back(raya_owner({64, 64, 16, 1, RAYA_RANDOM}, 0, x));
     CHECK(owners == std::vector<std::uint32_t>{12, 9, 15, 13, 2, 10, 13, 10, 14, 10, 14, 5});
-}
-
-TEST_CASE("random mapping: the owners of neighbouring pixels, and of two seeds, are independent", "[mapping]") {
-    constexpr std::uint32_t kPes = 16;
-    for (const std::uint32_t seed : {1u, 2u, 1000u})
-        for (const std::uint32_t side : {64u, 256u}) {
-            const raya_mapping m{side, side, kPes, seed, RAYA_RANDOM},
-                next_seed{side, side, kPes, seed + 1, RAYA_RANDOM};
-            std::vector<double> across(kPes), down(kPes), seeds(kPes);  // [difference of owners]: number of pixels
-            for (std::uint32_t j = 0; j + 1 < side; ++j)
-                for (std::uint32_t x = 0; x + 1 < side; ++x) {
-                    const std::uint32_t owner = raya_owner(m, j, x);
-                    ++across[(raya_owner(m, j, x + 1) + kPes - owner) % kPes];
-                    ++down[(raya_owner(m, j + 1, x) + kPes - owner) % kPes];
-                    ++seeds[(raya_owner(next_seed, j, x) + kPes - owner) % kPes];
-                }
-            for (const std::vector<double>& differences : {across, down, seeds}) {
-                const double expected = std::accumulate(differences.begin(), differences.end(), 0.0) / kPes;
-                double chi_square = 0;
-                for (const double d : differences) chi_square += (d - expected) * (d - expected) / expected;
-                CAPTURE(seed, side);
-                CHECK(chi_square < 45);  // 15 degrees of freedom: p = 0.0001
-            }
-        }
 }

@@ -104,44 +104,28 @@ TEST_CASE("PEs exchange the whole share, or the minimum number of equal parts of
     CHECK((band(100) == 100 && band(99) == 50 && band(50) == 50 && band(49) == 34 && band(1) == 1));
 }
 
-TEST_CASE("a scene that leaves no memory for a pixel is refused with both figures and the remedy", "[ring]") {
-    const auto plan = [](std::uint64_t words) {
-        return plan_pe_memory(machine_named("spa"),
-                              {.scene = "big.nff", .job_words = words, .bounces = 8, .share_pixels = 256});
-    };
-    const std::uint64_t words = (32 * 1024 - ray_tree_bytes(8) - 12) / 4;  // the maximum number that fits
-    CHECK(plan(words).block_pixels == 1);
-    try {
-        plan(words + 1);
-        FAIL("plan_pe_memory() has accepted a scene that is one word too large");
-    } catch (const DoesNotFit& error) {
-        CHECK(error.needed_bytes == 4 * (words + 1) + ray_tree_bytes(8) + 12);
-        CHECK(error.memory_bytes == 32 * 1024);
-    }
-    const std::uint64_t hundred_kb = (100 * 1024 - ray_tree_bytes(8) - 12) / 4;
-    CHECK_THROWS_WITH(plan(hundred_kb),
-                      Contains("big.nff") && Contains("100.0 KB") && Contains("32 KB") && Contains("the SPA") &&
-                          Contains("--machine grande") &&
-                          !Contains("more PEs"));  // more PEs would not help: every PE holds the whole scene
-}
-
-TEST_CASE("a share that leaves no memory for a pixel in transit is refused with both figures and the remedy",
-          "[ring]") {
-    for (const auto method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample}) {
-        const std::string name = antialias_name(method);
-        CAPTURE(name);
+TEST_CASE("a scene or share that leaves no memory for a pixel is refused with both figures and the remedy", "[ring]") {
+    for (const auto method : {AntialiasMethod::kNone, AntialiasMethod::kFilter, AntialiasMethod::kSupersample}) {
+        const bool smoothed = method != AntialiasMethod::kNone;
+        CAPTURE(antialias_name(method));
         PeDemand d = demand(700, 333, method);
-        const std::uint64_t minimum = bytes_without_band(d) + 12;
-        CHECK(plan_pe_memory(machine_of(minimum), d).band_pixels == 1);
-        CHECK_THROWS_AS(plan_pe_memory(machine_of(minimum - 1), d), DoesNotFit);
-        CHECK_NOTHROW(plan_pe_memory(machine_of(minimum - 1), demand(700, 333)));
-        d.scene = "wide.nff";
-        d.share_pixels = 1;
-        d.job_words = (50 * 1024 - bytes_without_band(demand(0, 1, method)) - 12) /
-                      4;  // needs 50 KB, rounded down to whole words
-        CHECK_THROWS_WITH(plan_pe_memory(machine_named("spa"), d),
-                          Contains("wide.nff with --antialias " + name) && Contains("50.0 KB") && Contains("32 KB") &&
-                              Contains("the SPA") && Contains("more PEs") && Contains("smaller image") &&
-                              Contains("--machine grande"));
+        const std::uint64_t minimum = smoothed ? bytes_without_band(d) + 12 : 4 * 700 + ray_tree_bytes(8) + 12;
+        const PeMemory memory = plan_pe_memory(machine_of(minimum), d);
+        CHECK((smoothed ? memory.band_pixels : memory.block_pixels) == 1);
+        try {
+            plan_pe_memory(machine_of(minimum - 1), d);
+            FAIL("plan_pe_memory() has accepted a scene that is one byte too large");
+        } catch (const DoesNotFit& error) {
+            CHECK(error.needed_bytes == minimum);
+            CHECK(error.memory_bytes == minimum - 1);
+        }
+        d.scene = "big.nff";
+        d.job_words = 100'000;
+        CHECK_THROWS_WITH(plan_pe_memory(machine_named("spa"), d), Contains("big.nff") && Contains("32 KB") &&
+                                                                       Contains("the SPA") &&
+                                                                       Contains("--machine grande"));
+        const auto more_pes = Contains("more PEs");
+        if (smoothed) CHECK_THROWS_WITH(plan_pe_memory(machine_named("spa"), d), more_pes);
+        if (!smoothed) CHECK_THROWS_WITH(plan_pe_memory(machine_named("spa"), d), !more_pes);  // every PE has the scene
     }
 }

@@ -84,58 +84,11 @@ Simulated simulated(const CostImage& image, const raya_mapping& m, const Dynamic
     return run;
 }
 
-std::uint64_t sum_of(const Cycles& cycles) { return std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0}); }
-
 }  // namespace
 
 TEST_CASE("a static load is the sum of the costs of the PE's pixels", "[schedule]") {
     CHECK(static_load({3, 2, {1, 20, 300, 4'000, 50'000, 600'000}}, {3, 2, 3, 1, RAYA_FOLD_CYCLIC}).per_pe ==
           Cycles{1 + 50'000, 20 + 600'000, 300 + 4'000});  // PE i owns (0, i) and (1, i + 1)
-    constexpr std::uint64_t kSeed = 1;
-    SplitMix random(kSeed);
-    for (int i = 0; i < 400; ++i) {
-        const raya_mapping m = small_mapping(random, 30);
-        const auto [width, height, pes, offset, fold] = m;
-        CAPTURE(kSeed, i, width, height, pes, offset, fold);
-        const CostImage image = random_image(random, width, height);
-        Cycles sums;
-        for (std::uint32_t pe = 0; pe < pes; ++pe) {  // uses the PE's list of pixels instead of raya_owner()
-            const raya_share share = raya_share_of(m, pe);
-            sums.push_back(0);
-            for (std::uint32_t k = 0; k < raya_share_size(share); ++k) {
-                const raya_pixel pixel = raya_pixel_of(m, share, k);
-                sums.back() += image.cycles[pixel.row * width + pixel.column];
-            }
-        }
-        const Load load = static_load(image, m);
-        CHECK(load.per_pe == sums);
-        CHECK(sum_of(load.per_pe) == total_cycles(image));
-        CHECK(load.max >= lower_bound(image, pes));
-    }
-}
-
-TEST_CASE("imbalance_of_offsets() agrees with static_load() to the bit", "[schedule]") {
-    constexpr std::uint64_t kSeed = 2;
-    SplitMix random(kSeed);
-    const auto compare = [&](const CostImage& image, std::uint32_t pes, std::uint32_t fold,
-                             const std::vector<std::uint32_t>& offsets) {
-        const auto imbalances = imbalance_of_offsets(image, pes, fold, offsets);
-        REQUIRE(imbalances.size() == offsets.size());
-        for (std::size_t k = 0; k < offsets.size(); ++k) {
-            CAPTURE(kSeed, image.width, image.height, pes, fold, offsets[k]);
-            CHECK(imbalances[k] == static_load(image, {image.width, image.height, pes, offsets[k], fold}).imbalance);
-        }
-    };
-    for (int i = 0; i < 300; ++i) {
-        const auto [width, height, pes, offset, fold] = small_mapping(random, 30);
-        std::vector<std::uint32_t> offsets(width);
-        std::iota(offsets.rbegin(), offsets.rend(), 0u);
-        compare(random_image(random, width, height), pes, fold, offsets);
-    }
-    const CostImage large = random_image(random, 512, 512);
-    for (const std::uint32_t pes : {256u, 512u, 1'000u})
-        for (const std::uint32_t fold : {RAYA_FOLD_CYCLIC, RAYA_FOLD_BLOCK})
-            compare(large, pes, fold, {0, 1, 16, 23, 255, 256, 511});
 }
 
 TEST_CASE("dynamic and hybrid schedules agree with the simulation", "[schedule]") {
@@ -180,14 +133,6 @@ TEST_CASE("speed-up counts only the pixels' work, and is defined if all costs ar
     CHECK(lower_bound({3, 1, {5, 5, 5}}, 2) == 8);
     CHECK(lower_bound({3, 1, {1, 9, 1}}, 2) == 9);
     CHECK(lower_bound(zero_costs, 3) == 0);
-}
-
-TEST_CASE("a plan's text omits default values at its end", "[schedule]") {
-    CHECK(dynamic_text({4, 0, 0}) == "dynamic:4");
-    CHECK(dynamic_text({4, 9, 0}) == "dynamic:4,9");
-    CHECK(dynamic_text({4, 0, 0, 7}) == "dynamic:4,0,7");
-    CHECK(dynamic_text({4, 0, 0.5}) == "hybrid:4,0,0.5");
-    CHECK(dynamic_text({4, 0, 0.5, 7}) == "hybrid:4,0,0.5,7");
 }
 
 TEST_CASE("schedules reject invalid cost images, mappings and plans, and mappings that do not match the cost image",
