@@ -160,11 +160,9 @@ class NeighbourExchange {
 
 /// Arguments that all launches of RingFilter and RingContrast have in common.
 struct ExchangeSetup {
-    Session& session;
     Buffer<std::uint32_t> broadcast;  // the job's words
     Distribution pes;                 // PEs on the device
     std::uint32_t capacity = 0;       // number of pixels in the memory of each PE
-    std::uint32_t group_size = 1;
 };
 
 using AddNeighboursKernel = DescribedKernel<"ring/filter.cl", "add_neighbours", const Buffer<std::uint32_t>&,
@@ -188,6 +186,8 @@ class RingFilter {
                        raya_u32 first_side, raya_u32 second_side);
     void add_neighbours(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity);
 
+    Session& session_;
+    std::uint32_t group_size_;
     ExchangeSetup setup_;
     AddNeighboursKernel add_neighbours_;
     TakeMeansKernel take_means_;
@@ -216,6 +216,8 @@ class RingContrast {
     void mark_contrasts(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity,
                         const Buffer<float>& pixels);
 
+    Session& session_;
+    std::uint32_t group_size_;
     ExchangeSetup setup_;
     float threshold_;
     MarkContrastsKernel mark_contrasts_;

@@ -180,31 +180,6 @@ void check_mapping(const CostImage& image, const raya_mapping& mapping) {
         throw std::invalid_argument("the mapping has another size than the cost image");
 }
 
-/// Returns the owner of each slot, [row][slot]. `without_offset` must have an offset of 0, so that columns are slots.
-std::vector<std::uint32_t> owners_of_slots(const raya_mapping& without_offset) {
-    std::vector<std::uint32_t> owners;
-    owners.reserve(std::size_t{without_offset.width} * without_offset.height);
-    for (std::uint32_t row = 0; row < without_offset.height; ++row)
-        for (std::uint32_t slot = 0; slot < without_offset.width; ++slot)
-            owners.push_back(raya_owner(without_offset, row, slot));
-    return owners;
-}
-
-/// Adds the PEs' loads under the cyclic mapping with `offset` to `per_pe`. `owners`: [row][slot].
-void add_loads_of_offset(const CostImage& image, const std::vector<std::uint32_t>& owners, std::uint32_t offset,
-                         std::vector<std::uint64_t>& per_pe) {
-    const std::uint64_t* costs = image.cycles.data();
-    const std::uint32_t* owner = owners.data();
-    std::uint64_t first = 0;  // column of slot 0 in this row: (row x offset) mod W
-    for (std::uint32_t row = 0; row < image.height; ++row) {
-        for (std::uint64_t column = first; column < image.width; ++column) per_pe[*owner++] += costs[column];
-        for (std::uint64_t column = 0; column < first; ++column) per_pe[*owner++] += costs[column];
-        costs += image.width;
-        first += offset;
-        if (first >= image.width) first -= image.width;
-    }
-}
-
 /// Adds the cost of each PE's static part to `busy`: the first `fraction` of its pixels, which are not scheduled
 /// dynamically. Returns a flag for each pixel of the image: true if the pixel is in a static part.
 std::vector<bool> add_static_costs(const CostImage& image, const raya_mapping& static_mapping, double fraction,
@@ -286,16 +261,10 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
     if (fold != RAYA_FOLD_CYCLIC && fold != RAYA_FOLD_BLOCK)
         throw std::invalid_argument(
             "`fold` must be RAYA_FOLD_CYCLIC or RAYA_FOLD_BLOCK: only cyclic mappings have an offset");
-    const auto owners = owners_of_slots({image.width, image.height, pes, 0, fold});
     std::vector<double> imbalances;
-    std::vector<std::uint64_t> per_pe;
     for (const std::uint32_t offset : offsets) {
         if (offset >= image.width) throw std::invalid_argument("an offset must be 0..W-1");
-        per_pe.assign(pes, 0);
-        add_loads_of_offset(image, owners, offset, per_pe);
-        Load load = load_of(std::move(per_pe));
-        imbalances.push_back(load.imbalance);
-        per_pe = std::move(load.per_pe);  // reuses the memory for the next offset
+        imbalances.push_back(static_load(image, {image.width, image.height, pes, offset, fold}).imbalance);
     }
     return imbalances;
 }

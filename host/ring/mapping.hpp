@@ -98,9 +98,7 @@ struct Schedule {
 /// Returns the load with a static mapping: a PE's load is the sum of its pixels' costs.
 Load static_load(const CostImage& image, const raya_mapping& mapping);
 
-/// Returns static_load().imbalance of the cyclic mapping for each offset. `fold`: RAYA_FOLD_CYCLIC or _BLOCK. Faster
-/// than calling static_load() for each offset, because it computes the owner once per pixel instead of once per pixel
-/// and offset.
+/// Returns static_load().imbalance of the cyclic mapping for each offset. `fold`: RAYA_FOLD_CYCLIC or _BLOCK.
 std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t pes, std::uint32_t fold,
                                          const std::vector<std::uint32_t>& offsets);
 

@@ -70,16 +70,15 @@ bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel
     return bytes <= device.local_memory_bytes && (accel == AccelKind::kNone || bytes <= kMaxCopiedBytes);
 }
 
-PackedJob pack_in_span(const Session& session, const Scene& scene, const RingSettings& settings,
-                       const LengthScale& scale) {
-    const SpanLog::Span span = session.span("pack scene");
-    return pack_for_ring(scene, settings, scale);
-}
-
 RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSettings& settings,
                       const std::function<void()>& packed) {
     const LengthScale scale = length_scale(scene, settings.format);
-    RingJob job{pack_in_span(session, scene, settings, scale), {}, 0, scale, scene.object_count()};
+    const auto pack = [&] {
+        const SpanLog::Span span = session.span("pack scene");
+        return pack_for_ring(scene, settings, scale);
+    };
+    RingJob job{{.scale = scale, .objects = scene.object_count()}, pack()};
+    job.has_patches = job.job.has_patches();
     if (packed) packed();
     if (settings.accel.kind == AccelKind::kNone) return job;
     const SpanLog::Span span = session.span("divide scene");
@@ -88,15 +87,6 @@ RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSett
     job.accel_s = seconds_since(start);
     return job;
 }
-
-// The members of a RingJob, other than the job's words, that rank 0 sends to other ranks.
-struct RingFigures {
-    AccelSummary accel;
-    double accel_s = 0;
-    LengthScale scale;
-    std::uint64_t objects = 0;
-    bool has_patches = false;
-};
 
 }  // namespace
 
@@ -182,23 +172,17 @@ AccelSummary append_accel(PackedJob& job, const RingSettings& settings) {
 
 RingJob make_ring_job(const Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks,
                       const std::function<void()>& packed) {
-    if (!ranks.is_first()) {
-        RingFigures figures;
-        std::vector<std::uint32_t> words;
-        ranks.broadcast(figures);
-        ranks.broadcast(words);
-        const auto header = record_at<raya_job>(words, 0);
-        return {PackedJob(header, std::move(words), figures.has_patches), figures.accel, figures.accel_s, figures.scale,
-                figures.objects};
-    }
-    RingJob job = pack_ring_job(session, scene, settings, packed);
-    if (!ranks.has_several()) return job;
+    std::optional<RingJob> job;
+    if (ranks.is_first()) job = pack_ring_job(session, scene, settings, packed);
+    if (!ranks.has_several()) return *std::move(job);
     const SpanLog::Span span = session.span("send scene");
-    RingFigures figures{job.accel, job.accel_s, job.scale, job.objects, job.job.has_patches()};
-    std::vector<std::uint32_t> words = job.job.words();
+    JobFigures figures = job ? *job : JobFigures{};
+    std::vector<std::uint32_t> words = job ? job->job.words() : std::vector<std::uint32_t>();
     ranks.broadcast(figures);
     ranks.broadcast(words);
-    return job;
+    if (job) return *std::move(job);
+    const auto header = record_at<raya_job>(words, 0);
+    return {figures, PackedJob(header, std::move(words), figures.has_patches)};
 }
 
 namespace {
@@ -241,13 +225,10 @@ void Tracer::warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t
 
 void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                    const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-                   const ProgressCallback& progress, const std::function<void()>& host_work) {
+                   const ProgressCallback& progress) {
     reset_progress(label, range.begin);
-    const auto launch_part = [&](std::uint32_t work, bool resumes) {
+    const auto launch_part = [&](std::uint32_t work, bool) {
         launch(label, job, range, points, work, marks, pixels, counters);
-        if (resumes || !host_work) return;
-        session_.flush();
-        host_work();
     };
     const auto end = [&] {
         std::vector<raya_trace_progress> pes(pes_.count());

@@ -98,13 +98,18 @@ LaunchWork launch_work(const RingSettings& settings, const KernelOptions& option
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
                              const DeviceInfo& device);
 
-/// A packed job with its grid or BVH.
-struct RingJob {
-    PackedJob job;
+/// What is known of a packed job besides its words.
+struct JobFigures {
     AccelSummary accel;
     double accel_s = 0;  // measured build time of the accelerator, seconds
     LengthScale scale;
     std::uint64_t objects = 0;  // number of objects of the scene
+    bool has_patches = false;
+};
+
+/// A packed job with its grid or BVH.
+struct RingJob : JobFigures {
+    PackedJob job;
 };
 
 /// Packs a scene for the ring machine, with its mapping but without an accelerator.
@@ -155,11 +160,11 @@ class Tracer {
 
     /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; supersampling points only of the marked
     /// pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of work,
-    /// so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Calls `host_work` on the
-    /// host while the first launch runs. Throws DeviceError if the device ends loops early even in the smallest launch.
+    /// so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Throws DeviceError if the
+    /// device ends loops early even in the smallest launch.
     void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-               const ProgressCallback& progress = {}, const std::function<void()>& host_work = {});
+               const ProgressCallback& progress = {});
 
     const KernelOptions& options() const { return options_; }
     const std::string& build_options() const { return build_options_; }

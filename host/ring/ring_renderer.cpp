@@ -25,6 +25,23 @@ std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(memory.block_pixels, max_pixels));
 }
 
+constexpr std::uint32_t kFirstBandDivisor = 64;  // the first band is 1 / kFirstBandDivisor of a share
+constexpr std::uint32_t kMinPixelsPerLane = 16;  // minimum in the first band, so that no lane is idle
+
+// Returns the length of the next band in pixels of each PE. `last_band`: length of the last band, which took `seconds`.
+// The new length is scaled so that the band takes `target_s` seconds, but is between half and four times the last
+// length.
+std::uint32_t next_band(std::uint32_t last_band, double seconds, double target_s) {
+    const double factor = std::clamp(target_s / std::max(seconds, 1e-6), 0.5, 4.0);
+    return static_cast<std::uint32_t>(std::clamp(last_band * factor, 1.0, 1e9));
+}
+
+Image black_image(const raya_mapping& m) {
+    Image image{static_cast<int>(m.width), static_cast<int>(m.height), {}};
+    resize_in_huge_pages(image.rgb, 3 * std::size_t{m.width} * m.height);
+    return image;
+}
+
 }  // namespace
 
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks,
@@ -65,11 +82,7 @@ void RingRenderer::build_exchange(KernelOptions options) {
     options.lanes = 1;
     options.accel = RAYA_ACCEL_NONE;  // these kernels do not read the scene
     Kernels kernels(session_, options, settings_.kernels.sources);
-    const ExchangeSetup setup{.session = session_,
-                              .broadcast = broadcast_,
-                              .pes = pes_,
-                              .capacity = memory_.block_pixels,
-                              .group_size = options.group_size};
+    const ExchangeSetup setup{.broadcast = broadcast_, .pes = pes_, .capacity = memory_.block_pixels};
     exchange_ = std::make_unique<NeighbourExchange>(session_, communication_, settings_.mapping, memory_.block_pixels,
                                                     memory_.band_pixels, settings_.antialias.exchange, pes_);
     if (settings_.antialias.method == AntialiasMethod::kFilter) {
@@ -93,14 +106,12 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const Checkpoi
     if (checkpointing) resume(result);
     for (std::uint32_t block_begin = 0; block_begin < share_pixels_; block_begin += memory_.block_pixels)
         render_block(block_begin, result, progress);
-    place_gathered_pixels(result);
     if (contrast_) collect_marks(result);
     collect_events(result);
     if (settings_.dynamic && ranks_.is_first()) simulate_schedule(result);
     result.render_s = checkpoints_->seconds();
     result.earlier_s = checkpoints_->earlier_s();
     result.traffic = ranks_.traffic() - traffic_before;
-    gathered_ = {};
     describe(result);
     return result;
 }
@@ -113,10 +124,13 @@ void RingRenderer::render_block(std::uint32_t block_begin, RingResult& result, c
     for (std::uint32_t window_begin = block_begin; window_begin < end; window_begin += window_) {
         if (resumed_ && position_.window > window_begin) continue;
         const PixelRange range{window_begin, window_begin, std::min(end, window_begin + window_)};
-        trace(range, result, progress);
+        trace(0, range, result, progress);
         if (filter_) filter_->apply(pixels_, *exchange_);
-        if (contrast_) supersample(result, progress);
-        gather(range);
+        if (contrast_) {
+            if (!resumed_ || position_.pass == 0) contrast_->apply(pixels_, *exchange_);
+            trace(1, range, result, progress);
+        }
+        gather(range, result);
         collect_costs(range, result);
         resumed_ = false;
     }
@@ -125,6 +139,7 @@ void RingRenderer::render_block(std::uint32_t block_begin, RingResult& result, c
 void RingRenderer::prepare(RingResult& result) {
     const SpanLog::Span span = session_.span("prepare");
     const std::size_t pixels = std::size_t{settings_.mapping.width} * settings_.mapping.height;
+    if (ranks_.is_first()) result.image = black_image(settings_.mapping);
     std::optional<CostImage> empty_costs;
     if (records_costs() && ranks_.is_first())
         empty_costs = CostImage{settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
@@ -138,34 +153,32 @@ void RingRenderer::prepare(RingResult& result) {
     }
 }
 
-void RingRenderer::trace(PixelRange range, RingResult& result, const ProgressCallback& progress) {
-    const SpanLog::Span span = session_.span(kTracePass);
-    const double passes = static_cast<double>(counters_.size());
+// Traces the range in pass 0 (trace) or 1 (supersample); with checkpoints, band by band.
+void RingRenderer::trace(std::uint32_t pass, PixelRange range, RingResult& result, const ProgressCallback& progress) {
+    const char* const label = pass == 0 ? kTracePass : kSupersamplePass;
+    const SpanLog::Span span = session_.span(label);
+    if (resumed_ && position_.pass > pass) return;
+    if (resumed_ && position_.pass == pass) range.begin = std::max(range.begin, position_.next);
+    PixelRange band = range;
     const auto report = [&](double done) {
         ranks_.poll_failures();
-        if (progress) progress((range.begin + done * (range.end - range.begin)) / share_pixels_ / passes);
+        const double pixels = band.begin + done * (band.end - band.begin);
+        if (progress) progress((pass + pixels / share_pixels_) / static_cast<double>(counters_.size()));
     };
-    trace_in_bands(0, range, result, [&](PixelRange band) {
-        range = band;
-        tracer_->trace(kTracePass, broadcast_, band, RAYA_POINTS_OWN, no_marks_, pixels_, counters_[0],
-                       progress || polls_failures() ? report : ProgressCallback{},
-                       [&] { place_gathered_and_allocate(result); });
-    });
-}
-
-void RingRenderer::supersample(RingResult& result, const ProgressCallback& progress) {
-    const SpanLog::Span span = session_.span(kSupersamplePass);
-    if (!resumed_ || position_.pass == 0) contrast_->apply(pixels_, *exchange_);
-    PixelRange range{0, 0, share_pixels_};
-    const auto report = [&](double done) {
-        ranks_.poll_failures();
-        if (progress) progress((1 + (range.begin + done * (range.end - range.begin)) / share_pixels_) / 2);
-    };
-    trace_in_bands(1, range, result, [&](PixelRange band) {
-        range = band;
-        tracer_->trace(kSupersamplePass, broadcast_, band, settings_.antialias.points, contrast_->marks(), pixels_,
-                       counters_[1], progress || polls_failures() ? report : ProgressCallback{});
-    });
+    for (; band.begin < range.end; band.begin = band.end) {
+        const Clock::time_point start = Clock::now();
+        band.end = checkpoints_->active() ? band.begin + std::min(band_, range.end - band.begin) : range.end;
+        tracer_->trace(label, broadcast_, band, pass == 0 ? RAYA_POINTS_OWN : settings_.antialias.points,
+                       pass == 0 ? no_marks_ : contrast_->marks(), pixels_, counters_[pass],
+                       progress || polls_failures() ? report : ProgressCallback{});
+        if (!checkpoints_->active()) continue;
+        // The next band must have the same length in all ranks, so the slowest rank determines it.
+        const std::vector<double> seconds = ranks_.all_gather(seconds_since(start));
+        band_ = next_band(band_, *std::max_element(seconds.begin(), seconds.end()), checkpoints_->band_s());
+        position_ = {pass, range.window_start, band.end};
+        const double fraction = (pass + 1.0 * band.end / share_pixels_) / static_cast<double>(counters_.size());
+        checkpoints_->save_if_due(fraction, [&](RenderState& state) { visit_state(state, result); });
+    }
 }
 
 // OpenCL work-groups cannot distribute pixels among each other at run time, so the dynamic distribution is simulated
@@ -194,41 +207,6 @@ void RingRenderer::describe(RingResult& result) {
     result.commands = session_.profile().summary();
 }
 
-namespace {
-
-constexpr std::uint32_t kFirstBandDivisor = 64;  // the first band is 1 / kFirstBandDivisor of a share
-constexpr std::uint32_t kMinPixelsPerLane = 16;  // minimum in the first band, so that no lane is idle
-
-// Returns the length of the next band in pixels of each PE. `last_band`: length of the last band, which took `seconds`.
-// The new length is scaled so that the band takes `target_s` seconds, but is between half and four times the last
-// length.
-std::uint32_t next_band(std::uint32_t last_band, double seconds, double target_s) {
-    const double factor = std::clamp(target_s / std::max(seconds, 1e-6), 0.5, 4.0);
-    return static_cast<std::uint32_t>(std::clamp(last_band * factor, 1.0, 1e9));
-}
-
-}  // namespace
-
-void RingRenderer::trace_in_bands(std::uint32_t pass, PixelRange range, RingResult& result,
-                                  const std::function<void(PixelRange)>& trace) {
-    if (!checkpoints_->active()) return trace(range);
-    if (resumed_ && position_.pass > pass) return;
-    if (resumed_ && position_.pass == pass) range.begin = std::max(range.begin, position_.next);
-    while (range.begin < range.end) {
-        const Clock::time_point start = Clock::now();
-        PixelRange band = range;
-        band.end = range.begin + std::min(band_, range.end - range.begin);
-        trace(band);
-        range.begin = band.end;
-        // The next band must have the same length in all ranks, so the slowest rank determines it.
-        const std::vector<double> seconds = ranks_.all_gather(seconds_since(start));
-        band_ = next_band(band_, *std::max_element(seconds.begin(), seconds.end()), checkpoints_->band_s());
-        position_ = {pass, range.window_start, range.begin};
-        const double fraction = (pass + 1.0 * range.begin / share_pixels_) / static_cast<double>(counters_.size());
-        checkpoints_->save_if_due(fraction, [&](RenderState& state) { visit_state(state, result); });
-    }
-}
-
 StateSettings RingRenderer::state_settings() const {
     const raya_mapping& m = settings_.mapping;
     const Antialias& a = settings_.antialias;
@@ -252,7 +230,6 @@ StateSettings RingRenderer::state_settings() const {
 }
 
 void RingRenderer::visit_state(RenderState& state, RingResult& result) {
-    place_gathered_and_allocate(result);
     for (std::uint32_t* number : {&position_.pass, &position_.window, &position_.next}) state.value(*number);
     if (position_.pass >= counters_.size()) throw UserError("damaged");
     state.value(communication_);
@@ -284,47 +261,18 @@ void RingRenderer::resume(RingResult& result) {
 
 namespace {
 
-constexpr std::uint32_t kInterleavedPes = 16;
-
-/// Calls visit(PE, pixel, image pixel) for the pixels in `range` of the share of each of `count` PEs from `first_pe`
-/// on. The arguments are the index of the PE, from 0 on, the index of the pixel in the PE's device buffer, and the
-/// index of the pixel in the image. Neighbouring PEs often own neighbouring columns, so the runs of kInterleavedPes PEs
-/// are interleaved for memory locality.
+/// Calls visit(pixel, image pixel) for the pixels in `range` of the share of a PE. The arguments are the index of the
+/// pixel in the PE's device buffer, and the index of the pixel in the image.
 template <class Visit>
-void for_each_pixel(const raya_mapping& m, std::uint32_t first_pe, std::uint32_t count, PixelRange range,
-                    Visit&& visit) {
-    for (std::uint32_t first = 0; first < count; first += kInterleavedPes) {
-        const std::uint32_t pes = std::min(kInterleavedPes, count - first);
-        std::array<raya_share, kInterleavedPes> shares{};
-        for (std::uint32_t i = 0; i < pes; ++i) shares[i] = raya_share_of(m, first_pe + first + i);
-        std::uint32_t pixels = 0;
-        for (std::uint32_t k = range.begin; k < range.end; k += pixels) {
-            std::array<raya_pixel_run, kInterleavedPes> runs{};
-            pixels = range.end - k;
-            for (std::uint32_t i = 0; i < pes; ++i) {
-                const std::uint32_t size = raya_share_size(shares[i]);
-                if (k >= size) continue;
-                runs[i] = raya_pixel_run_of(m, shares[i], k);
-                pixels = std::min({pixels, size - k, runs[i].left + 1});
-            }
-            for (std::uint32_t i = 0; i < pes; ++i) {
-                if (k >= raya_share_size(shares[i])) continue;
-                const std::size_t row = std::size_t{runs[i].pixel.row} * m.width;
-                std::uint32_t column = runs[i].pixel.column;
-                for (std::uint32_t j = 0; j < pixels; ++j) {
-                    visit(first + i, k - range.window_start + j, row + column);
-                    column += runs[i].step;
-                    if (column >= m.width) column -= m.width;
-                }
-            }
-        }
+void for_each_pixel(const raya_mapping& m, std::size_t pe, PixelRange range, Visit&& visit) {
+    const raya_share share = raya_share_of(m, static_cast<std::uint32_t>(pe));
+    const std::uint32_t end = std::min(range.end, raya_share_size(share));
+    if (range.begin >= end) return;
+    raya_pixel_run run = raya_pixel_run_of(m, share, range.begin);
+    for (std::uint32_t k = range.begin; k < end; ++k) {
+        if (k > range.begin) run = raya_pixel_run_at(run, m, share, k);
+        visit(std::size_t{k - range.window_start}, std::size_t{run.pixel.row} * m.width + run.pixel.column);
     }
-}
-
-Image black_image(const raya_mapping& m) {
-    Image image{static_cast<int>(m.width), static_cast<int>(m.height), {}};
-    resize_in_huge_pages(image.rgb, 3 * std::size_t{m.width} * m.height);
-    return image;
 }
 
 // Throws DeviceError unless one primary ray was counted for each pixel of this rank. Some devices silently end long
@@ -352,16 +300,8 @@ void add_events(const std::vector<EventCounts>& rank_events, EventCounts& phase_
 
 }  // namespace
 
-// Copies the pixels of the last gather into the image, and allocates the host memory for the next gather in advance, as
-// the first access to new memory is slow. trace() calls this function while the device traces.
-void RingRenderer::place_gathered_and_allocate(RingResult& result) {
-    const SpanLog::Span span = session_.span("prepare memory");
-    if (result.image.rgb.empty() && ranks_.is_first()) result.image = black_image(settings_.mapping);
-    place_gathered_pixels(result);
-    resize_in_huge_pages(gathered_, pixels_.size());
-}
-
-void RingRenderer::gather(PixelRange range) {
+// Reads the pixels in `range` of every PE's share, and places them in the image.
+void RingRenderer::gather(PixelRange range, RingResult& result) {
     const SpanLog::Span span = session_.span("gather");
     const raya_mapping& m = settings_.mapping;
     std::uint64_t gathered_pixels = 0;
@@ -369,28 +309,20 @@ void RingRenderer::gather(PixelRange range) {
         const std::uint32_t share = raya_share_size(raya_share_of(m, pe));
         gathered_pixels += share > range.begin ? std::min(share, range.end) - range.begin : 0;
     }
-    bus_.gather(pixels_, gathered_, 3 * gathered_pixels);
-    gathered_ = pes_.gather(std::move(gathered_), std::size_t{3} * window_);
-    gathered_range_ = range;
-}
-
-void RingRenderer::place_gathered_pixels(RingResult& result) {
-    const PixelRange range = std::exchange(gathered_range_, {});
-    if (range.end == 0 || !ranks_.is_first()) return;
     const std::size_t window = window_;
-    float* const image = result.image.rgb.data();
+    std::vector<float> gathered;
+    resize_in_huge_pages(gathered, pixels_.size());
+    bus_.gather(pixels_, gathered, 3 * gathered_pixels);
+    gathered = pes_.gather(std::move(gathered), 3 * window);
+    if (!ranks_.is_first()) return;
     constexpr std::size_t kFewPixels = 1 << 16;
-    const std::uint32_t pes = pes_.all(), parts = (pes + kInterleavedPes - 1) / kInterleavedPes;
-    parallel_for(parts, gathered_.size() > 3 * kFewPixels ? core_count() : 1, [&](std::size_t part) {
-        const auto first = static_cast<std::uint32_t>(part) * kInterleavedPes;
-        const float* const colours = gathered_.data() + 3 * first * window;
-        for_each_pixel(settings_.mapping, first, std::min(kInterleavedPes, pes - first), range,
-                       [=](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
-                           const float* const red = colours + 3 * pe * window + pixel;
-                           image[3 * image_pixel] = *red;
-                           image[3 * image_pixel + 1] = red[window];
-                           image[3 * image_pixel + 2] = red[2 * window];
-                       });
+    parallel_for(m.pes, gathered.size() > 3 * kFewPixels ? core_count() : 1, [&](std::size_t pe) {
+        const float* const red = &gathered[3 * pe * window];
+        float* const image = result.image.rgb.data();
+        for_each_pixel(m, pe, range, [=](std::size_t pixel, std::size_t image_pixel) {
+            for (std::size_t colour = 0; colour < 3; ++colour)
+                image[3 * image_pixel + colour] = red[colour * window + pixel];
+        });
     });
 }
 
@@ -403,12 +335,12 @@ void RingRenderer::collect_costs(PixelRange range, RingResult& result) {
         session_.read("read cost", counters_[i].cycles, cycles);
         cycles = pes_.gather(std::move(cycles), window_);
         if (!ranks_.is_first()) continue;
-        for_each_pixel(settings_.mapping, 0, pes_.all(), range,
-                       [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
-                           const std::uint64_t cost = cycles[pe * window_ + pixel];
-                           result.phases[i].recorded_cost->cycles[image_pixel] = cost;
-                           if (result.sum_cost) result.sum_cost->cycles[image_pixel] += cost;
-                       });
+        for (std::size_t pe = 0; pe < pes_.all(); ++pe)
+            for_each_pixel(settings_.mapping, pe, range, [&](std::size_t pixel, std::size_t image_pixel) {
+                const std::uint64_t cost = cycles[pe * window_ + pixel];
+                result.phases[i].recorded_cost->cycles[image_pixel] = cost;
+                if (result.sum_cost) result.sum_cost->cycles[image_pixel] += cost;
+            });
     }
 }
 
@@ -420,13 +352,13 @@ void RingRenderer::collect_marks(RingResult& result) {
     marks = pes_.gather(std::move(marks), window_);
     if (!ranks_.is_first()) return;
     result.mask = black_image(settings_.mapping);
-    for_each_pixel(settings_.mapping, 0, pes_.all(), {0, 0, share_pixels_},
-                   [&](std::size_t pe, std::size_t pixel, std::size_t image_pixel) {
-                       const std::uint8_t mark = marks[pe * window_ + pixel];
-                       result.recomputed += mark;
-                       std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * image_pixel), 3,
-                                   static_cast<float>(mark));
-                   });
+    for (std::size_t pe = 0; pe < pes_.all(); ++pe)
+        for_each_pixel(settings_.mapping, pe, {0, 0, share_pixels_}, [&](std::size_t pixel, std::size_t image_pixel) {
+            const std::uint8_t mark = marks[pe * window_ + pixel];
+            result.recomputed += mark;
+            std::fill_n(result.mask.rgb.begin() + static_cast<std::ptrdiff_t>(3 * image_pixel), 3,
+                        static_cast<float>(mark));
+        });
 }
 
 void RingRenderer::collect_events(RingResult& result) {

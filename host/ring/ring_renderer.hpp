@@ -40,16 +40,11 @@ class RingRenderer {
     void build_exchange(KernelOptions options);
     void prepare(RingResult& result);
     void render_block(std::uint32_t block_begin, RingResult& result, const ProgressCallback& progress);
-    void trace(PixelRange range, RingResult& result, const ProgressCallback& progress);
-    void supersample(RingResult& result, const ProgressCallback& progress);
-    void trace_in_bands(std::uint32_t pass, PixelRange range, RingResult& result,
-                        const std::function<void(PixelRange)>& trace);
+    void trace(std::uint32_t pass, PixelRange range, RingResult& result, const ProgressCallback& progress);
     StateSettings state_settings() const;
     void visit_state(RenderState& state, RingResult& result);
     void resume(RingResult& result);
-    void place_gathered_and_allocate(RingResult& result);
-    void gather(PixelRange range);
-    void place_gathered_pixels(RingResult& result);
+    void gather(PixelRange range, RingResult& result);
     void collect_costs(PixelRange range, RingResult& result);
     void collect_marks(RingResult& result);
     void collect_events(RingResult& result);
@@ -70,9 +65,7 @@ class RingRenderer {
     double build_s_ = 0;
     Buffer<std::uint32_t> broadcast_;  // words of the job
     Buffer<float> pixels_;             // [PE][3][window]
-    std::vector<float> gathered_;      // pixels of gathered_range_ of all PEs, not yet copied into the image
-    PixelRange gathered_range_;
-    Buffer<std::uint8_t> no_marks_;  // dummy argument of the first pass, which has no marks
+    Buffer<std::uint8_t> no_marks_;    // dummy argument of the first pass, which has no marks
     std::unique_ptr<Tracer> tracer_;
     std::vector<PassCounters> counters_;  // one for each pass
     std::unique_ptr<NeighbourExchange> exchange_;

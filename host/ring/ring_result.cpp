@@ -98,6 +98,14 @@ std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const Rin
 
 namespace {
 
+/// Returns the modelled time of a render.
+ModelledTime ring_time(const RingSettings& settings, const RingResult& result) {
+    std::vector<Load> loads;
+    for (const Phase& phase : result.phases) loads.push_back(phase.load);
+    return modelled_time(settings.machine.clock, loads, result.communication,
+                         smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
+}
+
 constexpr TraceTrack kPhases = {kTraceMachine, 1};
 constexpr std::array<const char*, RAYA_SIDES> kSides = {"left", "right", "above", "below"};
 
@@ -216,15 +224,12 @@ void add_smoothing(RingTimeline& timeline, const RingSettings& s, const RingResu
 }  // namespace
 
 void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes) {
-    std::vector<Load> loads;
-    for (const Phase& phase : result.phases) loads.push_back(phase.load);
     const Communication& c = result.communication;
     if (pes == 0) {
         trace.metadata()["machine"] = "left out: the number of PEs to trace is 0";
         return;
     }
-    const ModelledTime time = modelled_time(
-        settings.machine.clock, loads, c, smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
+    const ModelledTime time = ring_time(settings, result);
     RingTimeline timeline(trace, settings.machine, traced_pes(result.load.per_pe, pes));
     timeline.add_common_phase("broadcast", time.objects_ms, {{"words", c.broadcast_words}});
     timeline.add_tracing_phase(result.phases[0].name, result.phases[0].load);
@@ -355,14 +360,6 @@ std::string accel_line(const RingResult& r, bool all_counted) {
                            counted(a.leaves, "leaf", "leaves"), a.depth, separate, tests);
     return fmt::format("grid    {}x{}x{} voxels, {} of objects{}{}\n", a.divisions[0], a.divisions[1], a.divisions[2],
                        counted(a.copies, "copy", "copies"), separate, tests);
-}
-
-/// Returns the modelled time of a render.
-ModelledTime ring_time(const RingSettings& settings, const RingResult& result) {
-    std::vector<Load> loads;
-    for (const Phase& phase : result.phases) loads.push_back(phase.load);
-    return modelled_time(settings.machine.clock, loads, result.communication,
-                         smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
 }
 
 }  // namespace
