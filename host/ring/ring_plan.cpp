@@ -77,7 +77,9 @@ RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSett
         const SpanLog::Span span = session.span("pack scene");
         return pack_for_ring(scene, settings, scale);
     };
-    RingJob job{{.scale = scale, .objects = scene.object_count()}, pack()};
+    RingJob job{{}, pack()};
+    job.scale = scale;
+    job.objects = scene.object_count();
     job.has_patches = job.job.has_patches();
     if (packed) packed();
     if (settings.accel.kind == AccelKind::kNone) return job;

@@ -168,7 +168,7 @@ void RingRenderer::trace(std::uint32_t pass, PixelRange range, RingResult& resul
     for (; band.begin < range.end; band.begin = band.end) {
         const Clock::time_point start = Clock::now();
         band.end = checkpoints_->active() ? band.begin + std::min(band_, range.end - band.begin) : range.end;
-        tracer_->trace(label, broadcast_, band, pass == 0 ? RAYA_POINTS_OWN : settings_.antialias.points,
+        tracer_->trace(label, broadcast_, band, pass == 0 ? raya_u32{RAYA_POINTS_OWN} : settings_.antialias.points,
                        pass == 0 ? no_marks_ : contrast_->marks(), pixels_, counters_[pass],
                        progress || polls_failures() ? report : ProgressCallback{});
         if (!checkpoints_->active()) continue;
