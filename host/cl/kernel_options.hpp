@@ -57,9 +57,9 @@ std::uint32_t default_lanes(const DeviceInfo& device);
 
 /// Returns the default L. On a CPU it is 1, because a work-item's lanes fill the vectors. On llvmpipe it is 8,
 /// because llvmpipe vectorises over work-items with 256-bit vectors. For a torus it is 1 on every CPU, because a node
-/// of one work-item keeps packets in order (docs/packets.md). On other devices it is 128, or, if `pes` is not 0, the
+/// of one work-item keeps packets in order (docs/architecture.md). On other devices it is 128, or, if `pes` is not 0, the
 /// power of 2 from 32 to 256 with which that many PEs have about 512 work-items on each compute unit: the fastest size
-/// for a ring without acceleration structure on an H100 (docs/gpus.md).
+/// for a ring without acceleration structure on an H100 (docs/porting.md).
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false, std::uint32_t pes = 0);
 
 /// Returns true if the error bounds of kernels/geometry/sphere_filter.clh and outline_filter.clh are valid: `format` is

@@ -287,7 +287,7 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
     add_file(command, FileUse::kWritten, "--packets FILE.csv.gz", t.packets,
              "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), "
              "compressed; -: "
-             "stdout; see docs/packets.md");
+             "stdout; see docs/architecture.md");
     command.add_flag("--async", t.async,
                      "Also simulate the machine without supersteps, whose nodes compute while links transfer: raya "
                      "reports this modelled time, the lower bound and the time with supersteps");

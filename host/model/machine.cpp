@@ -52,7 +52,7 @@ std::vector<Fact> ring_facts(const Machine& m, const std::string& mapping, const
             {"display", rate_text(c.display_pixels_per_s, "pixels"), sources.display}};
 }
 
-// Kohata & Ito 1993. The clock is derived from the printed times in Tables 2 to 4, each rounded to 1 ms; docs/clock.md
+// Kohata & Ito 1993. The clock is derived from the printed times in Tables 2 to 4, each rounded to 1 ms; docs/architecture.md
 // has the derivation.
 MachineClock spa_clock() {
     constexpr double kRotationMs = (12. - 2) / (34 - 2);  // Table 4: exchanges with 34 and 2 rotations

@@ -73,7 +73,7 @@ enum class MachineKind {
 };
 
 /// Rates from which modelled_time() (model/t805.hpp) computes the time of a ring machine. An infinite rate
-/// stands for a transfer that takes no time. docs/clock.md has the origin of the SPA's numbers.
+/// stands for a transfer that takes no time. docs/architecture.md has the origin of the SPA's numbers.
 struct MachineClock {
     double cycle_ns = 0;          // time of a cycle of a PE
     double cycle_factor = 1;      // number of the machine's cycles per cycle of the budgets (model/budget.hpp)

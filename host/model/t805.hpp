@@ -138,7 +138,7 @@ struct TorusTime {
 
 /// Returns the modelled time of a ring machine. `phases`: the loads of all PEs in each phase, not empty; the machine
 /// waits for the busiest PE of each phase. The bus carries the words of one PE at a time, at the rate of a link and
-/// with the overhead of a rotation. docs/clock.md describes the model.
+/// with the overhead of a rotation. docs/architecture.md describes the model.
 ModelledTime modelled_time(const MachineClock& clock, std::span<const Load> phases, const Communication& communication,
                            const SmoothingCycles& smoothing = {});
 

@@ -186,7 +186,7 @@ void add_torus_results(py::module_& module, ResultClass& result) {
              "rendered with async_=True.")
         .def("write_replay", write_replay, py::arg("platform"), py::arg("replay"),
              "Writes the machine to the file `platform` and the history of messages to the file `replay`, for SimGrid "
-             "(docs/packets.md). Takes the keyword arguments of simulate(). Returns the number of messages.");
+             "(docs/architecture.md). Takes the keyword arguments of simulate(). Returns the number of messages.");
 }
 
 const Load& load_of(const Render& r) { return r.report.load; }

@@ -388,7 +388,7 @@ void ring_members(Members& m, const RingSettings& settings, const RingResult& re
       "(host/model/budget.hpp), on the torus of a T805 (host/model/t805.hpp).",
       [&](Members& budget) { budget_members(budget, result.events); });
     m("modelled_ms",
-      "Modelled time of the machine in ms, from its clock (docs/clock.md). Torus: a real machine is between "
+      "Modelled time of the machine in ms, from its clock (docs/architecture.md). Torus: a real machine is between "
       "`overlapped` and `stepwise` (host/torus/torus_result.hpp).",
       [&](Members& ms) { time_members(ms, time); });
 }

@@ -1,4 +1,4 @@
-// Traces of the modelled torus: packets as CSV (docs/packets.md), and a trace of the work of each node in each
+// Traces of the modelled torus: packets as CSV (docs/architecture.md), and a trace of the work of each node in each
 // superstep, in modelled time.
 #pragma once
 #include <cstddef>

@@ -146,7 +146,7 @@ Space space_of(const DeviceInfo& device, const TuningKey& key) {
     // gigabytes of memory to compile kernels with several lanes.
     const bool llvmpipe = device.ends_loops_early;
     add(&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16});
-    // Torus nodes on a CPU keep their default group size, which preserves the order of packets (docs/packets.md).
+    // Torus nodes on a CPU keep their default group size, which preserves the order of packets (docs/architecture.md).
     const std::uint32_t max_cpu_group = key.torus ? space.defaults.group : std::min(llvmpipe ? 16u : 4u, max_group);
     add(&TunedValues::group, cpu ? group_sizes(1, max_cpu_group) : group_sizes(16, max_group));
     if (tests_all_objects) add(&TunedValues::local_words, {0, 1});

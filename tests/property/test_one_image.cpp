@@ -300,7 +300,7 @@ TorusResult render_without_deadlock(Session& session, const Scene& scene, TorusS
     for (;;) try {
             return TorusRenderer(session, scene, s).render();
         } catch (const TorusDeadlock& deadlock) {
-            s.queue = 2 * deadlock.figures.queue;
+            s.queue = 2 * deadlock.queue;
         }
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the commands of docs/ci.md and of the workflows in docs/ci: programs and options exist; packages are those of tools/setup, tools/portability or
+"""Checks the commands of docs/verify.md and of the workflows in docs/ci: programs and options exist; packages are those of tools/setup, tools/portability or
 docs/packages.md; ctest runs the tests of tools/test. Injected faults test the checks.
 
     tests/tools/test_ci_recipe.py RAYA     RAYA: the built program. Exit code 77 if Python has no yaml (Debian: python3-yaml)
@@ -73,7 +73,7 @@ def main():
         print("skipped: this Python has no yaml (Debian: python3-yaml)")
         return 77
     raya = str(Path(sys.argv[1]).resolve())
-    page = (ROOT / "docs/ci.md").read_text()
+    page = (ROOT / "docs/verify.md").read_text()
     programs = ("build/raya", "tools/", "ctest", "cmake", "apt-get")
     scripts = [line.strip() for line in page.splitlines() if line.startswith("    ") and line.strip().startswith(programs)]
     for workflow in sorted((ROOT / "docs/ci").glob("*.yml")):

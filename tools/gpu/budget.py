@@ -4,7 +4,7 @@ import csv
 COLUMNS = ["kernel", "variant", "target", "width", "registers", "spills", "scalar_spills", "stack", "local"]
 BOUNDED = ["registers", "spills", "scalar_spills", "stack", "local"]  # may exceed the budget by at most 5 %
 VERSION = "# made for "
-HEADER = "# GPU resources of kernels: written by `tools/gpu_check --write-budget`, do not edit. docs/gpu_resources.md defines the figures.\n"
+HEADER = "# GPU resources of kernels: written by `tools/gpu_check --write-budget`, do not edit. docs/porting.md defines the figures.\n"
 
 
 class Budget:

@@ -15,7 +15,7 @@ FACTORS = list(range(1, 9))  # factors of the clock for which conclusions are sh
 FACTOR = SPA["cycle_factor"]
 # The filter's arithmetic takes 9 - 2 = 19 - 12 = 7 ms (Tables 3 and 4); each of these four times is rounded to 1 ms.
 FACTOR_MIN, FACTOR_MAX = (FACTOR * (1 + rounding_ms / papers.FILTER_ARITHMETIC_MS) for rounding_ms in (-2 * ROUNDING, 2 * ROUNDING))
-CLOCK = (f"modelled (docs/clock.md). Computing time = cycles of the instruction budget x 100 ns x the clock's factor of {FACTOR:.2f} "
+CLOCK = (f"modelled (docs/architecture.md). Computing time = cycles of the instruction budget x 100 ns x the clock's factor of {FACTOR:.2f} "
          f"({FACTOR_MIN:.2f} .. {FACTOR_MAX:.2f} by the rounding of printed times). The factor is the 7 ms of the filter's arithmetic [D] "
          "divided by its time by the budget. Rotations, exchanges and transfers have rates from printed times. Nothing is fitted to a "
          "scene. We assume that the factor also holds for ray tracing, and show conclusions for factors of 1 to 8.")
