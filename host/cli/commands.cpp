@@ -25,6 +25,7 @@
 #include "host/cli/options.hpp"
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
+#include "host/cli/render_command.hpp"
 #include "host/cli/verify.hpp"
 #include "host/error.hpp"
 #include "host/ranks/launch.hpp"

@@ -1,8 +1,11 @@
 // The option --as of `raya verify`: a render command, parsed like that of `raya render`.
 #pragma once
 #include <string>
+#include <vector>
 
+#include "host/base/members.hpp"
 #include "host/verify/render_case.hpp"
+#include "host/verify/verify.hpp"
 
 namespace raya {
 
