@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "host/base/members.hpp"
-#include "host/cl/opencl.hpp"
+
+namespace cl {
+class Device;
+}
 
 namespace raya {
 

@@ -3,6 +3,7 @@
 #include <sys/mount.h>
 #include <sys/stat.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -141,7 +142,7 @@ TEST_CASE("devices: a driver with two ICD entries is listed once; equal devices 
                                 !Catch::Contains("\n  2: "));
 }
 
-TEST_CASE("a driver that crashes or hangs is an error with a remedy; one that fails is left out", "[cli]") {
+TEST_CASE("a driver that crashes or hangs is reported with a remedy; one that fails is left out", "[cli]") {
     const fs::path pocl = "/etc/OpenCL/vendors/pocl.icd";
     if (!fs::exists(pocl) || kSanitized) return;
     const ScratchFolder vendors, outputs;
@@ -151,10 +152,14 @@ TEST_CASE("a driver that crashes or hangs is an error with a remedy; one that fa
     const auto with_fault = [&](const std::string& fault) -> RunOptions {
         return {.variables = {{"OCL_ICD_VENDORS", vendors.path()}, {"RAYA_BAD_DRIVER", fault}}};
     };
-    for (const char* const fault : {"crash platforms", "crash devices", "crash info", "hang devices"}) {
+    for (const char* const fault : {"crash platforms", "crash devices", "crash info"}) {
         CAPTURE(fault);
         check_refused(outputs, {"devices"}, 3, {"OCL_ICD_VENDORS"}, with_fault(fault));
     }
+    RunOptions hang = with_fault("hang devices");
+    hang.signal = SIGTERM;
+    hang.signal_after_ms = 11'000;
+    check_refused(outputs, {"devices"}, 128 + SIGTERM, {"one may hang; remedy: leave out the driver"}, hang);
     check_refused(outputs, verify, 3, {"OCL_ICD_VENDORS"}, with_fault("crash platforms"));
     for (const char* const fault : {"fail devices", "fail info", ""})
         for (const Arguments& command : {Arguments{"devices"}, verify}) {

@@ -22,6 +22,7 @@ RARE = {
     "render.json: measured.no_roofline": "devices that do not time their commands, resumed renders",
     "render.json: measured.ranks[].no_roofline": "devices that do not time their commands, resumed renders",
     "bench.json: rows[].no_roofline": "devices that do not time their commands",
+    "render.json: skipped[].place": "meshes, whose reports of raya info are in this test",
     "verify.json: devices[].pci_address": "GPUs",
 }
 # These members need MPI.
