@@ -38,7 +38,7 @@ def markdown(cells):
 
 
 def page(cells, versions, vendors):
-    """Returns the text of docs/porting.md. The docstrings of the vendors' modules describe how figures are made."""
+    """Returns a page of all figures. The docstrings of the vendors' modules describe how figures are made."""
     paragraphs = {vendor: sys.modules[type(vendor).__module__].__doc__.strip().split("\n\n") for vendor, _ in vendors}
     core_rows = "".join(f"| {target} | {CORE[target]} | {version} |\n" for target, version in versions.items())
     descriptions = "".join(f"**{', '.join(vendor.targets)}.** {' '.join(text)}\n\n" for vendor, text in paragraphs.items())
