@@ -12,7 +12,7 @@ import re, subprocess, sys, tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-GENERATED = {"gpu_resources.md", "portability.md", "performance.md", "verdicts.md", "artifact.md"}  # tools write these
+GENERATED = {"performance.md", "verdicts.md", "artifact.md"}  # tools write these
 PAPER = "paper.md"  # its paragraphs are those of a paper; comments behind its numbers name their data
 LONG = re.compile(r"build/raya (verify|bench) ")
 MAX_WORDS, MAX_CELL_WORDS, MAX_COLUMNS = 80, 30, 120
