@@ -2,7 +2,7 @@
 //
 //     raya state 4
 //     {"of": {NAME: VALUE, ...}, "fraction": ..., "seconds": ...}
-//     vectors: the number of elements (64 bits), then the elements, in the host's byte order
+//     vectors: the number of elements (64 bits), then the elements; numbers are little-endian on every host
 //     hash of all bytes before it, 32 hexadecimal digits
 //
 // A checkpoint does not depend on the number of ranks, so a render can be resumed with other ranks.
@@ -10,13 +10,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "host/base/log.hpp"
 
 namespace raya {
 
@@ -41,14 +42,14 @@ class CheckpointWriter {
     void put(const std::vector<T>& values) {
         static_assert(std::is_trivially_copyable_v<T>);
         const std::uint64_t count = values.size();
-        put_bytes(std::as_bytes(std::span(&count, 1)));
-        put_bytes(std::as_bytes(std::span(values)));
+        put_numbers(std::as_bytes(std::span(&count, 1)), sizeof count);
+        put_numbers(std::as_bytes(std::span(values)), alignof(T));  // a structure's members have the same type
     }
     /// Returns the bytes of the file.
     std::string finish();
 
   private:
-    void put_bytes(std::span<const std::byte> bytes);
+    void put_numbers(std::span<const std::byte> numbers, std::size_t number_bytes);
 
     std::string bytes_;
 };
@@ -68,14 +69,14 @@ class CheckpointReader {
     void take(std::vector<T>& values) {
         static_assert(std::is_trivially_copyable_v<T>);
         take_count(sizeof(T), values.size());
-        take_bytes(std::as_writable_bytes(std::span(values)));
+        take_numbers(std::as_writable_bytes(std::span(values)), alignof(T));
     }
     /// Returns a vector of any number of elements.
     template <class T>
     std::vector<T> take_any() {
         static_assert(std::is_trivially_copyable_v<T>);
         std::vector<T> values(take_count(sizeof(T), {}));
-        take_bytes(std::as_writable_bytes(std::span(values)));
+        take_numbers(std::as_writable_bytes(std::span(values)), alignof(T));
         return values;
     }
 
@@ -85,7 +86,7 @@ class CheckpointReader {
   private:
     /// Returns the number of elements of the next vector.
     std::uint64_t take_count(std::size_t value_bytes, std::optional<std::uint64_t> expected);
-    void take_bytes(std::span<std::byte> bytes);
+    void take_numbers(std::span<std::byte> numbers, std::size_t number_bytes);
 
     std::string_view bytes_;
     RenderedPart part_;
@@ -119,8 +120,24 @@ void check_checkpoint_options(const CheckpointOptions& options);
 /// Removes the checkpoint, if there is one. Call it after all outputs of the render are written.
 void remove_checkpoint(const CheckpointOptions& options);
 
-/// Returns the callbacks with which a renderer saves and loads the checkpoint; null without --checkpoint. Saving takes
-/// at most 5 % of the time, unless `every_s` is 0.
-std::unique_ptr<const Checkpointing> checkpointing_of(const CheckpointOptions& options);
+/// Saves and loads the checkpoints of a render.
+class CheckpointFile {
+  public:
+    explicit CheckpointFile(const CheckpointOptions& options);
+
+    /// Returns the callbacks with which the renderer saves and loads checkpoints; null without --checkpoint.
+    const Checkpointing* checkpointing() const { return options_.file.empty() ? nullptr : &callbacks_; }
+
+  private:
+    bool due();  // returns true if the next checkpoint is due
+    void save(const std::string& bytes);
+    void load(const std::function<RenderedPart(std::string_view bytes)>& read) const;
+
+    const CheckpointOptions& options_;
+    Checkpointing callbacks_;
+    Clock::time_point last_save_end_ = Clock::now();  // before the first save: time of construction
+    Clock::time_point due_at_;                        // time of the last call of due(), which precedes a save
+    double last_save_duration_s_ = 0;                 // of collecting and writing the state, seconds
+};
 
 }  // namespace raya

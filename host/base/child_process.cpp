@@ -32,8 +32,7 @@ std::runtime_error system_error(const char* what) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);  // inherited through exec
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() == parent) {
-        if (pipe != descriptor) ::close(descriptor);
-        if (pipe != descriptor) ::fcntl(pipe, F_DUPFD, descriptor);
+        ::dup2(pipe, descriptor);
         ::close_range(STDERR_FILENO + 1, ~0u, CLOSE_RANGE_CLOEXEC);  // MPI's sockets belong to the parent
         ::fcntl(descriptor, F_SETFD, 0);                             // stays open through exec
         ::execvp(arguments[0], arguments);
@@ -110,8 +109,7 @@ std::optional<int> run_child(const char* task, const Json& settings,
         unread.append(block.data(), count.value_or(0));
         for (std::size_t end = 0; (end = unread.find('\n')) != unread.npos; unread.erase(0, end + 1)) {
             const Json sent = parse_json(unread.substr(0, end), {"a child process"});
-            if (sent.contains("error"))
-                throw_sent(sent.at("kind").get<std::string>(), sent.at("error").get<std::string>());
+            if (sent.contains("error")) throw_sent(json_text(sent.at("kind")), json_text(sent.at("error")));
             if (!take(sent)) return {};
         }
     }
@@ -121,8 +119,8 @@ std::optional<WorkerRequest> worker_request(int argc, const char* const* argv) {
     if (argc != 3 || std::string_view(argv[1]) != kWorker) return {};
     ::fcntl(kReportDescriptor, F_SETFD, FD_CLOEXEC);
     return read_json(argv[2], {kWorker}, [](const Json& json) {
-        set_verbosity(kErrorsOnly + json.at("verbosity").get<int>());
-        return WorkerRequest{.task = json.at("task").get<std::string>(), .settings = json.at("settings")};
+        set_verbosity(kErrorsOnly + static_cast<int>(json_integer(json.at("verbosity"), kDetailed - kErrorsOnly)));
+        return WorkerRequest{.task = json_text(json.at("task")), .settings = json.at("settings")};
     });
 }
 

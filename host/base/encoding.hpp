@@ -38,10 +38,13 @@ std::string base64(std::string_view bytes);
 /// Returns `bytes` as lower-case hexadecimal digits, two per byte.
 std::string hex_digits(std::span<const unsigned char> bytes);
 
+/// Converts numbers of `number_bytes` bytes each between the host's byte order and little-endian order, in place.
+void convert_little_endian(std::span<std::byte> numbers, std::size_t number_bytes);
+
 /// Returns the 128-bit XXH3 hash of `bytes` as 32 lower-case hexadecimal digits.
 std::string bytes_hash(std::string_view bytes);
 
-/// Returns bytes_hash() of the words in the host's byte order.
+/// Returns bytes_hash() of the words in little-endian byte order.
 std::string words_hash(std::span<const std::uint32_t> words);
 
 /// Incremental gzip compression. The same text always gives the same bytes: the gzip header contains no date and no
@@ -55,7 +58,7 @@ class GzipText {
 
     void append(std::string_view text);
 
-    /// Ends the compression and returns the gzip file.
+    /// Ends the compression and returns the gzip file. Later calls of append() or finish() throw std::logic_error.
     std::string finish();
 
   private:
@@ -69,8 +72,8 @@ class GzipText {
 // Suggestions for misspelt names.
 
 /// Returns the name in `names` that begins with `misspelling`, if `misspelling` has 3 or more characters. Otherwise
-/// returns the name with the smallest edit distance (insertions, deletions, substitutions), or "" if this distance
-/// exceeds a third of the length of `misspelling`.
+/// returns the name with the smallest edit distance (insertions, deletions, substitutions, transpositions of
+/// neighbours; F. J. Damerau 1964), or "" if this distance exceeds a third of the length of `misspelling`.
 std::string nearest_name(const std::string& misspelling, const std::vector<std::string>& names);
 
 /// Returns " (did you mean NAME?)" with the name that nearest_name() returns; "" if no name is similar.

@@ -1,5 +1,5 @@
-// JSON documents: the format of raya's reports, traces, studies and messages between its processes. Values are read and
-// written with nlohmann's library; its exceptions become UserError in read_json().
+// JSON documents: the format of raya's reports, traces, studies and messages between its processes. nlohmann's library,
+// with checks of what is read.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -26,6 +26,18 @@ namespace raya {
 /// Json::object().
 using Json = nlohmann::ordered_json;
 
+/// Returns the member `key`; a null pointer if the member is missing or `json` is not an object.
+const Json* find_member(const Json& json, const std::string& key);
+
+/// Return the value of a string, a number, an integer in 0..`max`, or the strings of an array. Throw Json::exception
+/// with the value and its path for other values.
+const std::string& json_text(const Json& json);
+double json_number(const Json& json);
+std::uint64_t json_integer(const Json& json, std::uint64_t max = UINT64_MAX);
+std::vector<std::string> json_strings(const Json& json);
+/// Returns an array. Throws Json::exception for other values.
+const Json& json_array(const Json& json);
+
 /// Serialises the value, in one line or with `indent` blanks per level. Bytes that are not UTF-8, as a path or a
 /// driver's name may contain, become U+FFFD.
 std::string json_dump(const Json& json, int indent = -1);
@@ -36,13 +48,14 @@ struct JsonSource {
 
     /// Throws UserError "NAME: reason; remedy: REMEDY".
     [[noreturn]] void refuse(const std::string& reason) const;
-    /// Throws UserError with the message of the library's exception: "(/rows/3/ms) type must be number, ...".
-    [[noreturn]] void refuse(const Json::exception& error) const;
 };
 
-/// Parses `text`. Throws UserError, as `source` formats it, with the line, for invalid JSON, a number outside double
-/// precision or more than 100 levels of nesting.
+/// Parses `text`. Throws UserError, as `source` formats it, for invalid JSON, a number outside double precision, a
+/// duplicate member in an object or more than 100 levels of nesting.
 Json parse_json(const std::string& text, const JsonSource& source);
+
+/// Returns the message of an exception of the library without its number: "(/rows/3/ms) "x" is not a number".
+std::string json_reason(const Json::exception& error);
 
 /// Parses `text` and returns `read`(document). Parse errors and every Json::exception or UserError of `read` become a
 /// UserError that names the source, the line of a parse error, and the member.
@@ -52,25 +65,17 @@ auto read_json(const std::string& text, const JsonSource& source, Read&& read) {
     try {
         return read(json);
     } catch (const Json::exception& error) {
-        source.refuse(error);
+        source.refuse(json_reason(error));
     } catch (const UserError& error) {
         source.refuse(error.what());
     }
 }
 
-inline std::string json_text(const Json& json) { return json.get<std::string>(); }
-inline double json_number(const Json& json) { return json.get<double>(); }
-inline std::uint64_t json_integer(const Json& json, std::uint64_t = 0) { return json.get<std::uint64_t>(); }
-inline std::vector<std::string> json_strings(const Json& json) { return json.get<std::vector<std::string>>(); }
-inline const Json& json_array(const Json& json) { return json; }
-inline const Json* find_member(const Json& json, const std::string& key) {
-    return json.contains(key) ? &json.at(key) : nullptr;
-}
-
-inline constexpr std::uint64_t kMaxJsonBytes = 64'000'000;  // maximum size of a JSON file
+inline constexpr std::uint64_t kMaxJsonBytes = 64'000'000;  // default maximum size of a JSON file
 
 /// Reads a JSON file into a string for read_json(). Throws UserError, as `source` formats it, if the file cannot be
-/// read or has more than kMaxJsonBytes bytes.
-std::string json_file_text(const std::filesystem::path& file, const JsonSource& source);
+/// read or has more than `max_bytes` bytes.
+std::string json_file_text(const std::filesystem::path& file, const JsonSource& source, Pipes pipes = Pipes::kRefused,
+                           std::uint64_t max_bytes = kMaxJsonBytes);
 
 }  // namespace raya

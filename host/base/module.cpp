@@ -24,12 +24,18 @@ std::string user_name(uid_t user) {
     return entry != nullptr ? entry->pw_name : std::to_string(user);
 }
 
-/// Returns true if the group is its user's own: it has the user's name and no other members.
-bool is_private_group(gid_t group, uid_t user) {
-    const std::string name = user_name(user);
+/// Returns true if a user other than `owner` and root is a member of the group.
+bool has_other_members(gid_t group, uid_t owner) {
+    const std::string name = user_name(owner);
     const ::group* const entry = ::getgrgid(group);
-    return entry != nullptr && entry->gr_name == name &&
-           (entry->gr_mem[0] == nullptr || (entry->gr_mem[0] == name && entry->gr_mem[1] == nullptr));
+    for (char** member = entry != nullptr ? entry->gr_mem : nullptr; member != nullptr && *member != nullptr; ++member)
+        if (*member != name) return true;
+    bool has_other = false;
+    ::setpwent();
+    while (const passwd* const user = ::getpwent())
+        has_other = has_other || (user->pw_gid == group && user->pw_uid != owner && user->pw_uid != 0);
+    ::endpwent();
+    return has_other;
 }
 
 std::string unsafe_entry_reason(const fs::path& path, const std::vector<uid_t>& owners, Sticky sticky) {
@@ -45,13 +51,28 @@ std::string unsafe_entry_reason(const fs::path& path, const std::vector<uid_t>& 
     // If the file has an access control list, the group bits are the mask of all its entries, not the group's rights.
     const bool has_access_list = ::lgetxattr(path.c_str(), "system.posix_acl_access", nullptr, 0) > 0;
     const bool group_may_write =
-        (status.st_mode & S_IWGRP) != 0 && (has_access_list || !is_private_group(status.st_gid, status.st_uid));
+        (status.st_mode & S_IWGRP) != 0 && (has_access_list || has_other_members(status.st_gid, status.st_uid));
     if (!group_may_write && (status.st_mode & S_IWOTH) == 0) return {};
     return fmt::format("other users may write '{}' (mode {:04o})", path.string(), status.st_mode & ALLPERMS);
 }
 
 bool is_within(const fs::path& path, const fs::path& folder) {
     return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+/// Folder and owner of raya's executable, or of the file set by set_program_file().
+struct ProgramFile {
+    fs::path folder;
+    uid_t owner;
+};
+
+ProgramFile program_file() {
+    std::error_code failure;
+    const fs::path self = substitute_file.empty() ? "/proc/self/exe" : substitute_file;
+    const fs::path folder = (substitute_file.empty() ? fs::read_symlink(self, failure) : substitute_file).parent_path();
+    struct stat status {};
+    if (failure || ::stat(self.c_str(), &status) != 0) throw ModuleError(fmt::format("cannot read {}", self.string()));
+    return {folder, status.st_uid};
 }
 
 std::string loader_error() {
@@ -70,6 +91,14 @@ std::string loader_error() {
     throw MissingLibrary(reason);
 }
 
+/// Returns the folder of the modules and of the other files installed with the program: ../lib/raya if the program's
+/// folder is named `bin`, else the program's folder. Throws ModuleError if the program's path cannot be read.
+fs::path module_folder() {
+    const fs::path program = program_file().folder;
+    std::error_code failure;
+    return fs::weakly_canonical(program.filename() == "bin" ? program.parent_path() / "lib/raya" : program, failure);
+}
+
 }  // namespace
 
 std::string memory_limit() {
@@ -81,19 +110,15 @@ std::string memory_limit() {
 void set_program_file(const fs::path& file) { substitute_file = file; }
 
 fs::path module_file(const std::string& name) {
+    const fs::path file = module_folder() / name;
     std::error_code failure;
-    const fs::path self = substitute_file.empty() ? "/proc/self/exe" : substitute_file;
-    const fs::path program = (substitute_file.empty() ? fs::read_symlink(self, failure) : self).parent_path();
-    struct stat status {};
-    if (failure || ::stat(self.c_str(), &status) != 0) throw ModuleError(fmt::format("cannot read {}", self.string()));
-    const fs::path folder = program.filename() == "bin" ? program.parent_path() / "lib/raya" : program;
-    const fs::path file = fs::weakly_canonical(folder, failure) / name;
     if (!fs::is_regular_file(fs::symlink_status(file, failure)))
         throw ModuleError(fmt::format("there is no file '{}'", file.string()));
-    const std::vector<uid_t> owners = {::geteuid(), status.st_uid};
+    const ProgramFile program = program_file();
     // Folders above the program are not checked, because a user who may change them could replace the program itself.
-    std::string reason = unsafe_path_reason(file.parent_path(), owners, Sticky::kRefused, program);
-    if (reason.empty()) reason = unsafe_entry_reason(file, owners, Sticky::kRefused);
+    std::string reason =
+        unsafe_path_reason(file.parent_path(), {::geteuid(), program.owner}, Sticky::kRefused, program.folder);
+    if (reason.empty()) reason = unsafe_entry_reason(file, {::geteuid(), program.owner}, Sticky::kRefused);
     if (reason.empty()) return file;
     throw UserError(
         fmt::format("refused to load '{}': {}; remedy: chmod go-w, or install raya as root", file.string(), reason));

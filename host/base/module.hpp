@@ -24,17 +24,17 @@ struct MissingLibrary : ModuleError {
 /// loading.
 std::string memory_limit();
 
-/// Returns the function `symbol` of the module `name` (module_file("NAME.so")). The module stays loaded.
+/// Returns the function `symbol` of the module `name` (the file NAME.so in module_folder()). The module stays loaded.
 /// Throws ModuleError if the module does not load or has no such function. Throws UserError if users other than root,
 /// this user and the program's owner may change the file or its folder, or if a memory limit prevents loading.
 void* module_function(const std::string& name, const char* symbol);
 
-/// Returns the path of the file `name`, a module or a program that raya runs. It is in ../lib/raya if the program's
-/// folder is named `bin`, else in the program's folder. Throws ModuleError if there is no such file. Throws UserError
-/// if users other than root, this user and the program's owner may change the file or its folder.
+/// Returns the path of the file `name` in module_folder(): a module, or a program that raya runs. Throws ModuleError if
+/// there is no such file. Throws UserError if users other than root, this user and the program's owner may change the
+/// file or its folder.
 std::filesystem::path module_file(const std::string& name);
 
-/// Makes module_file() use the path of `file` instead of the program's. For the Python module and tests.
+/// Makes module_folder() use the path of `file` instead of the program's. For the Python module and tests.
 void set_program_file(const std::filesystem::path& file);
 
 /// kAllowed: accept a folder that other users may write if its sticky bit is set. The bit prevents users from replacing
@@ -43,8 +43,8 @@ enum class Sticky { kRefused, kAllowed };
 
 /// Checks if users other than root and `owners` may change or replace `path` (absolute, without symbolic links).
 /// Returns the reason if they may (file or folder, and its owner or mode), else an empty string. Accepts a group
-/// with write permission if it has the owner's name and no other members. `sticky` applies to `path`; folders above may
-/// be sticky. Does not check folders that contain the folder `trusted`.
+/// with write permission if the owner is its only member. `sticky` applies to `path`; folders above may be sticky. Does
+/// not check folders that contain the folder `trusted`.
 std::string unsafe_path_reason(std::filesystem::path path, const std::vector<uid_t>& owners, Sticky sticky,
                                const std::filesystem::path& trusted = "/");
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "host/error.hpp"
+#include "host/scene/nff_tokens.hpp"
 
 namespace raya {
 namespace {

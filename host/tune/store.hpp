@@ -1,9 +1,10 @@
-// Storage of tuned values, in one JSON file for each device and driver version (docs/schema/tuned.json).
+// Storage of tuned values, in one file for each device and driver version.
 #pragma once
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/base/members.hpp"
 #include "host/cl/device.hpp"
@@ -11,11 +12,8 @@
 
 namespace raya {
 
-/// Returns the JSON form of tuned values, for files and for messages between processes.
-Json to_json(const TunedValues& values);
-
-/// Inverse of to_json(). Throws Json::exception if a value is missing or not a number.
-TunedValues values_of(const Json& json);
+/// Lists the tuned values, for files and for messages between processes.
+void members_of(Members& m, TunedValues& values);
 
 /// Tuned values of one kind of render.
 struct TunedEntry {
@@ -25,6 +23,19 @@ struct TunedEntry {
     std::string scene;   // name of the measured scene
 };
 
+struct TunedFile {
+    std::string date;  // date of tuning: "2026-11-22"
+    std::vector<TunedEntry> entries;
+};
+
+/// The file of a device, for to_json(), from_json() and schema_of().
+struct StoredTuning {
+    DeviceInfo device;
+    TunedFile file;
+};
+void members_of(Members& m, TunedEntry& entry);
+void members_of(Members& m, StoredTuning& stored);
+
 /// Returns the folder of the files of tuned values: $XDG_CACHE_HOME/raya, or, if that variable is not an absolute path,
 /// $HOME/.cache/raya. Empty if neither is absolute.
 std::optional<std::filesystem::path> tuned_folder();
@@ -32,17 +43,20 @@ std::optional<std::filesystem::path> tuned_folder();
 /// Returns the name of a device's file, made of the names of platform and device and the driver version.
 std::string tuned_file_name(const DeviceInfo& device);
 
+/// Returns the text of the device's file, which contains the names of device and driver and the version of raya.
+std::string tuned_text(const DeviceInfo& device, const TunedFile& file);
+
+/// Parses the text of file `name`. Throws UserError if the text is not a valid file of tuned values, has values that
+/// the device does not support, or is for another device, driver or version of raya.
+TunedFile read_tuned(const std::string& text, const std::string& name, const DeviceInfo& device);
+
 /// Returns the path of a device's file, and creates its folder. Throws UserError if tuned_folder() is empty or the file
 /// is not writable.
 std::filesystem::path tuned_path(const DeviceInfo& device);
 
-/// Parses the text of file `name`. Throws UserError if the text is not a valid file of tuned values, has values that
-/// the device does not support, or is for another device, driver or version of raya.
-Json read_tuned(const std::string& text, const std::string& name, const DeviceInfo& device);
-
-/// Adds an entry to the device's file, or replaces the entry with the same key. Writes the file atomically, and
-/// overwrites an unusable file. Throws UserError like tuned_path().
-void save_tuned(const DeviceInfo& device, const TunedEntry& entry);
+/// Merges `tuned` into the device's file: replaces entries that have the same key as an entry of `tuned`, and keeps the
+/// others. Writes the file atomically, and overwrites an unusable file. Throws UserError like tuned_path().
+void save_tuned(const DeviceInfo& device, const TunedFile& tuned);
 
 /// Returns a source of the stored values, for ScopedTunedSource. The source reads a device's file when values for the
 /// device are first requested. If the file is unusable or writable by other users, the source ignores the file and
