@@ -39,22 +39,18 @@ std::vector<std::uint32_t> ranks_of_pes(std::uint32_t pes, std::uint32_t ranks) 
 }
 
 Distribution::Distribution(std::vector<std::uint32_t> rank_of, Ranks& ranks)
-    : ranks_(ranks), rank_of_(std::move(rank_of)), slot_of_(rank_of_.size()) {
-    std::vector<std::vector<std::uint32_t>> pes_of_ranks(ranks.count());
-    for (std::uint32_t pe = 0; pe < all(); ++pe) pes_of_ranks[rank_of_[pe]].push_back(pe);
-    set_slots(std::move(pes_of_ranks));
+    : ranks_(ranks), rank_of_(std::move(rank_of)), slot_of_(rank_of_.size()), pes_of_(ranks.count()) {
+    for (std::uint32_t pe = 0; pe < all(); ++pe) {
+        std::vector<std::uint32_t>& pes = pes_of_[rank_of_[pe]];
+        slot_of_[pe] = static_cast<std::uint32_t>(pes.size());
+        pes.push_back(pe);
+    }
 }
 
 std::uint32_t Distribution::max_count() const {
     std::size_t max = 0;
     for (const std::vector<std::uint32_t>& pes : pes_of_) max = std::max(max, pes.size());
     return static_cast<std::uint32_t>(max);
-}
-
-void Distribution::set_slots(std::vector<std::vector<std::uint32_t>> pes_of_ranks) {
-    pes_of_ = std::move(pes_of_ranks);
-    for (const std::vector<std::uint32_t>& pes : pes_of_)
-        for (std::uint32_t slot = 0; slot < pes.size(); ++slot) slot_of_[pes[slot]] = slot;
 }
 
 }  // namespace raya

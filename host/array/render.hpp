@@ -209,10 +209,6 @@ class Distribution {
         return elements_of(0);
     }
 
-  protected:
-    /// Changes the order of slots: [rank][slot]: PE.
-    void set_slots(std::vector<std::vector<std::uint32_t>> pes_of_ranks);
-
   private:
     template <class Count>
     static std::size_t count_of(const Count& count, std::uint32_t pe) {

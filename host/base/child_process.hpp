@@ -46,7 +46,7 @@ class TemporaryFolder {
 /// Exit code of a child process in which exec failed.
 inline constexpr int kNotStarted = 127;
 
-/// The descriptor into which a child reports, unless it is told another one.
+/// The descriptor into which a child reports, unless another one is given.
 inline constexpr int kReportDescriptor = 3;
 
 /// A child process and a pipe from it. If the parent ends for any reason, the system kills the child. The child ignores

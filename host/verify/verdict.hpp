@@ -22,9 +22,6 @@ enum class Outcome {
     kUnexpectedPass  // passed, although VerifySettings::expected_failures lists the check
 };
 
-inline bool has_expectation(Outcome outcome) {
-    return outcome == Outcome::kExpectedFail || outcome == Outcome::kUnexpectedPass;
-}
 inline bool has_failed(Outcome outcome) { return outcome == Outcome::kFail || outcome == Outcome::kExpectedFail; }
 
 /// Returns true for an outcome that causes exit code 4.
