@@ -334,24 +334,15 @@ Bounds bounds_of(const Box& box, double reach) {
     return bounds;
 }
 
-// Chooses the reach: the maximum coordinate of ray origins for which the boxes are valid, in multiples of the scene's
-// extent. Reflected rays can start anywhere on an infinite plane, so a scene with planes gets a larger reach: it is
-// doubled up to kMax as long as regions stay bounded and grow by at most kFractionOfBox of their mean longest side.
-double reach_for(const PackedJob& job, const NumberFormat& format) {
-    constexpr double kMin = 2, kMax = 1024, kFractionOfBox = 1.0 / 64;
-    const HitRegions regions(job, format, kMin);
-    if (!regions.all_bounded() || regions.size() == 0 || job.header().objects.planes == 0) return kMin;
+// Regions may grow by this fraction of their mean longest side.
+double max_slack(const HitRegions& regions) {
+    constexpr double kFractionOfBox = 1.0 / 64;
     double sides = 0;
     for (std::size_t i = 0; i < regions.size(); ++i) {
         const Vec3 size = regions.region(i).box.size();
         sides += std::max({size.x, size.y, size.z});
     }
-    const double mean_side = sides / static_cast<double>(regions.size());
-    double reach = kMin;
-    while (reach < kMax && regions.slack(2 * reach) <= kFractionOfBox * mean_side &&
-           HitRegions(job, format, 2 * reach).all_bounded())
-        reach *= 2;
-    return reach;
+    return regions.size() == 0 ? -1 : kFractionOfBox * (sides / static_cast<double>(regions.size()));
 }
 
 // Returns the kind of leaf (RAYA_LINK_*) in which an object is stored.
@@ -392,7 +383,7 @@ void separate_large_items(BvhItems& objects) {
 BvhItems bvh_items(const PackedJob& job, const NumberFormat& format, unsigned threads) {
     constexpr std::size_t kMinItems = 1 << 12;  // of a thread
     BvhItems objects;
-    const HitRegions regions(job, format, reach_for(job, format));
+    const HitRegions regions(job, format, reach_for(job, format, max_slack));
     if (!regions.all_bounded()) return objects;
     objects.reach = regions.reach();
     objects.items.resize(regions.size());

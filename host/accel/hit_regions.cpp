@@ -225,4 +225,18 @@ HitRegion HitRegions::cone(std::size_t at) const {
     return region;
 }
 
+double reach_for(const PackedJob& job, const NumberFormat& format,
+                 const std::function<double(const HitRegions&)>& max_slack,
+                 const std::vector<std::uint32_t>& separate) {
+    constexpr double kMin = 2, kMax = 1024;
+    const HitRegions regions(job, format, kMin, separate);
+    if (!regions.all_bounded() || job.header().objects.planes == 0) return kMin;
+    const double limit = max_slack(regions);
+    double reach = kMin;
+    while (reach < kMax && regions.slack(2 * reach) <= limit &&
+           HitRegions(job, format, 2 * reach, separate).all_bounded())
+        reach *= 2;
+    return reach;
+}
+
 }  // namespace raya

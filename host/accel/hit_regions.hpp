@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -78,5 +79,13 @@ class HitRegions {
     double extent_, reach_, far_, square_limit_;  // squares of numbers up to square_limit_ do not overflow
     bool all_bounded_;
 };
+
+/// Returns the reach of a structure: the maximum coordinate of ray origins for which it is valid, in multiples of the
+/// scene's extent. Reflected rays can start anywhere on an infinite plane, so a scene with planes gets a larger reach:
+/// it is doubled from 2 up to 1024 as long as regions stay bounded and grow by at most max_slack(regions). `separate`:
+/// numbers of the excluded objects, ascending.
+double reach_for(const PackedJob& job, const NumberFormat& format,
+                 const std::function<double(const HitRegions&)>& max_slack,
+                 const std::vector<std::uint32_t>& separate = {});
 
 }  // namespace raya

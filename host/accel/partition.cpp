@@ -140,60 +140,25 @@ void check_divisions(const Divisions& d) {
                                         d[0], d[1], d[2], kMaxPartitionVoxels));
 }
 
-// Chooses the reach: the maximum coordinate of ray origins for which the lists are valid, in multiples of the scene's
-// extent. Reflected rays can start anywhere on an infinite plane, so a scene with planes gets a larger reach: it is
-// doubled up to kMax as long as regions stay bounded and grow by at most kFractionOfVoxel of a voxel's shortest side. A
-// ray from farther away is tested against all objects.
-double reach_for(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
-                 const std::vector<std::uint32_t>& separate) {
-    constexpr double kMin = 2, kMax = 1024, kFractionOfVoxel = 1.0 / 16;
-    const HitRegions regions(job, format, kMin, separate);
-    if (!regions.all_bounded() || job.header().objects.planes == 0) return kMin;
+// Regions may grow by this fraction of a voxel's shortest side. A ray from beyond the reach is tested against all
+// objects.
+double max_voxel_slack(const HitRegions& regions, const Divisions& divisions) {
+    constexpr double kFractionOfVoxel = 1.0 / 16;
     const Box box = box_around(regions);
     double side = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
         side = std::min(side, (box.max[axis] - box.min[axis]) / divisions[static_cast<std::size_t>(axis)]);
-    double reach = kMin;
-    while (reach < kMax && regions.slack(2 * reach) <= kFractionOfVoxel * side &&
-           HitRegions(job, format, 2 * reach, separate).all_bounded())
-        reach *= 2;
-    return reach;
+    return kFractionOfVoxel * side;
 }
 
-// Estimates the total number of list entries for any voxel size, from sums over the boxes of all regions.
-class RegionSizes {
-  public:
-    explicit RegionSizes(const HitRegions& regions) {
-        for (std::size_t i = 0; i < regions.size(); ++i) {
-            const Box box = regions.region(i).box;
-            for (std::size_t axes = 0; axes < sums_.size(); ++axes)
-                sums_[axes] += product(axes, [&](int a) { return box.max[a] - box.min[a]; });
-        }
-    }
-    double objects() const { return sums_[0]; }
-    /// Returns the estimated number of entries. A box with sides e overlaps about
-    ///   (e_x / c_x + 1) (e_y / c_y + 1) (e_z / c_z + 1)
-    /// voxels with sides c. sums_ has the coefficients of the expanded product.
-    double entries(const Box& box, const Divisions& d) const {
-        double sum = 0;
-        for (std::size_t axes = 0; axes < sums_.size(); ++axes)
-            sum += sums_[axes] *
-                   product(axes, [&](int a) { return d[static_cast<std::size_t>(a)] / (box.max[a] - box.min[a]); });
-        return sum;
-    }
-
-  private:
-    // Returns the product of factor(axis) over the axes whose bits are set in `axes`.
-    template <class Factor>
-    static double product(std::size_t axes, const Factor& factor) {
-        double result = 1;
-        for (int a = 0; a < 3; ++a)
-            if (axes >> a & 1) result *= factor(a);
-        return result;
-    }
-    // [set of axes, one bit per axis]: sum over all boxes of the product of their sides along these axes.
-    std::array<double, 8> sums_{};
-};
+// Returns an estimate of the total number of list entries: a box with sides e overlaps about
+//   (e_x / c_x + 1) (e_y / c_y + 1) (e_z / c_z + 1)
+// voxels with sides c. `sizes`: e of all regions.
+double estimated_entries(const std::vector<Vec3>& sizes, const Vec3& voxel) {
+    double sum = 0;
+    for (const Vec3& e : sizes) sum += (e.x / voxel.x + 1) * (e.y / voxel.y + 1) * (e.z / voxel.z + 1);
+    return sum;
+}
 
 // Divides a box with the given sides into about `voxels` voxels that are nearly cubes. Starts with the shortest side:
 // if this side is shorter than that of an ideal voxel, it is not divided, and the other two sides get all divisions.
@@ -217,7 +182,9 @@ Divisions cubic_divisions(const Vec3& sides, double voxels) {
 Partition partition(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
                     const std::vector<std::uint32_t>& separate) {
     check_divisions(divisions);
-    const HitRegions regions(job, format, reach_for(job, format, divisions, separate), separate);
+    const double reach = reach_for(
+        job, format, [&](const HitRegions& regions) { return max_voxel_slack(regions, divisions); }, separate);
+    const HitRegions regions(job, format, reach, separate);
     const Box box = box_around(regions);
     Partition p;
     p.grid = grid_over(box, divisions, regions.reach());
@@ -236,13 +203,13 @@ Divisions divisions_for(const PackedJob& job, const NumberFormat& format, std::u
     const HitRegions regions(job, format, 2, separate);
     if (!regions.all_bounded()) return {1, 1, 1};
     const Box box = box_around(regions);
-    const RegionSizes sizes(regions);
+    std::vector<Vec3> sizes;
+    for (std::size_t i = 0; i < regions.size(); ++i) sizes.push_back(regions.region(i).box.size());
     auto wanted_voxels = static_cast<double>(std::clamp<std::uint64_t>(voxels, 1, kMaxPartitionVoxels));
     for (;; wanted_voxels /= 2) {
-        const Divisions divisions = cubic_divisions(box.max - box.min, wanted_voxels);
-        if (wanted_voxels <= 1 ||
-            sizes.entries(box, divisions) <= kMaxMeanEntries * std::max(wanted_voxels, sizes.objects()))
-            return divisions;
+        const Divisions d = cubic_divisions(box.size(), wanted_voxels);
+        const double limit = kMaxMeanEntries * std::max(wanted_voxels, static_cast<double>(sizes.size()));
+        if (wanted_voxels <= 1 || estimated_entries(sizes, box.size() / Vec3(d[0], d[1], d[2])) <= limit) return d;
     }
 }
 
@@ -301,22 +268,20 @@ Partition accel_partition(const PackedJob& job, const NumberFormat& format, cons
 
 AccelSummary append_grid(PackedJob& job, const Partition& p) {
     const std::size_t end = job.words().size(), grid_at = padded_to_rows(end);
+    const std::size_t separate_at = grid_at + kWordsOf<raya_grid_words>, starts_at = separate_at + p.separate.size();
+    const std::size_t lists_at = starts_at + p.starts.size(), new_end = lists_at + p.objects.size();
+    if (new_end > kMaxWords)
+        throw UserError("--accel grid: 32-bit indices cannot address all words of the grid; use fewer voxels");
     raya_grid_words header{};
-    std::vector<std::uint32_t> words(grid_at - end + kWordsOf<raya_grid_words>);
-    const auto append = [&](const std::vector<std::uint32_t>& list) {
-        const std::size_t at = end + words.size();
-        if (at + list.size() > kMaxWords)
-            throw UserError("--accel grid: 32-bit indices cannot address all words of the grid; use fewer voxels");
-        words.insert(words.end(), list.begin(), list.end());
-        return as_word(at);
-    };
     header.grid = p.grid;
     header.separate = as_word(p.separate.size());
-    header.separate_at = append(p.separate);
-    header.starts_at = append(p.starts);
-    header.lists_at = append(p.objects);
+    header.separate_at = as_word(separate_at);
+    header.starts_at = as_word(starts_at);
+    header.lists_at = as_word(lists_at);
+    const std::span<std::uint32_t> words = job.append_zeros(new_end - end);
     put_record(words, grid_at - end, header);
-    job.append(words);
+    auto next = words.begin() + static_cast<std::ptrdiff_t>(separate_at - end);
+    for (const auto* list : {&p.separate, &p.starts, &p.objects}) next = std::copy(list->begin(), list->end(), next);
     raya_job new_header = job.header();
     new_header.accel_at = as_word(grid_at);
     job.set_header(new_header);

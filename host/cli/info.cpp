@@ -237,8 +237,6 @@ void print_machine(const Machine& machine) {
 void list_machines(const std::string& name) {
     if (!name.empty()) return print_machine(machine_named(name));
     for (const Machine& machine : machines()) print_machine(machine);
-    for (const CitedMachine& cited : cited_machines())
-        fmt::print("{}: cited but not modelled, because {}. {}.\n", cited.name, cited.reason, cited.facts);
     fmt::print(
         "\n[P] printed in the machine's paper, [D] derived from printed figures, [T] data sheet of the T805, "
         "[?] assumed.\n");

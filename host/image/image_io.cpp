@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <xxhash.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -13,7 +12,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
-#include <memory>
 #include <new>
 #include <stdexcept>
 
@@ -23,48 +21,12 @@
 #include "host/error.hpp"
 
 namespace raya {
-namespace {
-
-/// Computes XXH3 incrementally, over 32-bit words in little-endian byte order.
-class WordHash {
-  public:
-    WordHash() : state_(XXH3_createState(), &XXH3_freeState) {
-        if (!state_) throw std::bad_alloc();
-        XXH3_128bits_reset(state_.get());
-    }
-
-    void add(std::uint32_t word) {
-        for (int shift = 0; shift < 32; shift += 8) bytes_.push_back(static_cast<unsigned char>(word >> shift));
-        if (bytes_.size() == kBlockBytes) flush();
-    }
-
-    std::string hex() {
-        flush();
-        XXH128_canonical_t canonical;
-        XXH128_canonicalFromHash(&canonical, XXH3_128bits_digest(state_.get()));
-        return hex_digits(canonical.digest);
-    }
-
-  private:
-    static constexpr std::size_t kBlockBytes = 1 << 16;  // a multiple of 4, so that add() fills a block exactly
-
-    void flush() {
-        XXH3_128bits_update(state_.get(), bytes_.data(), bytes_.size());
-        bytes_.clear();
-    }
-
-    std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state_;
-    std::vector<unsigned char> bytes_;
-};
-
-}  // namespace
-
 std::string pixel_hash(const Image& image) {
-    WordHash hash;
-    hash.add(static_cast<std::uint32_t>(image.width));
-    hash.add(static_cast<std::uint32_t>(image.height));
-    for (const float value : image.rgb) hash.add(std::bit_cast<std::uint32_t>(value));
-    return hash.hex();
+    std::vector<std::uint32_t> words = {static_cast<std::uint32_t>(image.width),
+                                        static_cast<std::uint32_t>(image.height)};
+    words.reserve(words.size() + image.rgb.size());
+    for (const float value : image.rgb) words.push_back(std::bit_cast<std::uint32_t>(value));
+    return words_hash(words);
 }
 
 namespace {
@@ -73,44 +35,27 @@ double linear_from_srgb(double encoded) {
     return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-/// Returns the code 0..255 that is nearest to 255 curve(linear), for the curve of `borders`; 0 for negative values and
-/// NaN, 255 above 1.
-std::uint8_t nearest_code(const CodeBorders& borders, double linear) {
-    const auto border = std::lower_bound(borders.begin(), borders.end(), linear);
-    return static_cast<std::uint8_t>(border - borders.begin());
-}
-
-/// Returns the borders of the sRGB curve.
-const CodeBorders& srgb_borders() {
-    static const CodeBorders borders = [] {
-        CodeBorders all;
-        for (std::size_t k = 0; k < all.size(); ++k) all[k] = linear_from_srgb((static_cast<double>(k) + 0.5) / 255);
-        return all;
-    }();
-    return borders;
-}
-
 }  // namespace
 
 float srgb_light(std::uint8_t code) { return static_cast<float>(linear_from_srgb(code / 255.0)); }
 
-std::uint8_t srgb_code(float linear) { return nearest_code(srgb_borders(), static_cast<double>(linear)); }
-
-ToneCodes::ToneCodes(double exposure) : factor_(std::exp2(exposure)) {
-    for (std::size_t k = 0; k < codes_.size(); ++k)
-        codes_[k] = nearest_code(srgb_borders(), static_cast<double>(k) / kCells);
+std::uint8_t srgb_code(double linear) {
+    // borders[k]: the linear value at which the nearest code changes from k to k + 1
+    static const std::array<double, 255> borders = [] {
+        std::array<double, 255> all;
+        for (std::size_t k = 0; k < all.size(); ++k) all[k] = linear_from_srgb((static_cast<double>(k) + 0.5) / 255);
+        return all;
+    }();
+    return static_cast<std::uint8_t>(std::lower_bound(borders.begin(), borders.end(), linear) - borders.begin());
 }
 
-std::array<std::uint8_t, 3> ToneCodes::operator()(const float* rgb) const {
+std::vector<std::uint8_t> srgb_codes(std::span<const float> values, double exposure) {
     constexpr double kMaxFloat = std::numeric_limits<float>::max();
-    const CodeBorders& borders = srgb_borders();
-    std::array<std::uint8_t, 3> codes{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double linear = std::isnan(rgb[i]) ? 0 : factor_ * std::clamp<double>(rgb[i], -kMaxFloat, kMaxFloat);
-        std::size_t code = codes_[static_cast<std::size_t>(std::clamp(linear, 0.0, 1.0) * kCells)];
-        while (code < borders.size() && borders[code] < linear) ++code;
-        codes[i] = static_cast<std::uint8_t>(code);
-    }
+    const double factor = std::exp2(exposure);
+    std::vector<std::uint8_t> codes;
+    codes.reserve(values.size());
+    for (const float value : values)
+        codes.push_back(std::isnan(value) ? 0 : srgb_code(factor * std::clamp<double>(value, -kMaxFloat, kMaxFloat)));
     return codes;
 }
 
@@ -132,30 +77,16 @@ void append_chunk(std::string& file, const char* name, std::string_view data) {
                           crc32(0, static_cast<const Bytef*>(bytes), static_cast<uInt>(checked.size()))));
 }
 
-// Paeth's predictor (filter type 4): returns the neighbouring byte that is nearest to left + above - corner. `corner`:
-// the byte above `left`.
-std::uint8_t prediction(int left, int above, int corner) {
-    const int p = left + above - corner;
-    const int a = std::abs(p - left), b = std::abs(p - above), c = std::abs(p - corner);
-    return static_cast<std::uint8_t>(a <= b && a <= c ? left : b <= c ? above : corner);
-}
-
-// Returns the filtered rows of the image. A filtered row is the filter type, followed by the differences between the
-// row's bytes and their predictions.
+// Returns the filtered rows of the image: for each the filter type 2 (Up), and the differences between its bytes and
+// those above.
 std::string filtered_rows(const Image& image) {
-    constexpr char kPaeth = 4;
+    constexpr char kUp = 2;
+    const std::vector<std::uint8_t> codes = srgb_codes(image.rgb, 0);
     const std::size_t row_bytes = kChannels * static_cast<std::size_t>(image.width);
-    std::string above(row_bytes, '\0'), row(row_bytes, '\0'), rows;
-    const auto byte_at = [](const std::string& codes, std::size_t i) { return static_cast<std::uint8_t>(codes[i]); };
-    for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {
-        rows += kPaeth;
-        for (std::size_t i = 0; i < row_bytes; ++i) {
-            row[i] = static_cast<char>(srgb_code(image.rgb[y * row_bytes + i]));
-            const int left = i < kChannels ? 0 : byte_at(row, i - kChannels);
-            const int corner = i < kChannels ? 0 : byte_at(above, i - kChannels);
-            rows += static_cast<char>(byte_at(row, i) - prediction(left, byte_at(above, i), corner));
-        }
-        std::swap(row, above);
+    std::string rows;
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+        if (i % row_bytes == 0) rows += kUp;
+        rows += static_cast<char>(codes[i] - (i < row_bytes ? 0 : codes[i - row_bytes]));
     }
     return rows;
 }
@@ -208,11 +139,9 @@ int preview_side(int image_side, int longer_side, int max_side) {
 }
 
 Image as_displayed(const Image& image, double exposure) {
-    const ToneCodes codes(exposure);
     Image displayed{image.width, image.height, {}};
     displayed.rgb.reserve(image.rgb.size());
-    for (std::size_t at = 0; at + 2 < image.rgb.size(); at += 3)
-        for (const std::uint8_t code : codes(&image.rgb[at])) displayed.rgb.push_back(srgb_light(code));
+    for (const std::uint8_t code : srgb_codes(image.rgb, exposure)) displayed.rgb.push_back(srgb_light(code));
     return displayed;
 }
 
@@ -248,11 +177,6 @@ struct Pixels {
     int height;
     int channels;
     std::span<const float> values;
-
-    std::span<const float> row(int number) const {
-        const std::size_t length = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
-        return values.subspan(static_cast<std::size_t>(number) * length, length);
-    }
 };
 
 // Returns the extension of `path` in lower case. For stdout, returns the extension of a format that needs no library:
@@ -272,13 +196,6 @@ const char* encoded_format(const std::string& extension) {
     if (extension == ".tif" || extension == ".tiff") return "tiff";
     if (extension == ".jpg" || extension == ".jpeg") return "jpeg";
     return nullptr;
-}
-
-void check_shape(int width, int height, std::size_t channels, std::size_t floats) {
-    const bool positive = width > 0 && height > 0;
-    if (!positive || floats != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels)
-        throw std::logic_error(
-            fmt::format("{} floats are not a {} x {} image of {} channels", floats, width, height, channels));
 }
 
 [[noreturn]] void refuse_to_encode(const fs::path& path, const std::string& reason, const std::string& remedy = "") {
@@ -309,65 +226,43 @@ std::string encode(const fs::path& path, const char* format, const Pixels& pixel
     return result;
 }
 
-std::string encode_codes(const fs::path& path, const char* format, const Pixels& pixels,
-                         const ImageAttributes& attributes, double exposure) {
-    const ToneCodes codes_of(exposure);
-    std::vector<std::uint8_t> codes;
-    codes.reserve(pixels.values.size());
-    for (std::size_t at = 0; at < pixels.values.size(); at += 3)
-        for (const std::uint8_t code : codes_of(&pixels.values[at])) codes.push_back(code);
-    return encode(path, format, pixels, codes.data(), attributes);
-}
-
-// Writes a header, then one row at a time, so that memory never holds the whole file. append_row(bytes, row) appends
-// the bytes of a row.
-template <class AppendRow>
-void write_rows(const fs::path& path, const Pixels& pixels, const std::string& header, const AppendRow& append_row) {
-    std::string piece;
-    int row = -1;  // row of the next piece; -1: the header
-    write_whole_file(path, [&]() -> std::string_view {
-        piece.clear();
-        if (row < 0) piece = header;
-        if (row >= 0 && row < pixels.height) append_row(piece, row);
-        ++row;
-        return piece;
-    });
-}
-
 // Binary portable pixmap (PPM, J. Poskanzer): the lines `P6`, `width height` and `255`, then three 8-bit codes per
 // pixel, the same as in a PNG, the top row first.
-void write_ppm(const fs::path& path, const Pixels& pixels, double exposure) {
-    const ToneCodes codes_of(exposure);
-    const std::string header = fmt::format("P6\n{} {}\n255\n", pixels.width, pixels.height);
-    write_rows(path, pixels, header, [&](std::string& bytes, int number) {
-        const std::span<const float> row = pixels.row(number);
-        for (std::size_t at = 0; at < row.size(); at += 3)
-            for (const std::uint8_t code : codes_of(&row[at])) bytes += static_cast<char>(code);
-    });
+std::string ppm_bytes(const Pixels& pixels, const std::vector<std::uint8_t>& codes) {
+    return fmt::format("P6\n{} {}\n255\n", pixels.width, pixels.height).append(codes.begin(), codes.end());
 }
 
 // Portable float map (PFM, P. Debevec): the lines `PF` (colour) or `Pf` (grey), `width height` and `-1.0`
 // (little-endian, on any machine), then the floats, the bottom row first. OpenImageIO 2.4 reads PFM but does not write
 // it.
-void write_pfm(const fs::path& path, const Pixels& pixels) {
-    const char* const magic = pixels.channels == 3 ? "PF" : "Pf";
-    const std::string header = fmt::format("{}\n{} {}\n-1.0\n", magic, pixels.width, pixels.height);
-    write_rows(path, pixels, header, [&](std::string& bytes, int number) {
-        for (const float value : pixels.row(pixels.height - 1 - number))
+std::string pfm_bytes(const Pixels& pixels) {
+    std::string bytes =
+        fmt::format("{}\n{} {}\n-1.0\n", pixels.channels == 3 ? "PF" : "Pf", pixels.width, pixels.height);
+    const std::size_t row_floats = pixels.values.size() / static_cast<std::size_t>(pixels.height);
+    for (std::size_t end = pixels.values.size(); end > 0; end -= row_floats)
+        for (const float value : pixels.values.subspan(end - row_floats, row_floats))
             for (int shift = 0; shift < 32; shift += 8)
                 bytes += static_cast<char>(std::bit_cast<std::uint32_t>(value) >> shift & 255);
-    });
+    return bytes;
 }
 
-// Writes the pixels in the format of `extension`. `exposure` applies only to formats with 8-bit codes.
-void write_pixels(const fs::path& path, const Pixels& pixels, const ImageAttributes& attributes,
-                  const std::string& extension, double exposure) {
+// Writes the pixels in the format of the extension. `exposure` applies only to formats with 8-bit codes.
+void write_pixels(const fs::path& path, const Pixels& pixels, std::span<const std::string_view> extensions,
+                  const ImageAttributes& attributes, double exposure) {
+    const bool positive = pixels.width > 0 && pixels.height > 0;
+    if (!positive || pixels.values.size() != static_cast<std::size_t>(pixels.width) *
+                                                 static_cast<std::size_t>(pixels.height * pixels.channels))
+        throw std::logic_error(fmt::format("{} floats are not a {} x {} image of {} channels", pixels.values.size(),
+                                           pixels.width, pixels.height, pixels.channels));
+    check_image_name(path, extensions);
+    const std::string extension = lower_case_extension(path, extensions);
     const char* const format = encoded_format(extension);
+    if (extension == ".pfm") return write_whole_file(path, pfm_bytes(pixels));
     if (extension == ".exr")
         return write_whole_file(path, encode(path, format, pixels, pixels.values.data(), attributes));
-    if (format != nullptr) return write_whole_file(path, encode_codes(path, format, pixels, attributes, exposure));
-    if (extension == ".ppm") return write_ppm(path, pixels, exposure);
-    write_pfm(path, pixels);
+    const std::vector<std::uint8_t> codes = srgb_codes(pixels.values, exposure);
+    write_whole_file(
+        path, format == nullptr ? ppm_bytes(pixels, codes) : encode(path, format, pixels, codes.data(), attributes));
 }
 
 }  // namespace
@@ -389,17 +284,11 @@ void load_encoder(const fs::path& path) {
 }
 
 void write_image(const fs::path& path, const Image& image, const ImageAttributes& attributes, double exposure) {
-    check_shape(image.width, image.height, 3, image.rgb.size());
-    check_image_name(path, kImageExtensions);
-    write_pixels(path, {image.width, image.height, 3, image.rgb}, attributes,
-                 lower_case_extension(path, kImageExtensions), exposure);
+    write_pixels(path, {image.width, image.height, 3, image.rgb}, kImageExtensions, attributes, exposure);
 }
 
 void write_image(const fs::path& path, const GreyImage& image, const ImageAttributes& attributes) {
-    check_shape(image.width, image.height, 1, image.values.size());
-    check_image_name(path, kGreyImageExtensions);
-    write_pixels(path, {image.width, image.height, 1, image.values}, attributes,
-                 lower_case_extension(path, kGreyImageExtensions), {});
+    write_pixels(path, {image.width, image.height, 1, image.values}, kGreyImageExtensions, attributes, 0);
 }
 
 }  // namespace raya

@@ -34,36 +34,21 @@ struct GreyImage {
 /// those of NaNs with different bits.
 std::string pixel_hash(const Image& image);
 
-// Conversion of linear colours to 8-bit codes of image files: exposure and transfer curve (sRGB, IEC
-// 61966-2-1, or a power).
+// Conversion of linear colours to 8-bit codes of image files, by the sRGB curve (IEC 61966-2-1).
 
-/// borders[k]: the linear value at which the nearest code changes from k to k + 1. Its encoded value is
-/// (k + 1/2) / 255.
-using CodeBorders = std::array<double, 255>;
-
-/// Returns the nearest code on the sRGB curve. The code follows from comparisons with the 255 borders, which are
-/// computed with the C library's pow(). The code is the same on every machine, because the relative error of pow() is
-/// only about 10^-16, and the relative distance of every float from every border is more than 10^-11.
-std::uint8_t srgb_code(float linear);
+/// Returns the nearest code on the sRGB curve; 0 for negative values and NaN, 255 above 1. The code follows from
+/// comparisons with the 255 values between two codes, which are computed with the C library's pow(). The code of a
+/// float is the same on every machine, because the relative error of pow() is only about 10^-16, and the relative
+/// distance of every float from these values is more than 10^-11.
+std::uint8_t srgb_code(double linear);
 
 /// Returns the linear value of a code on the sRGB curve.
 float srgb_light(std::uint8_t code);
 
-/// Converts pixels to codes: multiplies by 2^exposure, clips to 0..1, and applies the sRGB curve. A NaN component
-/// counts as 0, an infinite one as the largest float. The result is the same on every machine, except for values at the
-/// border of two codes, which depend on the rounding of exp2().
-class ToneCodes {
-  public:
-    explicit ToneCodes(double exposure = 0);
-
-    /// Returns the codes of one pixel. `rgb`: 3 linear values, red, green and blue.
-    std::array<std::uint8_t, 3> operator()(const float* rgb) const;
-
-  private:
-    double factor_;
-    static constexpr int kCells = 4096;
-    std::array<std::uint8_t, kCells + 1> codes_;  // [k]: the code of k / kCells; a search from there takes few steps
-};
+/// Returns the codes of the values multiplied by 2^exposure. A NaN counts as 0, an infinite value as the largest float.
+/// The result is the same on every machine, except for values at the border of two codes, which depend on the rounding
+/// of exp2().
+std::vector<std::uint8_t> srgb_codes(std::span<const float> values, double exposure);
 
 // A PNG encoder that does not need OpenImageIO, for images in HTML pages and reports.
 

@@ -1,12 +1,13 @@
 #include "host/model/machine.hpp"
 
-#include <fmt/ranges.h>
 #include <fmt/core.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "host/model/budget.hpp"
 #include "host/model/t805.hpp"
@@ -18,8 +19,6 @@ namespace {
 // sheet, [?] assumed here.
 
 constexpr double kInfiniteRate = std::numeric_limits<double>::infinity();  // rate of a transfer that takes no time
-constexpr const char *kCyclePrinted = "[P] 100 ns, 20 MFLOPS: one multiply-accumulate a cycle",
-                     *kAsSpa = "[?] as the SPA";
 
 std::string rate_text(double per_s, const char* unit) {
     return per_s == kInfiniteRate ? "takes no time" : fmt::format("{:.4g} M{}/s", 1e-6 * per_s, unit);
@@ -29,27 +28,27 @@ std::string memory_text(const std::optional<std::uint64_t>& bytes) {
     return bytes ? fmt::format("{} KB", *bytes / 1024) : "no limit";
 }
 
-// Sources of the numbers of a ring machine, in the order of ring_facts().
-struct RingSources {
-    const char *pes, *memory, *bounces, *format, *mapping, *cycle, *factor, *link, *sync, *setup, *broadcast, *gather,
-        *display;
-};
+/// Sources of a machine's numbers, by the name of the number.
+using Sources = std::map<std::string, std::string>;
 
-std::vector<Fact> ring_facts(const Machine& m, const std::string& mapping, const RingSources& sources) {
+/// Returns the facts of a ring machine. `sources` has one for each.
+std::vector<Fact> ring_facts(const Machine& m, const std::string& mapping, const Sources& sources) {
     const MachineClock& c = m.clock;
-    return {{"PEs", m.pes ? fmt::format("{}", *m.pes) : "one per image column", sources.pes},
-            {"memory of a PE", memory_text(m.pe_memory_bytes), sources.memory},
-            {"reflections and refractions", fmt::format("at most {}", m.bounces), sources.bounces},
-            {"number format", format_name(m.format), sources.format},
-            {"mapping of pixels", mapping, sources.mapping},
-            {"cycle of a PE", fmt::format("{:g} ns", c.cycle_ns), sources.cycle},
-            {"cycles per budget cycle", fmt::format("{:.4g}", c.cycle_factor), sources.factor},
-            {"link to a neighbour", rate_text(c.link_words_per_s, "words"), sources.link},
-            {"synchronisation of a rotation", fmt::format("{:g} ms", c.rotation_sync_ms), sources.sync},
-            {"set-up of a transfer", fmt::format("{:g} ms", c.setup_ms), sources.setup},
-            {"broadcast by the host", rate_text(c.broadcast_words_per_s, "words"), sources.broadcast},
-            {"gather of the image", rate_text(c.gather_words_per_s, "words"), sources.gather},
-            {"display", rate_text(c.display_pixels_per_s, "pixels"), sources.display}};
+    std::vector<Fact> facts = {{"PEs", m.pes ? fmt::format("{}", *m.pes) : "one per image column", ""},
+                               {"memory of a PE", memory_text(m.pe_memory_bytes), ""},
+                               {"reflections and refractions", fmt::format("at most {}", m.bounces), ""},
+                               {"number format", format_name(m.format), ""},
+                               {"mapping of pixels", mapping, ""},
+                               {"cycle of a PE", fmt::format("{:g} ns", c.cycle_ns), ""},
+                               {"cycles per budget cycle", fmt::format("{:.4g}", c.cycle_factor), ""},
+                               {"link to a neighbour", rate_text(c.link_words_per_s, "words"), ""},
+                               {"synchronisation of a rotation", fmt::format("{:g} ms", c.rotation_sync_ms), ""},
+                               {"set-up of a transfer", fmt::format("{:g} ms", c.setup_ms), ""},
+                               {"broadcast by the host", rate_text(c.broadcast_words_per_s, "words"), ""},
+                               {"gather of the image", rate_text(c.gather_words_per_s, "words"), ""},
+                               {"display", rate_text(c.display_pixels_per_s, "pixels"), ""}};
+    for (Fact& fact : facts) fact.source = sources.at(fact.what);
+    return facts;
 }
 
 // Kohata & Ito 1993. The clock is derived from the printed times in Tables 2 to 4, each rounded to 1 ms; docs/architecture.md
@@ -68,20 +67,23 @@ MachineClock spa_clock() {
     return clock;
 }
 
-constexpr RingSources kSpaSources = {
-    .pes = "[P] 256 DSPs",
-    .memory = "[P]",
-    .bounces = "[P]",
-    .format = "[P] 22 bits; [?] their division into 1 sign, 6 exponent and 15 fraction bits",
-    .mapping = "[P] the offset with the smallest imbalance",
-    .cycle = kCyclePrinted,
-    .factor = "[D] Tables 3 and 4: the filter's arithmetic takes 7 ms (9 - 2 and 19 - 12); its budget is 1.0752 ms",
-    .link = "[P] DMA; [?] the bus between PEs has the same rate",
-    .sync = "[D] Table 4: 34 rotations of 768 words take 10 ms longer than 2",
-    .setup = "[D] Table 4: 2 ms minus the time of 2 rotations; [?] a broadcast or gather takes the same",
-    .broadcast = "[?] as the gather",
-    .gather = "[D] Table 2: 140 ms for 256 x 256 pixels of 3 words",
-    .display = "[P] Table 2: 1,130 ms for 256 x 256 pixels"};
+Sources spa_sources() {
+    return {{"PEs", "[P] 256 DSPs"},
+            {"memory of a PE", "[P]"},
+            {"reflections and refractions", "[P]"},
+            {"number format", "[P] 22 bits; [?] their division into 1 sign, 6 exponent and 15 fraction bits"},
+            {"mapping of pixels", "[P] the offset with the smallest imbalance"},
+            {"cycle of a PE", "[P] 100 ns, 20 MFLOPS: one multiply-accumulate a cycle"},
+            {"cycles per budget cycle",
+             "[D] Tables 3 and 4: the filter's arithmetic takes 7 ms (9 - 2 and 19 - 12); its budget is 1.0752 ms"},
+            {"link to a neighbour", "[P] DMA; [?] the bus between PEs has the same rate"},
+            {"synchronisation of a rotation", "[D] Table 4: 34 rotations of 768 words take 10 ms longer than 2"},
+            {"set-up of a transfer",
+             "[D] Table 4: 2 ms minus the time of 2 rotations; [?] a broadcast or gather takes the same"},
+            {"broadcast by the host", "[?] as the gather"},
+            {"gather of the image", "[D] Table 2: 140 ms for 256 x 256 pixels of 3 words"},
+            {"display", "[P] Table 2: 1,130 ms for 256 x 256 pixels"}};
+}
 
 Machine spa() {
     Machine machine = {.name = "spa",
@@ -93,7 +95,7 @@ Machine spa() {
                        .format = {6, 15, false},
                        .mapping = cyclic_mapping(16),
                        .clock = spa_clock()};
-    machine.facts = ring_facts(machine, "cyclic, offset 16", kSpaSources);
+    machine.facts = ring_facts(machine, "cyclic, offset 16", spa_sources());
     return machine;
 }
 
@@ -105,8 +107,8 @@ Machine grande() {
     machine.pe_memory_bytes = {};
     machine.format = {};
     machine.accel = {AccelKind::kBvh};
-    RingSources sources = kSpaSources;
-    sources.pes = sources.memory = sources.format = "[?] no machine of the papers";
+    Sources sources = spa_sources();
+    for (const char* what : {"PEs", "memory of a PE", "number format"}) sources[what] = "[?] no machine of the papers";
     machine.facts = ring_facts(machine, "cyclic, offset 16", sources);
     return machine;
 }
@@ -118,9 +120,9 @@ Machine spa1() {
     machine.title = "the SPA with one DSP";
     machine.pes = 1;
     machine.mapping = cyclic_mapping(0);  // no effect with one PE
-    RingSources sources = kSpaSources;
-    sources.pes = "[P] Table 2";
-    sources.mapping = "no effect with one PE";
+    Sources sources = spa_sources();
+    sources["PEs"] = "[P] Table 2";
+    sources["mapping of pixels"] = "no effect with one PE";
     machine.facts = ring_facts(machine, "cyclic, offset 0", sources);
     return machine;
 }
@@ -139,19 +141,14 @@ Machine array_of_spa_pes(const std::string& name, const std::string& title, cons
     return machine;
 }
 
-constexpr RingSources kComparedArraySources = {.pes = "",
-                                               .memory = "[?] no limit, so that loads can be compared",
-                                               .bounces = kAsSpa,
-                                               .format = kAsSpa,
-                                               .mapping = "",
-                                               .cycle = kAsSpa,
-                                               .factor = kAsSpa,
-                                               .link = kAsSpa,
-                                               .sync = kAsSpa,
-                                               .setup = kAsSpa,
-                                               .broadcast = kAsSpa,
-                                               .gather = "[P] PEs hold the frame buffer",
-                                               .display = "[P] PEs hold the frame buffer"};
+/// Returns the sources of an array_of_spa_pes(): those of `own`, else "as the SPA".
+Sources compared_sources(Sources own) {
+    own.insert({{"memory of a PE", "[?] no limit, so that loads can be compared"},
+                {"gather of the image", "[P] PEs hold the frame buffer"},
+                {"display", "[P] PEs hold the frame buffer"}});
+    for (const auto& [what, source] : spa_sources()) own.insert({what, "[?] as the SPA"});
+    return own;
+}
 
 // "Cellular Array Processor CAP and Applications", doi:10.1007/BF00932066, 1989 (abstract): 256 cells; an interface
 // chip with two buses for broadcasts, 2 MB/s each, and six serial ports, 15 Mbit/s each; every cell holds and displays
@@ -164,14 +161,17 @@ Machine cap() {
     machine.clock.broadcast_words_per_s = 2e6 / kWordBytes;
     machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kInfiniteRate;
     machine.clock.rotation_sync_ms = machine.clock.setup_ms = 0;
-    RingSources sources = kComparedArraySources;
-    sources.pes = "[P] 256 cells";
-    sources.mapping = "[P] Kohata & Ito 1993, Fig. 5: every 16th pixel in both directions";
-    sources.link = "[P] six serial ports of 15 Mbit/s; [?] words of 4 bytes";
-    sources.sync = sources.setup = "[?] not printed: taken as 0";
-    sources.broadcast = "[P] common bus of 2 MB/s; [?] words of 4 bytes, one of the two buses";
-    sources.gather = sources.display = "[P] every cell displays its own pixels over the video bus";
-    machine.facts = ring_facts(machine, "grid:16x16", sources);
+    machine.facts = ring_facts(
+        machine, "grid:16x16",
+        compared_sources(
+            {{"PEs", "[P] 256 cells"},
+             {"mapping of pixels", "[P] Kohata & Ito 1993, Fig. 5: every 16th pixel in both directions"},
+             {"link to a neighbour", "[P] six serial ports of 15 Mbit/s; [?] words of 4 bytes"},
+             {"synchronisation of a rotation", "[?] not printed: taken as 0"},
+             {"set-up of a transfer", "[?] not printed: taken as 0"},
+             {"broadcast by the host", "[P] common bus of 2 MB/s; [?] words of 4 bytes, one of the two buses"},
+             {"gather of the image", "[P] every cell displays its own pixels over the video bus"},
+             {"display", "[P] every cell displays its own pixels over the video bus"}}));
     return machine;
 }
 
@@ -182,11 +182,13 @@ Machine pixel_machine() {
                                        "pipeline and 2-D array", grid_mapping(8, 8), 64);
     machine.clock.cycle_ns = 200;
     machine.clock.gather_words_per_s = machine.clock.display_pixels_per_s = kInfiniteRate;
-    RingSources sources = kComparedArraySources;
-    sources.pes = "[P] 64 pixel nodes";
-    sources.mapping = "[P] every m-th pixel on every n-th scan line; [D] m = n = 8";
-    sources.cycle = "[D] 820 MFLOPS of 82 nodes are two operations in 200 ns; the 18 pipe nodes only pass the scene on";
-    machine.facts = ring_facts(machine, "grid:8x8", sources);
+    machine.facts = ring_facts(
+        machine, "grid:8x8",
+        compared_sources({{"PEs", "[P] 64 pixel nodes"},
+                          {"mapping of pixels", "[P] every m-th pixel on every n-th scan line; [D] m = n = 8"},
+                          {"cycle of a PE",
+                           "[D] 820 MFLOPS of 82 nodes are two operations in 200 ns; the 18 pipe nodes only pass the "
+                           "scene on"}}));
     return machine;
 }
 
@@ -200,11 +202,12 @@ Machine links() {
     const double request_ms = 2 * c.rotation_sync_ms + 1e3 * 3 / c.link_words_per_s;
     const double cycle_ms = compute_ms(c, 1);
     machine.dynamic = DynamicPlan{.root_cycles = static_cast<std::uint64_t>(std::lround(request_ms / cycle_ms))};
-    RingSources sources = kComparedArraySources;
-    sources.pes = "[P] up to 256 node computers and a root";
-    sources.mapping = "[P] idle nodes request pixels from the root; [?] one pixel a request";
-    sources.gather = sources.display = "[P] pixels pass a FIFO to the frame memory without conflicts";
-    machine.facts = ring_facts(machine, "dynamic", sources);
+    machine.facts = ring_facts(
+        machine, "dynamic",
+        compared_sources({{"PEs", "[P] up to 256 node computers and a root"},
+                          {"mapping of pixels", "[P] idle nodes request pixels from the root; [?] one pixel a request"},
+                          {"gather of the image", "[P] pixels pass a FIFO to the frame memory without conflicts"},
+                          {"display", "[P] pixels pass a FIFO to the frame memory without conflicts"}}));
     machine.facts.push_back(
         {"request to the root",
          fmt::format("{:.3g} ms = {} budget cycles, one at a time", request_ms, machine.dynamic->root_cycles),
@@ -257,24 +260,10 @@ const std::vector<Machine>& machines() {
     return all;
 }
 
-const std::vector<CitedMachine>& cited_machines() {
-    static const std::vector<CitedMachine> all = {
-        {"sight",
-         "Kohata & Ito 1993 names it in one sentence, as a machine with its own processors (Yoshida et al. 1985); "
-         "its successor SIGHT-2 had 16 PEs, static load distribution and an efficiency above 99 % (Yoshida, Naruse & "
-         "Takahashi 1989)",
-         "no public description states which pixels each of its PEs computes"}};
-    return all;
-}
-
 const Machine& machine_named(std::string_view name) {
     const auto& all = machines();
     const auto found = std::find_if(all.begin(), all.end(), [&](const Machine& m) { return m.name == name; });
     if (found != all.end()) return *found;
-    for (const CitedMachine& cited : cited_machines())
-        if (cited.name == name)
-            throw UserError(
-                fmt::format("--machine {}: raya does not model this machine: {}. {}", name, cited.reason, cited.facts));
     std::vector<std::string> names;
     for (const Machine& m : all) names.push_back(m.name);
     throw UserError(fmt::format("--machine {}: no such machine; available: {}", name, fmt::join(names, ", ")));

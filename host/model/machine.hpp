@@ -113,14 +113,7 @@ struct Machine {
 /// Returns the machines that the option `--machine` accepts. The first is the default.
 const std::vector<Machine>& machines();
 
-/// A machine that the papers cite and that raya does not model.
-struct CitedMachine {
-    const char *name, *facts, *reason;  // `facts`: what is known of it; `reason`: why it is not modelled
-};
-const std::vector<CitedMachine>& cited_machines();
-
-/// Returns the machine called `name`. Throws UserError if there is no such machine (the message lists all machines), or
-/// if raya does not model it (the message states the reason).
+/// Returns the machine called `name`. Throws UserError if there is no such machine; the message lists all machines.
 const Machine& machine_named(std::string_view name);
 
 /// Returns the modelled cycles of one event of each kind (RAYA_* of kernels/shared/events.h) on a PE of the SPA, from

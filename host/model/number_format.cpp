@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
@@ -12,23 +11,6 @@
 
 namespace raya {
 namespace {
-
-[[noreturn]] void throw_invalid_format(const std::string& text) {
-    throw UserError(
-        fmt::format("--format {}: must be fp32, spa22 (e6m15), or eXmY with X = 5..8 exponent and Y = 4..21 fraction "
-                    "bits; append t to truncate",
-                    text));
-}
-
-// Reads `letter` and a decimal number at `position`, and advances `position` past both. Returns the number.
-int read_field(const std::string& text, std::size_t& position, char letter) {
-    if (position >= text.size() || text[position] != letter) throw_invalid_format(text);
-    int value = 0;
-    const auto [end, error] = std::from_chars(text.data() + position + 1, text.data() + text.size(), value);
-    if (error != std::errc{}) throw_invalid_format(text);
-    position = static_cast<std::size_t>(end - text.data());
-    return value;
-}
 
 constexpr int kDoubleFractionBits = 52, kDoubleBias = 1023;
 
@@ -52,15 +34,15 @@ double with_fraction_bits(double value, int bits, bool truncates) {
 NumberFormat parse_format(const std::string& text) {
     if (text == "fp32") return {};
     if (text == "spa22") return {6, 15, false};
-    std::size_t position = 0;
-    NumberFormat format;
-    format.exponent_bits = read_field(text, position, 'e');
-    format.fraction_bits = read_field(text, position, 'm');
-    format.truncates = position < text.size() && text[position] == 't';
-    if (position + (format.truncates ? 1 : 0) != text.size()) throw_invalid_format(text);
-    if (format.exponent_bits < 5 || format.exponent_bits > 8 || format.fraction_bits < 4 || format.fraction_bits > 21)
-        throw_invalid_format(text);
-    return format;
+    for (int exponent_bits = 5; exponent_bits <= 8; ++exponent_bits)
+        for (int fraction_bits = 4; fraction_bits <= 21; ++fraction_bits)
+            for (const bool truncates : {false, true})
+                if (const NumberFormat format{exponent_bits, fraction_bits, truncates}; format_name(format) == text)
+                    return format;
+    throw UserError(
+        fmt::format("--format {}: must be fp32, spa22 (e6m15), or eXmY with X = 5..8 exponent and Y = 4..21 fraction "
+                    "bits; append t to truncate",
+                    text));
 }
 
 std::string format_name(const NumberFormat& format) {

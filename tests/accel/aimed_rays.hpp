@@ -7,14 +7,25 @@
 #include <vector>
 
 #include "host/model/number_format.hpp"
+#include "host/scene/packer.hpp"
 #include "host/scene/polygon.hpp"
 #include "host/scene/scene.hpp"
 #include "host/scene/split_mix.hpp"
-#include "tests/accel/random_grids.hpp"
+#include "tests/kernels/probe.hpp"
 #include "tests/kernels/random_scene.hpp"
 #include "tests/reference/reference.hpp"
 
 namespace raya {
+
+inline std::uint32_t below(SplitMix& random, std::uint32_t end) {
+    return static_cast<std::uint32_t>(random.next() % end);
+}
+
+inline Vec3 axis_direction(SplitMix& random) {
+    Vec3 d(0);
+    d[static_cast<int>(below(random, 3))] = below(random, 2) == 0 ? 1 : -1;
+    return d;
+}
 
 /// Bounds of rays that are not wide in a format. Each origin O and each direction D satisfies
 ///   |O_i| <= reach and | |D|^2 - 1 | <= RAYA_STRETCH
@@ -147,6 +158,27 @@ inline reference::Ray random_aimed_ray(SplitMix& random, const RayBounds& bounds
         for (int axis = 0; axis < 3; ++axis) max_coordinate = std::max(max_coordinate, std::abs(start[axis]));
         if (max_coordinate <= bounds.reach && std::abs(d.length2() - 1) <= stretch) return {start, d};
     }
+}
+
+/// Rays, and the objects that they are aimed at. Rays 16 i to 16 i + 15 are aimed at objects[i].
+struct AimedRays {
+    std::vector<std::uint32_t> objects;  // object numbers in the job
+    std::vector<reference::Ray> rays;
+};
+
+/// Returns 16 * `rounds` rays aimed at each finite object.
+inline AimedRays aim_at_all(SplitMix& random, const Scene& scene, const RayBounds& bounds, int rounds) {
+    AimedRays aimed;
+    const std::vector<int> numbers = object_numbers(scene);
+    for (int round = 0; round < rounds; ++round)
+        for (std::uint32_t object = 0; object < numbers.size(); ++object) {
+            const auto number = static_cast<std::size_t>(numbers[object]);
+            if (number >= scene.spheres.size() && number < scene.spheres.size() + scene.planes.size()) continue;
+            aimed.objects.push_back(object);
+            for (std::size_t i = 0; i < kMaxLanes; ++i)
+                aimed.rays.push_back(random_aimed_ray(random, bounds, aim_at(random, scene, number)));
+        }
+    return aimed;
 }
 
 }  // namespace raya

@@ -7,10 +7,16 @@
 #include <vector>
 
 #include "host/accel/partition.hpp"
-#include "tests/accel/random_grids.hpp"
-#include "tests/accel/single_object_hits.hpp"
+#include "tests/accel/aimed_rays.hpp"
 
 namespace raya {
+
+inline PackedJob job_in(const Scene& scene, const NumberFormat& format) {
+    JobSettings settings;
+    settings.image = {16, 16};
+    settings.format = format;
+    return pack_job(scene, settings);
+}
 
 /// Number formats of the tests. For e5m6 no error bounds are known, so every object is in every list.
 inline const std::vector<std::string> kFormats = {"fp32", "e6m15", "e6m15t", "e8m12", "e5m10", "e7m20t", "e5m6"};
@@ -18,11 +24,6 @@ inline const std::vector<std::string> kFormats = {"fp32", "e6m15", "e6m15t", "e8
 /// Returns true if the voxel's list contains the object.
 inline bool lists_object(const Partition& p, std::uint32_t voxel, std::uint32_t object) {
     return std::binary_search(p.objects.begin() + p.starts[voxel], p.objects.begin() + p.starts[voxel + 1], object);
-}
-
-/// Returns the number of lists that contain the object.
-inline std::size_t count_lists_with(const Partition& p, std::uint32_t object) {
-    return static_cast<std::size_t>(std::count(p.objects.begin(), p.objects.end(), object));
 }
 
 /// Returns the object numbers of the finite objects, ascending.
@@ -39,7 +40,7 @@ inline Partition partition_of(const Scene& scene, const std::string& format, con
 }
 
 /// Returns at most half of the traversal error, in scene units, that host/accel/partition.cpp allows for a ray with its
-/// origin within the reach. test_traversal.cpp checks that the error is at most a quarter of the allowed error.
+/// origin within the reach.
 inline double half_traversal_error(const raya_grid& grid) {
     double max_coordinate = grid.reach;
     for (std::uint32_t axis = 0; axis < 3; ++axis)

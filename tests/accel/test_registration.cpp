@@ -14,6 +14,29 @@
 namespace raya {
 namespace {
 
+// A hit that a kernel has found, with its ray.
+struct FoundHit {
+    std::uint32_t object;  // object number in the job
+    reference::Ray ray;
+    double t;
+    Vec3 point() const { return ray.origin + t * ray.direction; }
+};
+
+// Returns the hits of the rays with the objects that they are aimed at.
+std::vector<FoundHit> single_object_hits(KernelRunner& runner, const PackedJob& job, const AimedRays& aimed) {
+    const auto job_buffer = runner.filled("job", job.words());
+    const auto rays = runner.filled("rays", ray_words(aimed.rays));
+    const auto objects = runner.filled("objects", aimed.objects);
+    auto distances = runner.constant<float>("distances", aimed.rays.size(), 0);
+    runner.run_rows<const Buffer<std::uint32_t>&, const Buffer<float>&, const Buffer<std::uint32_t>&, Buffer<float>&>(
+        "single_object_hits", aimed.rays.size(), job_buffer, rays, objects, distances);
+    const std::vector<float> t = runner.read(distances);
+    std::vector<FoundHit> hits;
+    for (std::size_t i = 0; i < t.size(); ++i)
+        if (t[i] != kFarLimit) hits.push_back({aimed.objects[i / kMaxLanes], aimed.rays[i], t[i]});
+    return hits;
+}
+
 const std::vector<std::string> kScenes = {"spheres", "planes", "polygons", "cones", "mirrors", "glass"};
 
 std::uint64_t case_count() {

@@ -23,19 +23,11 @@ TEST_CASE("pixel_hash: is XXH3 of the little-endian words", "[image]") {
     CHECK(pixel_hash(Image{1, 1, {0.5f, 1.0f, -2.0f}}) == "ede5021099dc7fb9e634093e89f01db8");
 }
 
-TEST_CASE("pixel_hash: equal images have equal hashes", "[image]") {
-    CHECK(pixel_hash(ramp(200, 90)) == pixel_hash(ramp(200, 90)));
-}
-
 TEST_CASE("pixel_hash: depends on width and height", "[image]") {
     const Image wide = ramp(6, 4);
     Image tall = wide;
     std::swap(tall.width, tall.height);
     CHECK(pixel_hash(wide) != pixel_hash(tall));
-}
-
-TEST_CASE("pixel_hash: distinguishes -0 and +0", "[image]") {
-    CHECK(pixel_hash(Image{1, 1, {0.0f, 0, 0}}) != pixel_hash(Image{1, 1, {-0.0f, 0, 0}}));
 }
 
 TEST_CASE("pixel_hash: depends on the last bit of every float", "[image]") {

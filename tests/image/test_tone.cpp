@@ -11,88 +11,43 @@
 namespace raya {
 namespace {
 
-using Codes = std::array<std::uint8_t, 3>;
-
-constexpr double kExposures[] = {0.0, -2.0, 1.0, 0.3};
-
-/// Returns a random colour, dark or bright. Some of the colours have a component of 0.
-std::array<float, 3> random_colour(SplitMix& random) {
-    std::array<float, 3> rgb{};
-    const double scale = std::exp2(random.uniform(-10, 4));
-    for (float& v : rgb) v = static_cast<float>(random.uniform(-0.1, 1) * scale);
-    for (float& v : rgb) v = std::max(v, 0.0f);
-    return rgb;
-}
-
-TEST_CASE("ToneCodes: exposure 0 gives the sRGB code of each value", "[tone]") {
-    const ToneCodes codes;
-    SplitMix random(41);
-    for (int i = 0; i < 20'000; ++i) {
-        const std::array<float, 3> rgb = random_colour(random);
-        CAPTURE(i, rgb[0], rgb[1], rgb[2]);
-        REQUIRE(codes(rgb.data()) == Codes{srgb_code(rgb[0]), srgb_code(rgb[1]), srgb_code(rgb[2])});
-    }
-}
-
-TEST_CASE("ToneCodes: codes equal those of the formulas up to rounding", "[tone]") {
+TEST_CASE("srgb_codes: codes equal those of the formula up to rounding", "[tone]") {
     SplitMix random(42);
-    for (const double exposure : kExposures) {
-        const ToneCodes codes(exposure);
-        CAPTURE(exposure);
-        for (int i = 0; i < 500; ++i) {
-            const std::array<float, 3> rgb = random_colour(random);
-            const double stops = std::pow(2.0, exposure);
-            const Codes found = codes(rgb.data());
-            for (std::size_t c = 0; c < 3; ++c) {
-                const double exact = 255 * srgb_curve(std::min(stops * rgb[c], 1.0));
-                CAPTURE(i, c, rgb[c], exact);
-                REQUIRE(std::abs(found[c] - exact) <= 0.5 + 1e-5);
-            }
+    std::vector<float> values;
+    for (int i = 0; i < 20'000; ++i)
+        values.push_back(static_cast<float>(random.uniform(-0.1, 1) * std::exp2(random.uniform(-10, 4))));
+    for (int i = 0; i <= 10'000; ++i) values.push_back(static_cast<float>(i) / 10'000);
+    for (const double exposure : {0.0, -2.0, 1.0, 0.3}) {
+        const std::vector<std::uint8_t> codes = srgb_codes(values, exposure);
+        REQUIRE(codes.size() == values.size());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const double exact = 255 * srgb_curve(std::clamp(std::exp2(exposure) * values[i], 0.0, 1.0));
+            CAPTURE(i, exposure, values[i], exact);
+            // Tolerance: half a code for the rounding, and 1e-5 codes for the gap between the linear and the power
+            // branch of the curve, which do not meet exactly with the constants of IEC 61966-2-1.
+            REQUIRE(std::abs(codes[i] - exact) <= 0.5 + 1e-5);
+            if (exposure == 0) REQUIRE(codes[i] == srgb_code(values[i]));
         }
     }
 }
 
-TEST_CASE("ToneCodes: one more stop has the same effect as twice the light", "[tone]") {
-    SplitMix random(43);
-    for (const double exposure : kExposures) {
-        const ToneCodes codes(exposure);
-        const ToneCodes brighter(exposure + 1);
-        for (int i = 0; i < 300; ++i) {
-            const std::array<float, 3> rgb = random_colour(random);
-            const std::array<float, 3> twice = {2 * rgb[0], 2 * rgb[1], 2 * rgb[2]};
-            CAPTURE(i, exposure);
-            REQUIRE(brighter(rgb.data()) == codes(twice.data()));
-        }
-    }
-}
-
-TEST_CASE("ToneCodes: a grey has three equal codes, which do not decrease with its brightness", "[tone]") {
-    for (const double exposure : kExposures) {
-        const ToneCodes codes(exposure);
-        int previous_code = 0;
-        for (double v = 1e-6; v < 1e6; v *= 1.01) {
-            const auto value = static_cast<float>(v);
-            const std::array<float, 3> grey = {value, value, value};
-            const Codes found = codes(grey.data());
-            CAPTURE(v, exposure);
-            REQUIRE(found[0] >= previous_code);
-            REQUIRE(found[0] == found[1]);
-            REQUIRE(found[1] == found[2]);
-            previous_code = found[0];
-        }
-        CHECK(previous_code == 255);
-    }
-}
-
-TEST_CASE("ToneCodes: an infinity is converted like the largest float, NaN like 0", "[tone]") {
+TEST_CASE("srgb_codes: an infinity is converted like the largest float, NaN like 0", "[tone]") {
     const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-    for (const double exposure : kExposures) {
-        const ToneCodes codes(exposure);
-        const std::array<float, 3> white = {inf, inf, inf}, black = {nan, -inf, -1}, mixed = {nan, 1e30f, 0};
+    for (const double exposure : {0.0, -2.0, 1e4, -1e4}) {
         CAPTURE(exposure);
-        CHECK(codes(white.data()) == Codes{255, 255, 255});
-        CHECK(codes(black.data()) == Codes{0, 0, 0});
-        CHECK(codes(mixed.data()) == Codes{0, 255, 0});
+        const std::uint8_t white = exposure > -1000 ? 255 : 0;
+        CHECK(srgb_codes(std::vector{inf, 1e30f, nan, -inf, -1.0f, 0.0f}, exposure) ==
+              std::vector<std::uint8_t>{white, white, 0, 0, 0, 0});
+    }
+    CHECK(srgb_code(static_cast<double>(nan)) == 0);
+}
+
+TEST_CASE("srgb_code: no float is so close to a border between codes that the error of pow() could matter", "[tone]") {
+    for (int code = 0; code < 255; ++code) {
+        const double encoded = (code + 0.5) / 255;
+        const double border = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+        CAPTURE(code, border);
+        CHECK(std::abs(static_cast<float>(border) - border) > 1e-11 * border);
     }
 }
 

@@ -3,19 +3,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
-#include <string>
 
 #include "host/model/budget.hpp"
 #include "host/scene/split_mix.hpp"
 
 namespace raya {
 namespace {
-
-const Budget& budget_of(int event) { return budgets()[static_cast<std::size_t>(event)]; }
-
-bool has_operations(const Budget& b) {
-    return b.multiply_accumulates + b.divisions + b.roots + b.moves + b.branches > 0;
-}
 
 std::uint64_t cycles_of(const Operations& sum) {
     return sum.multiply_accumulates + kDivisionCycles * sum.divisions + kSquareRootCycles * sum.roots + sum.moves +
@@ -38,16 +31,6 @@ double table_word(double value) {
 }
 
 }  // namespace
-
-TEST_CASE("budgets are in the order of the events, and every event except a primary hit takes cycles", "[machine]") {
-    for (int event = 0; event < RAYA_EVENTS; ++event) {
-        CAPTURE(event);
-        CHECK(budget_of(event).event == event);
-        CHECK(has_operations(budget_of(event)) == (event != RAYA_PRIMARY_HITS));
-        CHECK_FALSE(std::string(budget_of(event).work).empty());
-        CHECK(cycles_of_events()[static_cast<std::size_t>(event)] == cycles_of(budget_of(event)));
-    }
-}
 
 // Cycles of a division: 3 for the seed y, and one each for e = 1 - b y, y + e y and a y. Cycles of a square root: 3 for
 // the seed y, and one each for x/2, y y, d = 3/2 - (x/2)(y y), y d, and x y. Cycles of a branch: 3.
@@ -84,20 +67,6 @@ TEST_CASE("the cycles of the operations of many events equal the cycles of the e
         CHECK(cycles_of(operations_of(events)) == cycles);
     }
     CHECK(cycles_of(operations_of({})) == 0);
-}
-
-TEST_CASE("the operations of an event are those of its budget", "[machine]") {
-    for (const Budget& b : budgets()) {
-        EventCounts events{};
-        events[static_cast<std::size_t>(b.event)] = 7;
-        const Operations sum = operations_of(events);
-        CAPTURE(b.event);
-        CHECK(sum.multiply_accumulates == 7 * b.multiply_accumulates);
-        CHECK(sum.divisions == 7 * b.divisions);
-        CHECK(sum.roots == 7 * b.roots);
-        CHECK(sum.moves == 7 * b.moves);
-        CHECK(sum.branches == 7 * b.branches);
-    }
 }
 
 // Cycles per pixel. Filter: 3 x (4 additions, 1 multiplication), as many moves, 4 branches of 3 cycles: 42. Comparison:

@@ -29,14 +29,6 @@ TEST_CASE("equal loads, a single PE and zero loads are balanced", "[report]") {
     }
 }
 
-TEST_CASE("one PE with all the work leaves the others idle", "[report]") {
-    const Load load = load_of({0, 0, 0, 9});
-    CHECK(load.min == 0);
-    CHECK(load.imbalance == 3);  // P - 1
-    CHECK(load.speedup == 1);
-    CHECK(load.efficiency == 0.25);
-}
-
 // Kohata & Ito 1993, Tables 2 and 3: 64,800 ms on one PE; 653 ms (p = 0) and 283 ms (p = 16) on 256 PEs.
 TEST_CASE("the loads of the paper's tables give the paper's imbalance and speed-up", "[report]") {
     const auto with_busiest = [](std::uint64_t busiest_us) {  // time of the busiest PE, microseconds

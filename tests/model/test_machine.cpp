@@ -20,14 +20,6 @@ TEST_CASE("the SPA is the paper's machine, and first in the list", "[machine]") 
     CHECK(spa.topology == "ring+bus");
 }
 
-TEST_CASE("grande is the SPA without limits on PEs and memory", "[machine]") {
-    const Machine& grande = machine_named("grande");
-    CHECK_FALSE(grande.pes.has_value());
-    CHECK_FALSE(grande.pe_memory_bytes.has_value());
-    CHECK(grande.mapping == machine_named("spa").mapping);
-    CHECK(grande.bounces == machine_named("spa").bounces);
-}
-
 TEST_CASE("the SPA's clock has the rates of the paper's tables, and so have spa1 and grande", "[machine]") {
     const MachineClock& spa = machine_named("spa").clock;
     CHECK(spa.cycle_ns == 100);
@@ -111,10 +103,4 @@ TEST_CASE("every number of every machine has a source, and every ring machine ha
                                   c.gather_words_per_s, c.display_pixels_per_s})
             CHECK(rate > 0);
     }
-}
-
-TEST_CASE("a cited machine without a model is refused with the reason", "[machine]") {
-    CHECK_THROWS_AS(machine_named("sight"), UserError);
-    CHECK_THROWS_WITH(machine_named("sight"),
-                      Contains("--machine sight: raya does not model this machine: no public") && Contains("16 PEs"));
 }
