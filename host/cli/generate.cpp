@@ -33,10 +33,10 @@ void write_scene(const GenerateOptions& options, Make&& make) {
 }
 
 void write_terrain(const GenerateOptions& options) {
+    if (!options.output.ends_with(".ply"))
+        return write_scene(options, [&] { return generate_terrain(options.triangles, options.seed); });
     const ProgressBar bar(true, "writing");
-    const bool ply = options.output.ends_with(".ply");
-    write_whole_file(options.output,
-                     ply ? terrain_ply(options.triangles, options.seed) : terrain_nff(options.triangles, options.seed));
+    write_whole_file(options.output, terrain_ply(options.triangles, options.seed));
 }
 
 CLI::App* add_generator(CLI::App& command, GenerateOptions& options, const std::string& name, const std::string& help,

@@ -15,7 +15,6 @@
 #include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
-#include "host/scene/nff_tokens.hpp"
 #include "host/scene/polygon.hpp"
 
 namespace raya {

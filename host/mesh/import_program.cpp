@@ -1,5 +1,17 @@
-// raya_import DESCRIPTOR FILE: reads a mesh with assimp and writes it as records (import_records.hpp) to the descriptor
-// of a pipe. raya starts it. It uses no code of raya, so that a memory error of assimp meets nothing but assimp's data.
+// raya_import DESCRIPTOR FILE SECONDS: reads a mesh with assimp and writes it to the descriptor of a pipe. SIGALRM ends
+// it after this time. raya starts it. It uses no code of raya, so that a memory error of assimp meets nothing but
+// assimp's data.
+//
+// It writes the number of bytes of a document as 64 bits, the document in CBOR, and the faces of all meshes. The
+// document is {"error": TEXT}, or has the members
+//
+//     files       paths of the files that it has read besides the mesh
+//     ignored     what has no counterpart in raya: [WHAT, PLACE] each
+//     surfaces    [NAME, red, green, blue, Kd, Ks, Shine, T, index of refraction] each
+//     meshes      {name, surface, faces, has_normals} each; surface: from 1, 0 is raya's default
+//
+// A face is its number of corners, 32 bits, and for each corner the position and, if the mesh has normals, the normal,
+// as floats. Numbers have the byte order of the computer.
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/GltfMaterial.h>
@@ -21,15 +33,23 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
+#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "host/mesh/import_records.hpp"
-
 namespace raya {
 namespace {
+
+using Json = nlohmann::json;
+
+/// A fault of the file.
+struct Fault : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// The checks find faults that assimp 5.2 passes over silently, or never ends on.
 
 /// Returns the little-endian word at byte `at`.
 std::uint32_t word_at(const std::string& bytes, std::size_t at) {
@@ -45,106 +65,84 @@ struct PlyElement {
     std::set<std::string> properties;
 };
 
-/// Reads the header. Returns its fault.
-std::string read_ply_header(std::istream& in, bool& is_ascii, std::vector<PlyElement>& elements) {
-    std::string line;
-    while (std::getline(in, line)) {
+/// Reads the numbers of an element in ascii, the length of a list before its numbers.
+void check_numbers(std::istream& in, const PlyElement& element) {
+    const auto next_number = [&] {
+        std::string number;
+        if (!(in >> number)) throw Fault("PLY: numbers are missing; the file may be truncated");
+        return std::atof(number.c_str());
+    };
+    for (std::uint64_t i = 0; i < element.count; ++i)
+        for (const bool is_list : element.is_list)
+            for (double left = next_number(); is_list && left >= 1; --left) next_number();
+}
+
+/// Refuses a header that is incomplete or has triangle strips, vertices without x, y or z, and ascii data that breaks
+/// off.
+void check_ply(std::istream& in) {
+    bool is_ascii = false;
+    std::vector<PlyElement> elements;
+    for (std::string line, word, next; word != "end_header"; next.clear()) {
+        if (!std::getline(in, line)) throw Fault("PLY: the header has no end_header");
         std::istringstream words(line);
-        std::string word, next;
         words >> word >> next;
-        if (word == "end_header") return "";
         if (word == "format") is_ascii = next == "ascii";
         if (word == "element") {
             elements.push_back({next, 0, {}, {}});
-            if (!(words >> elements.back().count)) return "PLY: the header has an element without a number";
-            if (elements.back().count > UINT32_MAX) return "PLY: more elements than raya reads";
+            if (!(words >> elements.back().count)) throw Fault("PLY: the header has an element without a number");
+            if (elements.back().count > UINT32_MAX) throw Fault("PLY: more elements than raya reads");
         }
         if (word == "property" && !elements.empty()) {
             elements.back().is_list.push_back(next == "list");
-            while (words >> word) next = word;
+            for (std::string more; words >> more;) next = more;
             elements.back().properties.insert(next);
         }
     }
-    return "PLY: the header has no end_header";
-}
-
-/// Returns true if the rest of an ascii file has all numbers of its elements.
-bool has_all_numbers(std::istream& in, const std::vector<PlyElement>& elements) {
-    std::string line;
-    for (const PlyElement& element : elements)
-        for (std::uint64_t i = 0; i < element.count; ++i) {
-            do
-                if (!std::getline(in, line)) return false;
-            while (line.find_first_not_of(" \t\r") == std::string::npos);
-            std::istringstream numbers(line);
-            std::string number;
-            for (const bool is_list : element.is_list) {
-                if (!(numbers >> number)) return false;
-                for (double left = is_list ? std::atof(number.c_str()) : 0; left >= 1; --left)
-                    if (!(numbers >> number)) return false;
-            }
-        }
-    return true;
-}
-
-std::string fault_of_ply(std::istream& in) {
-    bool is_ascii = false;
-    std::vector<PlyElement> elements;
-    if (std::string fault = read_ply_header(in, is_ascii, elements); !fault.empty()) return fault;
     for (const PlyElement& element : elements) {
-        if (element.name == "tristrips") return "PLY: raya does not read triangle strips; store the faces instead";
+        if (element.name == "tristrips")
+            throw Fault("PLY: raya does not read triangle strips; store the faces instead");
         for (const char* const axis : {"x", "y", "z"})
             if (element.name == "vertex" && !element.properties.contains(axis))
-                return std::string("PLY: the vertices have no property ") + axis;
+                throw Fault(std::string("PLY: the vertices have no property ") + axis);
+        if (is_ascii) check_numbers(in, element);
     }
-    return is_ascii && !has_all_numbers(in, elements) ? "PLY: numbers are missing; the file may be truncated" : "";
 }
 
-std::string fault_of_stl(std::istream& in) {
+/// Refuses ascii that breaks off. A binary file may begin with "solid", too.
+void check_stl(std::istream& in) {
     constexpr std::size_t kHeader = 84, kFacet = 50;  // bytes of a binary file
-    std::string header(kHeader, '\0');
-    in.read(header.data(), kHeader);
-    if (!header.starts_with("solid")) return "";
-    const std::uint32_t facets = word_at(header, kHeader - 4);
-    in.clear();
-    const auto size = static_cast<std::size_t>(in.seekg(0, std::ios::end).tellg());
-    if (size == kHeader + std::size_t{facets} * kFacet) return "";  // a binary file may begin with "solid", too
-    in.seekg(static_cast<std::streamoff>(size - std::min<std::size_t>(size, 1000)));  // the name follows endsolid
-    const std::string tail(std::istreambuf_iterator<char>(in), {});
-    return tail.find("endsolid") == std::string::npos ? "STL: there is no endsolid; the file may be truncated" : "";
+    std::string bytes(kHeader, '\0');
+    if (!in.read(bytes.data(), kHeader) || !bytes.starts_with("solid")) return;
+    const std::size_t binary_size = kFacet * word_at(bytes, kHeader - 4);
+    bytes.append(std::istreambuf_iterator<char>(in), {});
+    if (bytes.size() != kHeader + binary_size && bytes.find("endsolid") == bytes.npos)
+        throw Fault("STL: there is no endsolid; the file may be truncated");
 }
 
-std::string fault_of_gltf(std::istream& in, bool is_binary) {
+/// Refuses broken JSON, and required extensions that change the geometry.
+void check_gltf(std::string bytes, bool is_binary) {
     constexpr std::size_t kHeader = 20;  // bytes of a .glb before the JSON; the word at byte 12 is the JSON's length
-    std::string bytes(std::istreambuf_iterator<char>(in), {});
     if (is_binary) {
-        if (bytes.size() < kHeader || !bytes.starts_with("glTF")) return "glTF: the file is not a .glb";
+        if (bytes.size() < kHeader || !bytes.starts_with("glTF")) throw Fault("glTF: the file is not a .glb");
         bytes = bytes.substr(kHeader, word_at(bytes, 12));
     }
-    const auto json = nlohmann::json::parse(bytes, nullptr, false);
-    if (!json.is_object()) return "glTF: the JSON is broken or no object";
+    const Json json = Json::parse(bytes, nullptr, false);
+    if (!json.is_object()) throw Fault("glTF: the JSON is broken or no object");
     const auto required = json.find("extensionsRequired");
-    for (const auto& name : required != json.end() && required->is_array() ? *required : nlohmann::json::array()) {
+    for (const Json& name : required != json.end() && required->is_array() ? *required : Json::array()) {
         const std::string text = name.is_string() ? name.get<std::string>() : "";
-        const auto has_start = [&](const char* start) { return text.starts_with(start); };
         if (std::ranges::none_of(std::vector{"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"},
-                                 has_start))
-            return "glTF: raya cannot read the required extension " + text + "; export the file without it";
+                                 [&](const char* start) { return text.starts_with(start); }))
+            throw Fault("glTF: raya cannot read the required extension " + text + "; export the file without it");
     }
-    return "";
 }
 
-/// Returns the fault of the file, or an empty string if assimp may read it. Finds faults that assimp 5.2 passes over
-/// silently, or never ends on. `extension`: in lower case, without dot.
-/// - PLY: a header that is incomplete or has triangle strips, vertices without x, y or z, ascii data that breaks off.
-/// - ascii STL that breaks off.
-/// - glTF: broken JSON, and required extensions that change the geometry.
-std::string fault_of_file(const std::string& file, const std::string& extension) {
+/// `extension`: in lower case, without dot.
+void check_file(const std::string& file, const std::string& extension) {
     std::ifstream in(file, std::ios::binary);
-    return extension == "ply"                          ? fault_of_ply(in)
-           : extension == "stl"                        ? fault_of_stl(in)
-           : extension == "gltf" || extension == "glb" ? fault_of_gltf(in, extension == "glb")
-                                                       : "";
+    if (extension == "ply") return check_ply(in);
+    if (extension == "stl") return check_stl(in);
+    if (extension != "obj") check_gltf({std::istreambuf_iterator<char>(in), {}}, extension == "glb");
 }
 
 /// Limits the memory to half of the computer's, and forbids files, so that a damaged file cannot exhaust them.
@@ -163,10 +161,10 @@ void limit_resources() {
     limit_to(RLIMIT_FSIZE, 0);
 }
 
-/// Writes records. If raya has closed the pipe, SIGPIPE ends the program.
-class Records {
+/// What the program writes. If raya has closed the pipe, SIGPIPE ends the program.
+class Output {
   public:
-    explicit Records(int descriptor) : file_(::fdopen(descriptor, "wb")) {
+    explicit Output(int descriptor) : file_(::fdopen(descriptor, "wb")) {
         if (file_ == nullptr) std::exit(EXIT_FAILURE);
     }
 
@@ -174,29 +172,27 @@ class Records {
     void put(const Value* values, std::size_t count) {
         if (std::fwrite(values, sizeof(Value), count, file_) != count) std::exit(EXIT_FAILURE);
     }
-    template <class Value>
-    void put(const Value& value) {
-        put(&value, 1);
+    void put(const Json& json) {
+        const std::vector<std::uint8_t> bytes = Json::to_cbor(json);
+        const std::uint64_t size = bytes.size();
+        put(&size, 1);
+        put(bytes.data(), bytes.size());
     }
-    void put_text(std::string_view text) {
-        text = text.substr(0, kMaxImportedText);
-        put(static_cast<std::uint32_t>(text.size()));
-        put(text.data(), text.size());
-    }
-
-    void ignore(std::string_view what, const std::string& place = "") {
-        put(ImportRecord::kIgnored);
-        put_text(what);
-        put_text(place);
+    void ignore(const std::string& what, const std::string& place = "") {
+        document["ignored"].push_back(Json::array({what, place}));
     }
 
-    /// Writes the last record and ends the program.
-    [[noreturn]] void end(const std::string& error = "") {
-        put(error.empty() ? ImportRecord::kEnd : ImportRecord::kError);
-        if (!error.empty()) put_text(error);
+    [[noreturn]] void end() {
         std::fflush(file_);
         ::_exit(EXIT_SUCCESS);  // without destructors, which a damaged heap could crash
     }
+    [[noreturn]] void refuse(const std::string& error) {
+        put(Json{{"error", error}});
+        end();
+    }
+
+    Json document = {
+        {"files", Json::array()}, {"ignored", Json::array()}, {"surfaces", Json::array()}, {"meshes", Json::array()}};
 
   private:
     std::FILE* file_;
@@ -207,8 +203,8 @@ class Records {
 /// and the same names again.
 class ReportingFiles : public Assimp::IOSystem {  // assimp 6 makes DefaultIOSystem final
   public:
-    ReportingFiles(Records& records, const std::filesystem::path& mesh)
-        : records_(records),
+    ReportingFiles(Output& output, const std::filesystem::path& mesh)
+        : output_(output),
           mesh_(std::filesystem::canonical(mesh)),
           folder_(std::filesystem::canonical(std::filesystem::absolute(mesh).parent_path()) / "") {}
     bool Exists(const char* file) const override {  // assimp 5.2 would open a pipe, and wait
@@ -224,19 +220,19 @@ class ReportingFiles : public Assimp::IOSystem {  // assimp 6 makes DefaultIOSys
         Assimp::IOStream* stream = nullptr;
         if (!error && is_regular_file(path, error)) {
             if (path != mesh_ && !path.native().starts_with(folder_.native()))
-                records_.end(std::string("the file '") + file + "' is not in the mesh's folder; remedy: copy it there");
-            records_.put(ImportRecord::kFile);
-            records_.put_text(path.native());
+                output_.refuse(std::string("the file '") + file +
+                               "' is not in the mesh's folder; remedy: copy it there");
+            output_.document["files"].push_back(path.native());
             stream = files_.Open(file, mode);
         }
         if (stream == nullptr && !std::exchange(is_missing_, true))
-            records_.ignore("file that cannot be opened", std::string("file '") + file + "'");
+            output_.ignore("file that cannot be opened", std::string("file '") + file + "'");
         return stream;
     }
 
   private:
     Assimp::DefaultIOSystem files_;
-    Records& records_;
+    Output& output_;
     std::filesystem::path mesh_, folder_;
     bool is_missing_ = false;
 };
@@ -262,31 +258,37 @@ bool is_black(const aiColor3D& c) { return c.r == 0 && c.g == 0 && c.b == 0; }
 
 float largest(const aiColor3D& c) { return std::max({c.r, c.g, c.b}); }
 
+/// The numbers of an `f` of NFF.
+struct Surface {
+    aiColor3D colour{1, 1, 1};
+    float diffuse = 1, specular = 0, shine = 0, transmittance = 0, refraction_index = 1;
+};
+
 /// Maps the reflection of an MTL material. Its illumination models 3 to 9 reflect; the others have only a highlight.
-void map_obj_reflection(const aiMaterial& material, ImportedSurface& s, Records& records, const std::string& place) {
+void map_obj_reflection(const aiMaterial& material, Surface& s, Output& output, const std::string& place) {
     constexpr int kFirstMirror = 3;
     const auto specular = property(material, AI_MATKEY_COLOR_SPECULAR, aiColor3D(0, 0, 0));
     if (is_black(specular)) return;
     if (property(material, AI_MATKEY_OBJ_ILLUM, 0) < kFirstMirror)
-        return records.ignore("highlight without reflection", place);
+        return output.ignore("highlight without reflection", place);
     s.specular = largest(specular);
     s.shine = property(material, AI_MATKEY_SHININESS, 0.0f);
-    if (specular.r != specular.g || specular.g != specular.b) records.ignore("colour of a reflection", place);
+    if (specular.r != specular.g || specular.g != specular.b) output.ignore("colour of a reflection", place);
 }
 
 /// Maps the reflection of a glTF material: raya's mirrors are sharp, so that a rough metal is mostly diffuse.
-void map_gltf_reflection(const aiMaterial& material, ImportedSurface& s, Records& records, const std::string& place) {
+void map_gltf_reflection(const aiMaterial& material, Surface& s, Output& output, const std::string& place) {
     const float metallic = property(material, AI_MATKEY_METALLIC_FACTOR, 1.0f);
     const float smoothness = 1 - property(material, AI_MATKEY_ROUGHNESS_FACTOR, 1.0f);
     s.specular = metallic * smoothness;
     s.diffuse = 1 - s.specular;
     s.shine = 1000 * smoothness * smoothness;
-    if (s.specular > 0 && !(s.colour[0] == s.colour[1] && s.colour[1] == s.colour[2]))
-        records.ignore("colour of a reflection", place);
-    if (metallic < 1 && smoothness > 0) records.ignore("highlight without reflection", place);
+    if (s.specular > 0 && !(s.colour.r == s.colour.g && s.colour.g == s.colour.b))
+        output.ignore("colour of a reflection", place);
+    if (metallic < 1 && smoothness > 0) output.ignore("highlight without reflection", place);
 }
 
-void map_transparency(const aiMaterial& material, ImportedSurface& s) {
+void map_transparency(const aiMaterial& material, Surface& s) {
     const std::string mode = property(material, AI_MATKEY_GLTF_ALPHAMODE, aiString()).C_Str();
     const float opacity = mode == "OPAQUE" ? 1 : property(material, AI_MATKEY_OPACITY, 1.0f);
     s.transmittance = 1 - opacity * (1 - property(material, AI_MATKEY_TRANSMISSION_FACTOR, 0.0f));
@@ -295,7 +297,7 @@ void map_transparency(const aiMaterial& material, ImportedSurface& s) {
     if (index > 0) s.refraction_index = index;
 }
 
-void count_textures(const aiMaterial& material, Records& records, const std::string& place) {
+void count_textures(const aiMaterial& material, Output& output, const std::string& place) {
     std::set<std::string> textures;  // assimp lists some of them in two types
     for (int type = aiTextureType_NONE + 1; type <= AI_TEXTURE_TYPE_MAX; ++type)
         for (unsigned i = 0; i < material.GetTextureCount(static_cast<aiTextureType>(type)); ++i) {
@@ -303,74 +305,78 @@ void count_textures(const aiMaterial& material, Records& records, const std::str
             material.GetTexture(static_cast<aiTextureType>(type), i, &name);
             textures.insert(name.C_Str());
         }
-    for (std::size_t i = 0; i < textures.size(); ++i) records.ignore("texture", place);
+    for (std::size_t i = 0; i < textures.size(); ++i) output.ignore("texture", place);
 }
 
-void put_material(const aiMaterial& material, bool is_gltf, Records& records) {
-    ImportedSurface s;
+void put_material(const aiMaterial& material, bool is_gltf, Output& output) {
+    Surface s;
     const std::string name = property(material, AI_MATKEY_NAME, aiString()).C_Str();
     const std::string place = "material '" + name + "'";
     if (name != AI_DEFAULT_MATERIAL_NAME) {  // assimp's own, for a mesh without a material, is grey
-        const auto colour = property(material, AI_MATKEY_COLOR_DIFFUSE, aiColor3D(1, 1, 1));
-        s.colour[0] = colour.r, s.colour[1] = colour.g, s.colour[2] = colour.b;
+        s.colour = property(material, AI_MATKEY_COLOR_DIFFUSE, s.colour);
         const bool is_metallic = is_gltf && property(material, AI_MATKEY_METALLIC_FACTOR, -1.0f) >= 0;
-        (is_metallic ? map_gltf_reflection : map_obj_reflection)(material, s, records, place);
+        (is_metallic ? map_gltf_reflection : map_obj_reflection)(material, s, output, place);
         map_transparency(material, s);
         if (!is_black(property(material, AI_MATKEY_COLOR_EMISSIVE, aiColor3D(0, 0, 0))))
-            records.ignore("emission", place);
-        count_textures(material, records, place);
+            output.ignore("emission", place);
+        count_textures(material, output, place);
     }
-    records.put(ImportRecord::kSurface);
-    records.put_text(name);
-    records.put(s);
+    output.document["surfaces"].push_back({name, s.colour.r, s.colour.g, s.colour.b, s.diffuse, s.specular, s.shine,
+                                           s.transmittance, s.refraction_index});
 }
 
-/// What of assimp's data raya uses in a format.
-struct Format {
-    bool has_materials, has_normals, is_gltf;
+/// A mesh of a node. `to_scene` transforms its points; a mirroring transformation turns the faces around.
+struct PlacedMesh {
+    const aiMesh* mesh;
+    aiMatrix4x4 to_scene;
 };
 
-/// Puts the mesh of a node. `to_scene` transforms its points; a mirroring transformation turns the faces around.
-void put_mesh(const aiMesh& mesh, const aiMatrix4x4& to_scene, const Format& format, Records& records) {
-    const bool has_normals = format.has_normals && mesh.HasNormals();
-    const bool is_mirrored = to_scene.Determinant() < 0;
-    std::vector<std::uint32_t> sizes, corners;
-    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
-        const aiFace& face = mesh.mFaces[i];
-        sizes.push_back(face.mNumIndices);
-        corners.insert(corners.end(), face.mIndices, face.mIndices + face.mNumIndices);
-        if (is_mirrored) std::reverse(corners.end() - face.mNumIndices, corners.end());
-    }
-    if (std::ranges::all_of(sizes, [](std::uint32_t size) { return size == 3; })) sizes.clear();
-    records.put(ImportRecord::kMesh);
-    records.put_text(mesh.mName.C_Str());
-    records.put(ImportedMesh{.vertices = mesh.mNumVertices,
-                             .normals = has_normals ? mesh.mNumVertices : 0,
-                             .faces = sizes.size(),
-                             .corners = corners.size(),
-                             .surface = format.has_materials ? mesh.mMaterialIndex + 1 : 0});
-    for (unsigned i = 0; i < mesh.mNumVertices; ++i) records.put(to_scene * mesh.mVertices[i]);
-    const aiMatrix3x3 of_normals = aiMatrix3x3(to_scene).Inverse().Transpose();
-    for (unsigned i = 0; has_normals && i < mesh.mNumVertices; ++i) records.put(of_normals * mesh.mNormals[i]);
-    records.put(sizes.data(), sizes.size());
-    records.put(corners.data(), corners.size());
-}
-
-void put_nodes(const aiScene& scene, const Format& format, Records& records) {
+std::vector<PlacedMesh> placed_meshes(const aiScene& scene) {
+    std::vector<PlacedMesh> meshes;
     std::vector<std::pair<const aiNode*, aiMatrix4x4>> nodes = {{scene.mRootNode, aiMatrix4x4()}};
     while (!nodes.empty()) {
         const aiNode& node = *nodes.back().first;
         const aiMatrix4x4 to_scene = nodes.back().second * node.mTransformation;
         nodes.pop_back();
-        for (unsigned i = 0; i < node.mNumMeshes; ++i)
-            put_mesh(*scene.mMeshes[node.mMeshes[i]], to_scene, format, records);
+        for (unsigned i = 0; i < node.mNumMeshes; ++i) meshes.push_back({scene.mMeshes[node.mMeshes[i]], to_scene});
         for (unsigned i = node.mNumChildren; i > 0; --i) nodes.emplace_back(node.mChildren[i - 1], to_scene);
+    }
+    return meshes;
+}
+
+void check_corners(const aiMesh& mesh) {
+    const std::string name = mesh.mName.C_Str();
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i)
+        for (unsigned k = 0; k < mesh.mFaces[i].mNumIndices; ++k)
+            if (const unsigned corner = mesh.mFaces[i].mIndices[k]; corner >= mesh.mNumVertices)
+                throw Fault((name.empty() ? "" : "mesh '" + name + "', ") + "face " + std::to_string(i + 1) +
+                            ": there is no vertex " + std::to_string(corner) + "; the mesh has " +
+                            std::to_string(mesh.mNumVertices) + ", numbered from 0; the file may be damaged");
+}
+
+void put_faces(const PlacedMesh& placed, bool has_normals, Output& output) {
+    const aiMesh& mesh = *placed.mesh;
+    const bool is_mirrored = placed.to_scene.Determinant() < 0;
+    const aiMatrix3x3 of_normals = aiMatrix3x3(placed.to_scene).Inverse().Transpose();
+    std::vector<aiVector3D> vectors;  // of a face
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+        const aiFace& face = mesh.mFaces[i];
+        vectors.clear();
+        for (unsigned k = 0; k < face.mNumIndices; ++k) {
+            const unsigned corner = face.mIndices[is_mirrored ? face.mNumIndices - 1 - k : k];
+            vectors.push_back(placed.to_scene * mesh.mVertices[corner]);
+            if (has_normals) vectors.push_back(of_normals * mesh.mNormals[corner]);
+        }
+        output.put(&face.mNumIndices, 1);
+        output.put(vectors.data(), vectors.size());
     }
 }
 
-void put_scene(const aiScene& scene, const Format& format, Records& records) {
+/// assimp invents grey materials for STL and PLY. STL's normals are those of the facets, which raya computes.
+void put_scene(const aiScene& scene, const std::string& extension, Output& output) {
+    const bool has_materials = extension != "stl" && extension != "ply";
     const auto ignore = [&](unsigned count, const char* what) {
-        for (; count > 0; --count) records.ignore(what);
+        for (; count > 0; --count) output.ignore(what);
     };
     ignore(scene.mNumCameras, "camera");
     ignore(scene.mNumLights, "light");
@@ -380,30 +386,39 @@ void put_scene(const aiScene& scene, const Format& format, Records& records) {
         ignore(scene.mMeshes[i]->HasBones(), "skeleton");
         ignore(scene.mMeshes[i]->mNumAnimMeshes, "morph target");
     }
-    for (unsigned i = 0; format.has_materials && i < scene.mNumMaterials; ++i)
-        put_material(*scene.mMaterials[i], format.is_gltf, records);
-    put_nodes(scene, format, records);
+    for (unsigned i = 0; has_materials && i < scene.mNumMaterials; ++i)
+        put_material(*scene.mMaterials[i], extension.starts_with("gl"), output);
+    const auto has_normals = [&](const aiMesh& mesh) { return extension != "stl" && mesh.HasNormals(); };
+    const std::vector<PlacedMesh> meshes = placed_meshes(scene);
+    for (const auto& [mesh, to_scene] : meshes) {
+        check_corners(*mesh);
+        output.document["meshes"].push_back({{"name", mesh->mName.C_Str()},
+                                             {"surface", has_materials ? mesh->mMaterialIndex + 1 : 0},
+                                             {"faces", mesh->mNumFaces},
+                                             {"has_normals", has_normals(*mesh)}});
+    }
+    output.put(output.document);
+    for (const PlacedMesh& placed : meshes) put_faces(placed, has_normals(*placed.mesh), output);
 }
 
-[[noreturn]] void import(Records& records, const std::string& file) {
-    records.put(ImportRecord::kStart);
+[[noreturn]] void import(Output& output, const std::string& file) {
     try {
         Assimp::Importer importer;
-        importer.SetIOHandler(new ReportingFiles(records, file));  // the importer deletes it
+        importer.SetIOHandler(new ReportingFiles(output, file));  // the importer deletes it
         std::string extension = file.substr(file.rfind('.') + 1);
         for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
-        if (const std::string fault = fault_of_file(file, extension); !fault.empty()) records.end(fault);
+        check_file(file, extension);
         keep_one_format(importer, extension);
         const aiScene* const scene = importer.ReadFile(file, 0);
-        if (scene == nullptr) records.end(std::string("assimp: ") + importer.GetErrorString());
-        // assimp invents grey materials for STL and PLY. STL's normals are those of the facets, which raya computes.
-        put_scene(*scene, {extension != "stl" && extension != "ply", extension != "stl", extension.starts_with("gl")},
-                  records);
-        records.end();
+        if (scene == nullptr) output.refuse(std::string("assimp: ") + importer.GetErrorString());
+        put_scene(*scene, extension, output);
+        output.end();
+    } catch (const Fault& fault) {
+        output.refuse(fault.what());
     } catch (const std::bad_alloc&) {
-        records.end("it needs more than half of this computer's memory; the file may be damaged");
+        output.refuse("it needs more than half of this computer's memory; the file may be damaged");
     } catch (const std::exception& error) {
-        records.end(std::string("assimp: ") + error.what());
+        output.refuse(std::string("assimp: ") + error.what());
     }
 }
 
@@ -411,11 +426,12 @@ void put_scene(const aiScene& scene, const Format& format, Records& records) {
 }  // namespace raya
 
 int main(int argc, char** argv) {
-    if (argc != 3) return EXIT_FAILURE;
+    if (argc != 4) return EXIT_FAILURE;
+    ::alarm(static_cast<unsigned>(std::atoi(argv[3])));
     raya::limit_resources();
     // A message of the C library on a damaged heap would stand between raya's own messages.
     if (std::freopen("/dev/null", "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr)
         return EXIT_FAILURE;
-    raya::Records records(std::atoi(argv[1]));
-    raya::import(records, argv[2]);
+    raya::Output output(std::atoi(argv[1]));
+    raya::import(output, argv[2]);
 }

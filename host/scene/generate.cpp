@@ -17,9 +17,9 @@ namespace {
 
 constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // values of the parameter `parts` of rounded()
 
-void check_count(const char* kind, int count) {
-    if (count < 1 || count > kMaxObjects)
-        throw UserError(fmt::format("{}: {} spheres: must be 1..{}", kind, count, kMaxObjects));
+/// `text`: describes the number in the message.
+void check_number(const std::string& text, int number, int lowest, int highest) {
+    if (number < lowest || number > highest) throw UserError(fmt::format("{}: must be {}..{}", text, lowest, highest));
 }
 
 /// Returns a view of the cube [-1, 1]^3 from outside one of its corners. The cube fills most of the image.
@@ -51,31 +51,14 @@ void fill_box(Scene& scene, const Vec3& low_corner, const Vec3& sides, std::int6
     }
 }
 
-/// A ring of equal spheres around the z axis.
-struct SphereRing {
-    int count;             // number of spheres
-    double distance;       // distance of the centres from the z axis
-    double height;         // z of the centres
-    double radius;         // radius of each sphere
-    double first_azimuth;  // azimuth of the first sphere, in full turns
-    int first_surface;
-    int surface_count;  // number of surfaces, which are assigned to the spheres cyclically
-};
+// Sizes of a cluster, found by a search (scenes/README.md).
+constexpr double kClusterRadius = 1.6, kClusterHeight = 2.1, kMinClusterSphere = 0.4, kMaxClusterSphere = 0.7;
 
-void add_ring(Scene& scene, const SphereRing& ring) {
-    for (int i = 0; i < ring.count; ++i) {
-        const double azimuth = 2 * std::numbers::pi * (ring.first_azimuth + static_cast<double>(i) / ring.count);
-        const Vec3 centre(rounded(ring.distance * std::cos(azimuth), kTenThousandths),
-                          rounded(ring.distance * std::sin(azimuth), kTenThousandths), ring.height);
-        scene.spheres.push_back({centre, ring.radius, ring.first_surface + i % ring.surface_count});
-    }
-}
-
-Sphere draw_sphere(SplitMix& random, const ClusterShape& shape) {
-    const double radius = random.uniform(shape.min_sphere_radius, shape.max_sphere_radius);
+Sphere draw_sphere(SplitMix& random) {
+    const double radius = random.uniform(kMinClusterSphere, kMaxClusterSphere);
     const double azimuth = random.uniform(0, 2 * std::numbers::pi);
-    const double distance = shape.radius * std::sqrt(random.uniform(0, 1));
-    const double height = radius + random.uniform(0, shape.height);
+    const double distance = kClusterRadius * std::sqrt(random.uniform(0, 1));
+    const double height = radius + random.uniform(0, kClusterHeight);
     return {rounded({distance * std::cos(azimuth), distance * std::sin(azimuth), height}), rounded(radius), 0};
 }
 
@@ -87,12 +70,10 @@ bool touches(const Sphere& sphere, const std::vector<Sphere>& spheres) {
 }  // namespace
 
 Scene generate_uniform(int count, std::array<int, 3> voxels) {
-    check_count("uniform", count);
+    check_number(fmt::format("uniform: {} spheres", count), count, 1, kMaxObjects);
     std::int64_t voxel_count = 1;
     for (const int axis_voxels : voxels) {
-        if (axis_voxels < 1 || axis_voxels > kMaxVoxelsPerAxis)
-            throw UserError(
-                fmt::format("uniform: {} voxels along an axis: must be 1..{}", axis_voxels, kMaxVoxelsPerAxis));
+        check_number(fmt::format("uniform: {} voxels along an axis", axis_voxels), axis_voxels, 1, kMaxVoxelsPerAxis);
         voxel_count *= axis_voxels;
     }
     if (voxel_count > kMaxVoxels)
@@ -120,7 +101,7 @@ Scene generate_uniform(int count, std::array<int, 3> voxels) {
 }
 
 Scene generate_random(int count, std::uint64_t seed) {
-    check_count("random", count);
+    check_number(fmt::format("random: {} spheres", count), count, 1, kMaxObjects);
     Scene scene;
     scene.name = fmt::format("random{}_{}.nff", count, seed);
     scene.background = {0.2, 0.3, 0.45};
@@ -162,33 +143,44 @@ Scene generate_centre() {
     };
     scene.spheres.push_back({{0, 0, 1.3}, 1.3, 0});
     scene.spheres.push_back({{0, 0, 3.05}, 0.45, 1});
-    add_ring(scene, {12, 1.85, 0.4, 0.4, 0.02, 1, 4});
-    add_ring(scene, {8, 1.35, 2.45, 0.28, 0.04, 0, 2});
+    // A ring of equal spheres around the z axis; `first_azimuth` in full turns. The surfaces are assigned cyclically.
+    const auto add_ring = [&](int count, double distance, double height, double radius, double first_azimuth,
+                              int first_surface, int surface_count) {
+        for (int i = 0; i < count; ++i) {
+            const double azimuth = 2 * std::numbers::pi * (first_azimuth + static_cast<double>(i) / count);
+            const Vec3 centre(rounded(distance * std::cos(azimuth), kTenThousandths),
+                              rounded(distance * std::sin(azimuth), kTenThousandths), height);
+            scene.spheres.push_back({centre, radius, first_surface + i % surface_count});
+        }
+    };
+    add_ring(12, 1.85, 0.4, 0.4, 0.02, 1, 4);
+    add_ring(8, 1.35, 2.45, 0.28, 0.04, 0, 2);
     scene.planes.push_back({{0, 0, 1}, 0, 5});
     merge_equal_surfaces(scene);
     return scene;
 }
 
-Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape) {
+Scene generate_cluster(std::uint64_t seed) {
+    constexpr int kGlassSpheres = 3, kMirrorSpheres = 1, kSpheres = 7;
     constexpr int kMaxRedraws = 200;  // maximum number of new places and radii of a sphere that touches another one
     enum { kGlass, kMirror, kMatt, kFloor };
     Scene scene;
     scene.name = fmt::format("cluster{}.nff", seed);
     scene.background = {0.3, 0.5, 0.85};
-    scene.view = {{0, -11, 4.4}, {0, 0, 1.1}, {0, 0, 1}, shape.angle_degrees, 0, 256, 256};
+    scene.view = {{0, -11, 4.4}, {0, 0, 1.1}, {0, 0, 1}, 20, 0, 256, 256};
     scene.lights = {{{-7, -8, 11}, Colour(0.7, 0.7, 0.7)}};
     scene.surfaces = {
         {{1, 1, 1}, 0.02, 0.12, 200, 0.85, 1.5, {}},
         {{1, 1, 1}, 0.1, 0.8, 200, 0, 1, {}},
         {{0.9, 0.3, 0.1}, 0.85, 0, 0, 0, 1, {}},
-        {{0.9, 0.9, 0.9}, 0.85, 0, 0, 0, 1, Checker{{0.9, 0.87, 0.8}, {0.2, 0.3, 0.34}, shape.checker_size}},
+        {{0.9, 0.9, 0.9}, 0.85, 0, 0, 0, 1, Checker{{0.9, 0.87, 0.8}, {0.2, 0.3, 0.34}, 2.35}},
     };
     SplitMix random(seed);
-    for (int i = 0; i < shape.spheres(); ++i) {
-        Sphere sphere = draw_sphere(random, shape);
+    for (int i = 0; i < kSpheres; ++i) {
+        Sphere sphere = draw_sphere(random);
         for (int tries = 0; tries < kMaxRedraws && touches(sphere, scene.spheres); ++tries)
-            sphere = draw_sphere(random, shape);
-        sphere.surface = i < shape.glass ? kGlass : i < shape.glass + shape.mirrors ? kMirror : kMatt;
+            sphere = draw_sphere(random);
+        sphere.surface = i < kGlassSpheres ? kGlass : i < kGlassSpheres + kMirrorSpheres ? kMirror : kMatt;
         scene.spheres.push_back(sphere);
     }
     scene.planes.push_back({{0, 0, 1}, 0, kFloor});
@@ -286,17 +278,6 @@ struct Corner {
 constexpr std::array<Corner, 6> kTooth{
     {{-0.32, 0.9}, {-0.235, 1}, {-0.12, 1.075}, {0.12, 1.075}, {0.235, 1}, {0.32, 0.9}}};
 
-/// Returns a view of the cube [-1, 1]^3 from above, towards one of its vertical edges.
-View view_of_wheels() { return {{2.4, 3.2, 3.0}, {0, 0, -0.15}, {0, 0, 1}, 36, 0, 512, 512}; }
-
-/// Returns the surfaces of the wheels: brass, steel, glass and red enamel.
-std::vector<Surface> wheel_surfaces() {
-    return {{{0.85, 0.65, 0.25}, 0.7, 0.3, 30, 0, 1, {}},
-            {{0.75, 0.8, 0.85}, 0.4, 0.6, 100, 0, 1, {}},
-            {{0.75, 0.95, 0.85}, 0.2, 0.1, 100, 0.7, 1.1, {}},
-            {{0.8, 0.15, 0.12}, 0.9, 0.1, 20, 0, 1, {}}};
-}
-
 /// A wheel with a vertical axis.
 struct Wheel {
     Vec3 centre;
@@ -361,8 +342,7 @@ void add_sphere_and_cylinders(Scene& scene, int size, const std::array<int, 3>& 
 }  // namespace
 
 Scene generate_balls(int level) {
-    if (level < 0 || level > kMaxBallsLevel)
-        throw UserError(fmt::format("balls: level {}: must be 0..{}", level, kMaxBallsLevel));
+    check_number(fmt::format("balls: level {}", level), level, 0, kMaxBallsLevel);
     Scene scene;
     scene.name = fmt::format("balls{}.nff", level);
     scene.background = {0.078, 0.361, 0.753};
@@ -376,16 +356,18 @@ Scene generate_balls(int level) {
 }
 
 Scene generate_gears(int size) {
-    if (size < 1 || size > kMaxGearsSize)
-        throw UserError(fmt::format("gears: size {}: must be 1..{}", size, kMaxGearsSize));
+    check_number(fmt::format("gears: size {}", size), size, 1, kMaxGearsSize);
     Scene scene;
     scene.name = fmt::format("gears{}.nff", size);
     scene.background = {0.078, 0.361, 0.753};
-    scene.view = view_of_wheels();
+    scene.view = {{2.4, 3.2, 3.0}, {0, 0, -0.15}, {0, 0, 1}, 36, 0, 512, 512};
     scene.lights = {{{4, 3, 5}, {}}, {{1, 6, 3}, {}}, {{-4, 2, 6}, {}}, {{5, -2, 2}, {}}, {{0, 0, 8}, {}}};
-    scene.surfaces = wheel_surfaces();
-    const int ground = static_cast<int>(scene.surfaces.size());
-    scene.surfaces.push_back({{0.85, 0.8, 0.7}, 0.9, 0, 0, 0, 1, {}});
+    constexpr int ground = 4;
+    scene.surfaces = {{{0.85, 0.65, 0.25}, 0.7, 0.3, 30, 0, 1, {}},       // brass
+                      {{0.75, 0.8, 0.85}, 0.4, 0.6, 100, 0, 1, {}},       // steel
+                      {{0.75, 0.95, 0.85}, 0.2, 0.1, 100, 0.7, 1.1, {}},  // glass
+                      {{0.8, 0.15, 0.12}, 0.9, 0.1, 20, 0, 1, {}},        // red enamel
+                      {{0.85, 0.8, 0.7}, 0.9, 0, 0, 0, 1, {}}};
     scene.polygons = {{{{12, 12, -1.2}, {-12, 12, -1.2}, {-12, -12, -1.2}, {12, -12, -1.2}}, {}, ground}};
     const double distance = 2.0 / size;
     for (int x = 0; x < size; ++x)
@@ -400,8 +382,7 @@ Scene generate_gears(int size) {
 }
 
 Scene generate_lattice(int size) {
-    if (size < 1 || size > kMaxLatticeSize)
-        throw UserError(fmt::format("lattice: size {}: must be 1..{}", size, kMaxLatticeSize));
+    check_number(fmt::format("lattice: size {}", size), size, 1, kMaxLatticeSize);
     Scene scene;
     scene.name = fmt::format("lattice{}.nff", size);
     scene.background = {0.078, 0.361, 0.753};

@@ -60,10 +60,8 @@ Scene generate_random(int count, std::uint64_t seed);
 /// surface and one light. Throws UserError unless 1 <= triangles <= 20,000,000.
 Scene generate_terrain(int triangles, std::uint64_t seed);
 
-/// Return functions that return the terrain as NFF (the text of write_nff()) or as binary PLY in pieces, for
-/// write_whole_file(). They need memory for two rows of cells only. The PLY file has little-endian floats and no view,
-/// light or surface.
-std::function<std::string_view()> terrain_nff(int triangles, std::uint64_t seed);
+/// Returns a function that returns the terrain as binary PLY in pieces, for write_whole_file(). It needs memory for a
+/// row of cells only. The file has little-endian floats and no view, light or surface.
 std::function<std::string_view()> terrain_ply(int triangles, std::uint64_t seed);
 
 /// The project's main scene, an example of the worst case for a static distribution of pixels over PEs (Kohata & Ito,
@@ -71,21 +69,10 @@ std::function<std::string_view()> terrain_ply(int triangles, std::uint64_t seed)
 /// 256 x 256 pixels.
 Scene generate_centre();
 
-/// Parameters of generate_cluster(); lengths in scene units. The defaults were found by a search, see scenes/README.md.
-struct ClusterShape {
-    int glass = 3, mirrors = 1, matt = 3;  // numbers of spheres of each material
-    double radius = 1.6;                   // radius of the cylinder around the z axis that contains all centres
-    double height = 2.1;                   // maximum distance between a sphere and the floor
-    double min_sphere_radius = 0.4, max_sphere_radius = 0.7;
-    double checker_size = 2.35;  // side of the floor's squares
-    double angle_degrees = 20;   // vertical angle of the view
-    int spheres() const { return glass + mirrors + matt; }
-};
-
-/// A cluster of random spheres above a checkered floor, with one light. While a sphere touches another sphere, it gets
-/// a new random place and radius, at most 200 times. The means of load and imbalance over many seeds match Kohata &
-/// Ito's figures. 256 x 256 pixels.
-Scene generate_cluster(std::uint64_t seed, const ClusterShape& shape = {});
+/// A cluster of three glass, one mirroring and three matt spheres above a checkered floor, with one light. While a
+/// sphere touches another sphere, it gets a new random place and radius, at most 200 times. The means of load and
+/// imbalance over many seeds match Kohata & Ito's figures. 256 x 256 pixels.
+Scene generate_cluster(std::uint64_t seed);
 
 /// Number of voxels along each axis of the cube in moved_into_voxels().
 inline constexpr std::uint32_t kVoxelsPerCubeSide = 4;

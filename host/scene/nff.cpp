@@ -8,7 +8,6 @@
 
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
-#include "host/scene/nff_tokens.hpp"
 
 namespace raya {
 
@@ -121,20 +120,10 @@ class NffWriter {
 }  // namespace
 
 Scene read_nff(const std::filesystem::path& path, std::vector<SceneRemark>* remarks) {
-    std::string text;
     try {
-        text = read_input(path, Pipes::kRead);
-        return parse_nff(text, input_name(path), remarks);
+        return parse_nff(read_input(path, Pipes::kRead), input_name(path), remarks);
     } catch (const UnreadableFile& error) {
         throw UserError(fmt::format("{}: cannot read the scene: {}", input_name(path), error.what()));
-    } catch (const UserError&) {
-        const std::string_view format = foreign_format(text);
-        if (format.empty()) throw;
-        if (remarks) remarks->clear();
-        throw UserError(
-            fmt::format("{}:1: this looks like {} file; raya reads NFF, and meshes whose "
-                        "names end in .obj, .ply, .gltf, .glb or .stl",
-                        input_name(path), format));
     }
 }
 

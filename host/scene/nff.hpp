@@ -16,7 +16,6 @@
 // An entity starts on a new line. Its numbers may span several lines, except after `#raya`. All six parts of `v` are
 // required, in any order. `hither` does not change the image.
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -24,7 +23,6 @@
 #include <string_view>
 #include <vector>
 
-#include "host/base/parallel.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {
@@ -44,12 +42,6 @@ void add_remark(std::vector<SceneRemark>& remarks, const SceneRemark& remark);
 /// Returns the remark as text: "FILE:LINE: polygon without area, left out (3 in all)" or "FILE: PLACE: ...".
 std::string remark_text(const std::string& file, const SceneRemark& remark);
 
-/// How parse_nff() divides a long text. The result, errors and remarks do not depend on it.
-struct NffPieces {
-    std::size_t bytes = std::size_t{1} << 20;  // length of a piece
-    unsigned threads = core_count();
-};
-
 /// Parses NFF. In the returned scene, equal surfaces are merged (merge_equal_surfaces()), and normals have length 1.
 /// The scene's name is `name` without folder. Throws UserError "NAME:LINE: reason" if the text is not NFF or the scene
 /// cannot be traced.
@@ -58,12 +50,15 @@ struct NffPieces {
 /// objects without size and polygons without area, cuts polygons that are not flat into triangles, converts patches
 /// with a normal of 0 into polygons, and skips entities of other NFF dialects (la, lf, tt, ...) and a mail header.
 /// Prose, a missing view and a file without objects remain errors.
-Scene parse_nff(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks = nullptr,
-                const NffPieces& pieces = {});
+Scene parse_nff(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks = nullptr);
 
 /// Reads and parses a file; "-" reads from stdin, which is named "stdin" in messages. Throws UserError as parse_nff()
 /// does, and UserError "NAME: reason" if the file cannot be read.
 Scene read_nff(const std::filesystem::path& path, std::vector<SceneRemark>* remarks = nullptr);
+
+/// Returns the text in single quotes, shortened to 24 characters, with '?' for each character that is not printable
+/// ASCII.
+std::string in_quotes(std::string_view text);
 
 /// Returns a scene as NFF text. Numbers have the minimum number of digits that round-trip, so parse_nff() of the text
 /// returns an equal scene if equal surfaces of `scene` are merged (merge_equal_surfaces()). Throws UserError for a

@@ -1,416 +1,571 @@
-// Parsing of NFF: pieces of a long text are read on several threads, then joined in their order. A piece that depends
-// on the text before it, or has an error, is read again by the reader of the whole text, which therefore finds every
-// error where a reader without pieces finds it.
+// Parsing of NFF: tokens, dialects, entities.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
 #include <bitset>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
-#include <iterator>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "host/error.hpp"
 #include "host/scene/nff.hpp"
-#include "host/scene/nff_tokens.hpp"
 #include "host/scene/polygon.hpp"
 
 namespace raya {
 namespace {
+
+constexpr std::string_view kDirective = "#raya";
+
+enum class CharKind : std::uint8_t { kText, kBlank, kLineEnd, kHash, kBinary };
+
+constexpr std::array<CharKind, 256> kCharKinds = [] {
+    std::array<CharKind, 256> kinds{};
+    for (std::size_t c = 0; c < ' '; ++c) kinds[c] = CharKind::kBinary;
+    kinds[0x7f] = CharKind::kBinary;
+    for (const char c : {' ', '\t', '\v', '\f'}) kinds[static_cast<std::size_t>(c)] = CharKind::kBlank;
+    for (const char c : {'\r', '\n'}) kinds[static_cast<std::size_t>(c)] = CharKind::kLineEnd;
+    kinds['#'] = CharKind::kHash;
+    return kinds;
+}();
+
+CharKind kind_of(char c) { return kCharKinds[static_cast<unsigned char>(c)]; }
+
+bool is_blank(char c) { return kind_of(c) == CharKind::kBlank || kind_of(c) == CharKind::kLineEnd; }
+
+struct ParsedNumber {
+    double value = 0;
+    std::string_view rest;  // remaining characters after the number
+    std::errc error{};
+};
+
+/// Parses the number at the start of a text with std::from_chars, which ignores the locale. Removes a leading '+'
+/// first, because std::from_chars rejects it, while scanf and therefore other NFF readers accept it.
+ParsedNumber parsed_number(std::string_view text) {
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+    ParsedNumber number;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number.value);
+    number.rest = text.substr(static_cast<std::size_t>(end - text.data()));
+    number.error = error;
+    return number;
+}
+
+/// Returns true if a token starts with a number; more characters may follow it.
+bool reads_as_number(std::string_view text) { return parsed_number(text).error != std::errc::invalid_argument; }
+
+constexpr std::string_view kBlanks = " \t\v\f", kLineEnds = "\r\n";
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+bool reads_as_keyword(std::string_view token) {
+    constexpr std::size_t kMaxLength = 8;
+    return !token.empty() && token.size() <= kMaxLength && is_letter(token[0]) &&
+           std::all_of(token.begin(), token.end(),
+                       [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+/// Returns true if a dot or slash occurs before the last character, as in `wood.ppm`. A token that ends with a dot may
+/// be the last word of a sentence.
+bool reads_as_file(std::string_view token) {
+    return token.substr(0, token.size() - 1).find_first_of("./") != token.npos;
+}
+
+bool opens_mail(std::string_view line) {
+    const auto colon = std::find_if_not(line.begin(), line.end(), [](char c) { return is_letter(c) || c == '-'; });
+    return line.starts_with("From ") || (colon - line.begin() > 1 && colon != line.end() && *colon == ':');
+}
+
+/// Returns true if a line looks like an entity of an NFF dialect (`la 0.2 0.2 0.2`, `tt wood.ppm 0 0 1`, `Q`) and not
+/// like prose: a keyword of at most eight letters, digits and underscores, then any number of numbers and file names.
+/// A line with numbers may also contain up to two names that are not file names. `rest`: the line after the keyword.
+bool reads_as_entity(std::string_view keyword, std::string_view rest) {
+    constexpr int kMaxNames = 2;
+    int numbers = 0, names = 0;
+    rest = rest.substr(0, rest.find('#'));
+    for (std::size_t at = 0; (at = rest.find_first_not_of(kBlanks, at)) != rest.npos;) {
+        const std::string_view token = rest.substr(at, rest.find_first_of(kBlanks, at) - at);
+        if (reads_as_number(token))
+            ++numbers;
+        else if (!reads_as_file(token))
+            ++names;
+        at += token.size();
+    }
+    return reads_as_keyword(keyword) && names <= (numbers > 0 ? kMaxNames : 0);
+}
+
+/// Returns true if `token`, the first token of a file, identifies the file as Sense8's NFF, a different format with the
+/// same name.
+bool is_sense8_keyword(std::string_view token) {
+    constexpr std::string_view kKeyword = "nff";
+    return std::equal(token.begin(), token.end(), kKeyword.begin(), kKeyword.end(),
+                      [](char c, char lower) { return is_letter(c) && (c | 0x20) == lower; });
+}
+
+/// Length of a mail header, including the empty lines before it.
+struct MailHeader {
+    std::size_t bytes = 0;  // 0: no header
+    int lines = 0;          // number of lines
+};
+
+/// Finds a mail header at the beginning of a text. The header may follow empty lines, starts with a line `From
+/// somebody` or `Name: text`, and ends before the next empty line.
+MailHeader mail_header(std::string_view text) {
+    const auto line_at = [&](std::size_t at) { return text.substr(at, text.find_first_of(kLineEnds, at) - at); };
+    std::size_t at = std::min(text.find_first_not_of("\r\n \t\v\f"), text.size());
+    if (!opens_mail(line_at(at))) return {};
+    for (std::string_view line = line_at(at); line.find_first_not_of(kBlanks) != line.npos; line = line_at(at)) {
+        at += line.size();
+        at += text.substr(at).starts_with("\r\n") ? 2 : at < text.size() ? 1 : 0;
+    }
+    const std::string_view header = text.substr(0, at);
+    const auto count_of = [&](char c) { return std::count(header.begin(), header.end(), c); };
+    return {at, static_cast<int>(std::max(count_of('\n'), count_of('\r')))};
+}
+
+/// A run of characters without white space. At the end of the file `text` is empty.
+struct NffToken {
+    std::string_view text;
+    int line = 1;
+    bool first_on_line = false;
+};
+
+/// Splits a text into tokens. Skips comments (`#` to the end of the line) except `#raya` at the start of a line. Lines
+/// may end in LF, CR LF or CR. Every error is a UserError "NAME:LINE: reason".
+class NffTokens {
+  public:
+    /// `text` must outlive this object; its lines are counted from `first_line`. Control characters, as in a binary
+    /// file, are an error.
+    NffTokens(std::string_view text, std::string name, int first_line)
+        : text_(text), name_(std::move(name)), line_(first_line) {
+        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // which some editors write at the start of a file
+        if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
+        advance();
+    }
+
+    /// Returns the next token without taking it.
+    const NffToken& peek() const { return next_; }
+
+    /// Takes the keyword of the next entity. The keyword must be the first token of a line. An entity that starts with
+    /// `#raya` must end on the same line.
+    std::string_view take_keyword() {
+        const NffToken keyword = next_;
+        if (!keyword.first_on_line)
+            refuse(keyword.line, fmt::format("{} follows the end of {}; a new entity starts on a new line",
+                                             in_quotes(keyword.text), in_quotes(entity_)));
+        entity_ = keyword.text;
+        entity_line_ = keyword.line;
+        one_line_ = keyword.text == kDirective;
+        advance();
+        return keyword.text;
+    }
+
+    /// Takes the name after `#raya`, or a label inside the viewpoint entity `v`, such as `from`; `what` describes it in
+    /// messages.
+    std::string_view take_name(std::string_view what) {
+        const NffToken token = take_part(what);
+        if (one_line_) entity_ += fmt::format(" {}", token.text);
+        return token.text;
+    }
+
+    /// Takes a finite number of at most `max` in magnitude; `what` describes it in messages ("the radius").
+    double take_number(std::string_view what, double max = kMaxNumber) {
+        const ParsedNumber number = parsed_number(next_.text);
+        const bool is_not_number = number.error == std::errc::invalid_argument;
+        const bool incomplete = is_not_number && next_.first_on_line && !one_line_;
+        const NffToken token = take_part(what);
+        const auto refuse_token = [&](std::string_view reason) {
+            refuse(token.line, fmt::format("{} of {}: {} {}", what, in_quotes(entity_), in_quotes(token.text), reason));
+        };
+        if (incomplete)
+            refuse(token.line, fmt::format("{} of line {} is incomplete: expected {}, found {}", in_quotes(entity_),
+                                           entity_line_, what, in_quotes(token.text)));
+        if (is_not_number) refuse_token("is not a number");
+        if (number.error == std::errc::result_out_of_range) refuse_token("is outside the range of double precision");
+        if (!number.rest.empty()) refuse_token("has characters after the number");
+        if (!std::isfinite(number.value)) refuse_token("is not a finite number");
+        if (std::abs(number.value) > max)
+            refuse_token(fmt::format("is out of range: at most {:.0e} in magnitude", max));
+        return number.value;
+    }
+
+    /// Takes an integer in [lowest, highest]; `what` describes it in messages.
+    int take_integer(std::string_view what, int lowest, int highest) {
+        const int line = next_.line;
+        const double value = take_number(what, std::numeric_limits<double>::infinity());
+        if (value != std::floor(value) || value < lowest || value > highest)
+            refuse(line, fmt::format("{} of {} is {}: must be a whole number from {} to {}", what, in_quotes(entity_),
+                                     value, lowest, highest));
+        return static_cast<int>(value);
+    }
+
+    /// Skips an unknown entity: the rest of its line and all following lines that begin with a number. Returns false
+    /// and skips nothing if the line does not look like an entity (reads_as_entity()).
+    bool skip_unknown() {
+        const std::size_t at = position_ - next_.text.size();
+        const std::string_view line = text_.substr(at, text_.find_first_of("\r\n", at) - at);
+        if (!reads_as_entity(entity_, next_.first_on_line ? std::string_view() : line)) return false;
+        while (!next_.text.empty() && (!next_.first_on_line || number_follows())) advance();
+        return true;
+    }
+
+    /// Returns true if the next token starts with a number; more characters may follow it.
+    bool number_follows() const { return reads_as_number(next_.text); }
+
+    int entity_line() const { return entity_line_; }  // line on which the current entity started
+
+    /// Returns the number of characters after the next token.
+    std::size_t characters_left() const { return text_.size() - position_; }
+
+    /// Throws UserError "NAME:LINE: reason".
+    [[noreturn]] void refuse(int line, std::string_view reason) const {
+        throw UserError(fmt::format("{}:{}: {}", name_, line, reason));
+    }
+
+  private:
+    [[noreturn]] void refuse_binary() const {
+        refuse(line_, "a control character: is this a binary file? NFF is plain text");
+    }
+
+    bool is_at_directive() const {
+        const std::string_view rest = text_.substr(position_);
+        if (!rest.starts_with(kDirective)) return false;
+        return rest.size() == kDirective.size() || is_blank(rest[kDirective.size()]);
+    }
+
+    void skip_blanks_and_comments() {
+        bool comment = false;
+        for (; position_ < text_.size(); ++position_) {
+            switch (kind_of(text_[position_])) {
+                case CharKind::kBinary:
+                    refuse_binary();
+                case CharKind::kLineEnd: {
+                    const bool is_cr_of_crlf =
+                        text_[position_] == '\r' && position_ + 1 < text_.size() && text_[position_ + 1] == '\n';
+                    line_ += is_cr_of_crlf ? 0 : 1;
+                    at_line_start_ = true;
+                    comment = false;
+                    break;
+                }
+                case CharKind::kHash:
+                    if (comment) break;
+                    if (is_at_directive()) {
+                        if (at_line_start_) return;
+                        refuse(line_, "'#raya' must be the first word of its line");
+                    }
+                    comment = true;
+                    break;
+                case CharKind::kText:
+                    if (!comment) return;
+                    break;
+                case CharKind::kBlank:
+                    break;
+            }
+        }
+    }
+
+    void advance() {
+        skip_blanks_and_comments();
+        const std::size_t start = position_;
+        if (position_ < text_.size()) ++position_;
+        while (position_ < text_.size() && kind_of(text_[position_]) == CharKind::kText) ++position_;
+        if (position_ < text_.size() && kind_of(text_[position_]) == CharKind::kBinary) refuse_binary();
+        next_ = {text_.substr(start, position_ - start), line_, at_line_start_};
+        at_line_start_ = false;
+    }
+
+    NffToken take_part(std::string_view what) {
+        const NffToken token = next_;
+        if (token.text.empty())
+            refuse(token.line, fmt::format("the file ends before {} of {}", what, in_quotes(entity_)));
+        if (one_line_ && token.line != entity_line_)
+            refuse(entity_line_, fmt::format("the line ends before {} of {}", what, in_quotes(entity_)));
+        advance();
+        return token;
+    }
+
+    std::string_view text_;
+    std::string name_;
+    std::size_t position_ = 0;  // index of the first character after next_
+    int line_ = 1;
+    bool at_line_start_ = true;
+    NffToken next_;
+    std::string entity_;  // the current entity's name in messages
+    int entity_line_ = 1;
+    bool one_line_ = false;  // true if the current entity must end on the line on which it starts
+};
+
+constexpr int kMaxResolution = 16384;  // pixels
+constexpr int kMaxVertices = 1'000'000'000;
 
 /// Reads entities into a scene.
 class NffReader {
   public:
     /// Starts before the first token of `text`, which must outlive this object. `remarks`: null in strict mode, in
     /// which every deviation is an error.
-    NffReader(std::string_view text, const std::string& name, int first_line, std::vector<SceneRemark>* remarks);
+    NffReader(std::string_view text, const std::string& name, int first_line, std::vector<SceneRemark>* remarks)
+        : tokens_(text, name, first_line), remarks_(remarks) {
+        scene_.name = std::filesystem::path(name).filename().string();
+        scene_.surfaces.emplace_back();  // for objects before the first `f`
+    }
 
-    /// Skips to the first token at or after `position`, and takes its line as line 1.
-    void start_at(std::size_t position) { tokens_.start_at(position); }
-
-    /// Reads the entities that start before `end`, an index into the text. Throws UserError "NAME:LINE: reason".
-    void read_until(std::size_t end);
-
-    /// Adds what `piece` has read, and continues where it ended. `piece` must have started where this reader is, at an
-    /// entity, and `piece_remarks` are its remarks. Changes nothing and returns false if reading the piece's entities
-    /// with this reader could give another scene or an error.
-    bool adopt(NffReader& piece, const std::vector<SceneRemark>& piece_remarks);
-
-    /// Returns the scene, after the last entity. Throws UserError if it is incomplete.
-    Scene finish();
-
-    const NffTokens& tokens() const { return tokens_; }
+    /// Reads all entities and returns the scene. Throws UserError "NAME:LINE: reason".
+    Scene read() {
+        if (is_sense8_keyword(tokens_.peek().text))
+            tokens_.refuse(tokens_.peek().line,
+                           "this is Sense8's NFF (WorldToolKit), another format of the same name; raya reads E. "
+                           "Haines's NFF");
+        while (!tokens_.peek().text.empty()) read_entity();
+        const int end = tokens_.peek().line;
+        if (checker_) tokens_.refuse(checker_line_, "no plane or polygon follows this '#raya checker'");
+        if (!has_view_) tokens_.refuse(end, "no 'v': the file has no viewpoint");
+        if (scene_.object_count() == 0) tokens_.refuse(end, "no object: the image would be empty");
+        merge_equal_surfaces(scene_);
+        return std::move(scene_);
+    }
 
   private:
     [[noreturn]] void refuse(std::string_view reason) const { tokens_.refuse(tokens_.entity_line(), reason); }
-    void remark_or_refuse(std::string_view reason, const std::string& what);
+
+    /// Reports an object that cannot be traced as given. In strict mode throws UserError with `reason`. Otherwise adds
+    /// the remark `what`; the caller then leaves the object out or repairs it.
+    void remark_or_refuse(std::string_view reason, const std::string& what) {
+        if (!remarks_) refuse(reason);
+        add_remark(*remarks_, {.what = what, .line = tokens_.entity_line()});
+    }
+
     double read_length(std::string_view what) { return tokens_.take_number(what, kMaxSceneLength); }
-    Vec3 read_vector(std::string_view what, double max = kMaxSceneLength);
-    Colour read_colour(std::string_view what);
-    double read_weight(std::string_view what);
-    void read_entity();
-    void read_view();
-    template <std::size_t N>
-    [[noreturn]] void refuse_incomplete_view(const std::array<std::string_view, N>& parts, const std::bitset<N>& seen);
-    void read_background();
-    void read_light();
-    void read_surface();
+
+    Vec3 read_vector(std::string_view what, double max = kMaxSceneLength) {
+        Vec3 vector;
+        for (int axis = 0; axis < 3; ++axis) vector[axis] = tokens_.take_number(what, max);
+        return vector;
+    }
+
+    Colour read_colour(std::string_view what) {
+        const Colour colour = read_vector(what, kMaxNumber);
+        if (!is_colour(colour)) refuse(fmt::format("{} is negative", what));
+        return colour;
+    }
+
+    double read_weight(std::string_view what) {
+        const double weight = tokens_.take_number(what);
+        if (weight < 0 || weight > kMaxWeight) refuse(fmt::format("{} is {}: must be 0..{}", what, weight, kMaxWeight));
+        return weight;
+    }
+
+    void read_entity() {
+        struct Entity {
+            std::string_view keyword;
+            void (NffReader::*read)();
+        };
+        static constexpr Entity kEntities[] = {
+            {"v", &NffReader::read_view},    {"b", &NffReader::read_background}, {"l", &NffReader::read_light},
+            {"f", &NffReader::read_surface}, {"s", &NffReader::read_sphere},     {"p", &NffReader::read_flat_polygon},
+            {"pp", &NffReader::read_patch},  {"c", &NffReader::read_cone},       {"#raya", &NffReader::read_directive}};
+        const bool is_number = tokens_.number_follows();
+        const std::string_view keyword = tokens_.take_keyword();
+        for (const Entity& entity : kEntities)
+            if (entity.keyword == keyword) return (this->*entity.read)();
+        if (is_number)
+            refuse(in_quotes(keyword) + " instead of an entity: does the previous one have too many numbers?");
+        if (remarks_ && tokens_.skip_unknown())
+            return add_remark(*remarks_, {.what = "entity " + in_quotes(keyword) + " of another dialect, skipped",
+                                          .line = tokens_.entity_line()});
+        refuse("unknown entity " + in_quotes(keyword) +
+               "; NFF has v b l f s p pp c; the names of meshes end in .obj, .ply, .gltf, .glb or .stl");
+    }
+
+    void read_view() {
+        if (has_view_) refuse("a second 'v': a scene has one viewpoint");
+        View& view = scene_.view;
+        std::bitset<kParts.size()> seen;
+        while (!seen.all()) {
+            const auto part = std::find(kParts.begin(), kParts.end(), tokens_.peek().text);
+            const auto index = static_cast<std::size_t>(part - kParts.begin());
+            if (part == kParts.end()) refuse_incomplete_view(seen);
+            if (seen[index]) tokens_.refuse(tokens_.peek().line, fmt::format("'{}' occurs twice in 'v'", *part));
+            seen.set(index);
+            tokens_.take_name(*part);
+            if (*part == "from") view.from = read_vector("from");
+            if (*part == "at") view.at = read_vector("at");
+            if (*part == "up") view.up = read_vector("up");
+            if (*part == "angle") view.angle_degrees = tokens_.take_number("angle");
+            if (*part == "hither") view.hither = read_length("hither");
+            if (*part == "resolution") {
+                view.width = tokens_.take_integer("the width", 1, kMaxResolution);
+                view.height = tokens_.take_integer("the height", 1, kMaxResolution);
+            }
+        }
+        if (const std::string reason = view_error(view); !reason.empty()) refuse(reason);
+        has_view_ = true;
+    }
+
+    [[noreturn]] void refuse_incomplete_view(const std::bitset<6>& seen) {
+        std::string missing;
+        for (std::size_t i = 0; i < kParts.size(); ++i)
+            if (!seen[i]) missing += fmt::format(" {}", kParts[i]);
+        const NffToken& token = tokens_.peek();
+        const std::string found = token.text.empty() ? "the file ends" : in_quotes(token.text) + " follows";
+        tokens_.refuse(token.line, fmt::format("'v' is incomplete: {}; missing parts:{}", found, missing));
+    }
+
+    void read_background() {
+        if (has_background_) refuse("a second 'b': a scene has one background");
+        scene_.background = read_colour("the background colour");
+        has_background_ = true;
+    }
+
+    void read_light() {
+        Light light{read_vector("the position"), {}};
+        if (tokens_.number_follows()) light.colour = read_colour("the light's colour");
+        scene_.lights.push_back(light);
+    }
+
+    void read_surface() {
+        Surface surface;
+        surface.colour = read_colour("the colour");
+        surface.diffuse = read_weight("Kd");
+        surface.specular = read_weight("Ks");
+        surface.shine = tokens_.take_number("Shine");
+        surface.transmittance = read_weight("T");
+        surface.refraction_index = tokens_.take_number("the index of refraction");
+        if (surface.shine < 0) refuse(fmt::format("Shine is {}: must not be negative", surface.shine));
+        if (surface.transmittance > 0 && surface.refraction_index <= 0)
+            refuse(
+                fmt::format("the index of refraction is {}: must be positive where T > 0", surface.refraction_index));
+        current_surface_ = number_of(surface);
+    }
+
     /// Returns the number of the surface in the scene, to which it is added unless it is equal to one of the last
     /// surfaces. Many files repeat a few surfaces millions of times.
-    int number_of(const Surface& surface);
-    int take_flat_surface();
-    void read_sphere();
+    int number_of(const Surface& surface) {
+        constexpr std::ptrdiff_t kCompared = 64;
+        const auto begin = scene_.surfaces.begin(), end = scene_.surfaces.end();
+        const auto equal = std::find(end - std::min(kCompared, end - begin), end, surface);
+        const auto number = static_cast<int>(equal - begin);
+        if (equal == end) scene_.surfaces.push_back(surface);
+        return number;
+    }
+
+    /// Returns the surface of a plane or polygon: the current surface, with the pending checker if there is one.
+    int take_flat_surface() {
+        if (!checker_) return current_surface_;
+        Surface surface = scene_.surfaces[static_cast<std::size_t>(current_surface_)];
+        surface.checker = std::exchange(checker_, std::nullopt);
+        return number_of(surface);
+    }
+
+    void read_sphere() {
+        Sphere sphere{read_vector("the centre"), 0, current_surface_};
+        sphere.radius = read_length("the radius");
+        if (std::abs(sphere.radius) < kMinSceneLength)
+            return remark_or_refuse("the radius of the sphere is zero", "sphere of radius 0, left out");
+        scene_.spheres.push_back(sphere);
+    }
+
     void read_flat_polygon() { read_polygon(false); }
     void read_patch() { read_polygon(true); }
-    void read_polygon(bool patch);
-    void read_cone();
-    void read_directive();
-    void read_plane();
-    void read_checker();
+
+    void read_polygon(bool patch) {
+        Polygon polygon;
+        const int min_count = remarks_ ? 0 : 3;
+        const auto count =
+            static_cast<std::size_t>(tokens_.take_integer("the number of vertices", min_count, kMaxVertices));
+        const std::size_t min_characters = patch ? 12 : 6;  // per vertex: a digit and a blank for each number
+        if (count > tokens_.characters_left() / min_characters + 2)
+            refuse(fmt::format("the file is too short for a polygon of {} vertices", count));
+        polygon.vertices.reserve(count);
+        polygon.normals.reserve(patch ? count : 0);
+        for (std::size_t i = 0; i < count; ++i) {
+            polygon.vertices.push_back(read_vector("a vertex"));
+            if (!patch) continue;
+            polygon.normals.push_back(unit_vector(read_vector("a normal")));
+        }
+        polygon.surface = take_flat_surface();
+        if (std::find(polygon.normals.begin(), polygon.normals.end(), Vec3(0)) != polygon.normals.end()) {
+            remark_or_refuse("a normal of the patch is zero", "patch with a normal of 0, taken as a flat polygon");
+            polygon.normals.clear();
+        }
+        add_polygon(scene_, std::move(polygon),
+                    [&](const std::string& reason, const std::string& what) { remark_or_refuse(reason, what); });
+    }
+
+    void read_cone() {
+        Cone cone;
+        cone.base = read_vector("the base");
+        cone.base_radius = read_length("the base radius");
+        cone.apex = read_vector("the apex");
+        cone.apex_radius = read_length("the apex radius");
+        cone.surface = current_surface_;
+        const auto [lower, upper] = std::minmax(cone.base_radius, cone.apex_radius);
+        if (std::max(-lower, upper) < kMinSceneLength)
+            return remark_or_refuse("both radii of the cone are zero", "cone without radius, left out");
+        if (lower < 0 && upper > 0) refuse("one radius of the cone is negative, the other positive");
+        if ((cone.apex - cone.base).length() < kMinSceneLength)
+            return remark_or_refuse("the height of the cone is zero", "cone without height, left out");
+        scene_.cones.push_back(cone);
+    }
+
+    void read_directive() {
+        const std::string_view name = tokens_.take_name("'plane' or 'checker'");
+        if (name == "plane") return read_plane();
+        if (name == "checker") return read_checker();
+        refuse("unknown extension " + in_quotes(name) + "; raya knows '#raya plane' and '#raya checker'");
+    }
+
+    void read_plane() {
+        const Vec3 file_normal = read_vector("the normal");
+        Plane plane{unit_vector(file_normal), read_length("the distance"), 0};
+        if (plane.normal == Vec3(0)) refuse("the normal of the plane is zero");
+        if (plane.normal != file_normal) plane.distance /= file_normal.length();
+        if (!(std::abs(plane.distance) <= kMaxSceneLength))
+            refuse("the plane is too far from the origin: at most 1e30 with a normal of length 1");
+        plane.surface = take_flat_surface();
+        scene_.planes.push_back(plane);
+    }
+
+    void read_checker() {
+        if (checker_) refuse("a second '#raya checker' before a plane or polygon has used the first");
+        Checker checker{read_colour("the first colour"), read_colour("the second colour"), 0};
+        checker.size = read_length("the size");
+        if (checker.size < kMinSceneLength) refuse("the size of the checker must be positive");
+        checker_ = checker;
+        checker_line_ = tokens_.entity_line();
+    }
+
+    static constexpr std::array<std::string_view, 6> kParts{"from", "at", "up", "angle", "hither", "resolution"};
 
     NffTokens tokens_;
     std::vector<SceneRemark>* remarks_;
     Scene scene_;
     bool has_view_ = false, has_background_ = false;
     int current_surface_ = 0;
-    bool has_copied_first_surface_ = false;  // for a checker; in a piece, the first surface stands for an unknown one
-    std::optional<Checker> checker_;         // pending, for the next plane or polygon
+    std::optional<Checker> checker_;  // pending, for the next plane or polygon
     int checker_line_ = 0;
 };
 
-constexpr int kMaxResolution = 16384;  // pixels
-// Maximum of Kd, Ks and T. Values above 1 are unphysical; values above 100 are probably typing errors.
-constexpr double kMaxWeight = 100;
-constexpr int kMaxVertices = 1'000'000'000;
-
-NffReader::NffReader(std::string_view text, const std::string& name, int first_line, std::vector<SceneRemark>* remarks)
-    : tokens_(text, name, first_line), remarks_(remarks) {
-    scene_.name = std::filesystem::path(name).filename().string();
-    scene_.surfaces.emplace_back();  // for objects before the first `f`
-}
-
-void NffReader::read_until(std::size_t end) {
-    while (!tokens_.peek().text.empty() && tokens_.next_at() < end) read_entity();
-}
-
-Scene NffReader::finish() {
-    const int end = tokens_.peek().line;
-    if (checker_) tokens_.refuse(checker_line_, "no plane or polygon follows this '#raya checker'");
-    if (!has_view_) tokens_.refuse(end, "no 'v': the file has no viewpoint");
-    if (scene_.object_count() == 0) tokens_.refuse(end, "no object: the image would be empty");
-    merge_equal_surfaces(scene_);
-    return std::move(scene_);
-}
-
-/// Reports an object that cannot be traced as given. In strict mode throws UserError with `reason`. Otherwise adds
-/// the remark `what`; the caller then leaves the object out or repairs it.
-void NffReader::remark_or_refuse(std::string_view reason, const std::string& what) {
-    if (!remarks_) refuse(reason);
-    add_remark(*remarks_, {.what = what, .line = tokens_.entity_line()});
-}
-
-Vec3 NffReader::read_vector(std::string_view what, double max) {
-    Vec3 vector;
-    for (int axis = 0; axis < 3; ++axis) vector[axis] = tokens_.take_number(what, max);
-    return vector;
-}
-
-Colour NffReader::read_colour(std::string_view what) {
-    const Colour colour = read_vector(what, kMaxNumber);
-    if (!is_colour(colour)) refuse(fmt::format("{} is negative", what));
-    return colour;
-}
-
-double NffReader::read_weight(std::string_view what) {
-    const double weight = tokens_.take_number(what);
-    if (weight < 0 || weight > kMaxWeight) refuse(fmt::format("{} is {}: must be 0..{}", what, weight, kMaxWeight));
-    return weight;
-}
-
-void NffReader::read_entity() {
-    struct Entity {
-        std::string_view keyword;
-        void (NffReader::*read)();
-    };
-    static constexpr Entity kEntities[] = {
-        {"v", &NffReader::read_view},    {"b", &NffReader::read_background}, {"l", &NffReader::read_light},
-        {"f", &NffReader::read_surface}, {"s", &NffReader::read_sphere},     {"p", &NffReader::read_flat_polygon},
-        {"pp", &NffReader::read_patch},  {"c", &NffReader::read_cone},       {"#raya", &NffReader::read_directive}};
-    const bool is_number = tokens_.number_follows();
-    const std::string_view keyword = tokens_.take_keyword();
-    for (const Entity& entity : kEntities)
-        if (entity.keyword == keyword) return (this->*entity.read)();
-    if (is_number) refuse(in_quotes(keyword) + " instead of an entity: does the previous one have too many numbers?");
-    if (remarks_ && tokens_.skip_unknown())
-        return add_remark(*remarks_, {.what = "entity " + in_quotes(keyword) + " of another dialect, skipped",
-                                      .line = tokens_.entity_line()});
-    refuse("unknown entity " + in_quotes(keyword) + "; NFF has v b l f s p pp c");
-}
-
-void NffReader::read_view() {
-    static constexpr std::array<std::string_view, 6> kParts{"from", "at", "up", "angle", "hither", "resolution"};
-    if (has_view_) refuse("a second 'v': a scene has one viewpoint");
-    View& view = scene_.view;
-    std::bitset<kParts.size()> seen;
-    while (!seen.all()) {
-        const auto part = std::find(kParts.begin(), kParts.end(), tokens_.peek().text);
-        const auto index = static_cast<std::size_t>(part - kParts.begin());
-        if (part == kParts.end()) refuse_incomplete_view(kParts, seen);
-        if (seen[index]) tokens_.refuse(tokens_.peek().line, fmt::format("'{}' occurs twice in 'v'", *part));
-        seen.set(index);
-        tokens_.take_name(*part);
-        if (*part == "from") view.from = read_vector("from");
-        if (*part == "at") view.at = read_vector("at");
-        if (*part == "up") view.up = read_vector("up");
-        if (*part == "angle") view.angle_degrees = tokens_.take_number("angle");
-        if (*part == "hither") view.hither = read_length("hither");
-        if (*part == "resolution") {
-            view.width = tokens_.take_integer("the width", 1, kMaxResolution);
-            view.height = tokens_.take_integer("the height", 1, kMaxResolution);
-        }
-    }
-    if (const std::string reason = view_error(view); !reason.empty()) refuse(reason);
-    has_view_ = true;
-}
-
-template <std::size_t N>
-void NffReader::refuse_incomplete_view(const std::array<std::string_view, N>& parts, const std::bitset<N>& seen) {
-    std::string missing;
-    for (std::size_t i = 0; i < N; ++i)
-        if (!seen[i]) missing += fmt::format(" {}", parts[i]);
-    const NffToken& token = tokens_.peek();
-    const std::string found = token.text.empty() ? "the file ends" : in_quotes(token.text) + " follows";
-    tokens_.refuse(token.line, fmt::format("'v' is incomplete: {}; missing parts:{}", found, missing));
-}
-
-void NffReader::read_background() {
-    if (has_background_) refuse("a second 'b': a scene has one background");
-    scene_.background = read_colour("the background colour");
-    has_background_ = true;
-}
-
-void NffReader::read_light() {
-    Light light{read_vector("the position"), {}};
-    if (tokens_.number_follows()) light.colour = read_colour("the light's colour");
-    scene_.lights.push_back(light);
-}
-
-void NffReader::read_surface() {
-    Surface surface;
-    surface.colour = read_colour("the colour");
-    surface.diffuse = read_weight("Kd");
-    surface.specular = read_weight("Ks");
-    surface.shine = tokens_.take_number("Shine");
-    surface.transmittance = read_weight("T");
-    surface.refraction_index = tokens_.take_number("the index of refraction");
-    if (surface.shine < 0) refuse(fmt::format("Shine is {}: must not be negative", surface.shine));
-    if (surface.transmittance > 0 && surface.refraction_index <= 0)
-        refuse(fmt::format("the index of refraction is {}: must be positive where T > 0", surface.refraction_index));
-    current_surface_ = number_of(surface);
-}
-
-int NffReader::number_of(const Surface& surface) {
-    constexpr std::ptrdiff_t kCompared = 64;
-    // The first surface is not compared: in a piece it stands for an unknown one.
-    const auto first = scene_.surfaces.begin() + 1, end = scene_.surfaces.end();
-    const auto equal = std::find(end - std::min(kCompared, end - first), end, surface);
-    const auto number = static_cast<int>(equal - scene_.surfaces.begin());
-    if (equal == end) scene_.surfaces.push_back(surface);
-    return number;
-}
-
-/// Returns the surface of a plane or polygon: the current surface, with the pending checker if there is one.
-int NffReader::take_flat_surface() {
-    if (!checker_) return current_surface_;
-    has_copied_first_surface_ |= current_surface_ == 0;
-    Surface surface = scene_.surfaces[static_cast<std::size_t>(current_surface_)];
-    surface.checker = std::exchange(checker_, std::nullopt);
-    return number_of(surface);
-}
-
-void NffReader::read_sphere() {
-    Sphere sphere{read_vector("the centre"), 0, current_surface_};
-    sphere.radius = read_length("the radius");
-    if (std::abs(sphere.radius) < kMinSceneLength)
-        return remark_or_refuse("the radius of the sphere is zero", "sphere of radius 0, left out");
-    scene_.spheres.push_back(sphere);
-}
-
-void NffReader::read_polygon(bool patch) {
-    Polygon polygon;
-    const int min_count = remarks_ ? 0 : 3;
-    const auto count =
-        static_cast<std::size_t>(tokens_.take_integer("the number of vertices", min_count, kMaxVertices));
-    const std::size_t min_characters = patch ? 12 : 6;  // per vertex: a digit and a blank for each number
-    if (count > tokens_.characters_left() / min_characters + 2)
-        refuse(fmt::format("the file is too short for a polygon of {} vertices", count));
-    polygon.vertices.reserve(count);
-    polygon.normals.reserve(patch ? count : 0);
-    for (std::size_t i = 0; i < count; ++i) {
-        polygon.vertices.push_back(read_vector("a vertex"));
-        if (!patch) continue;
-        polygon.normals.push_back(unit_vector(read_vector("a normal")));
-    }
-    polygon.surface = take_flat_surface();
-    if (std::find(polygon.normals.begin(), polygon.normals.end(), Vec3(0)) != polygon.normals.end()) {
-        remark_or_refuse("a normal of the patch is zero", "patch with a normal of 0, taken as a flat polygon");
-        polygon.normals.clear();
-    }
-    add_polygon(scene_, std::move(polygon),
-                [&](const std::string& reason, const std::string& what) { remark_or_refuse(reason, what); });
-}
-
-void NffReader::read_cone() {
-    Cone cone;
-    cone.base = read_vector("the base");
-    cone.base_radius = read_length("the base radius");
-    cone.apex = read_vector("the apex");
-    cone.apex_radius = read_length("the apex radius");
-    cone.surface = current_surface_;
-    const auto [lower, upper] = std::minmax(cone.base_radius, cone.apex_radius);
-    if (std::max(-lower, upper) < kMinSceneLength)
-        return remark_or_refuse("both radii of the cone are zero", "cone without radius, left out");
-    if (lower < 0 && upper > 0) refuse("one radius of the cone is negative, the other positive");
-    if ((cone.apex - cone.base).length() < kMinSceneLength)
-        return remark_or_refuse("the height of the cone is zero", "cone without height, left out");
-    scene_.cones.push_back(cone);
-}
-
-void NffReader::read_directive() {
-    const std::string_view name = tokens_.take_name("'plane' or 'checker'");
-    if (name == "plane") return read_plane();
-    if (name == "checker") return read_checker();
-    refuse("unknown extension " + in_quotes(name) + "; raya knows '#raya plane' and '#raya checker'");
-}
-
-void NffReader::read_plane() {
-    const Vec3 file_normal = read_vector("the normal");
-    Plane plane{unit_vector(file_normal), read_length("the distance"), 0};
-    if (plane.normal == Vec3(0)) refuse("the normal of the plane is zero");
-    if (plane.normal != file_normal) plane.distance /= file_normal.length();
-    if (!(std::abs(plane.distance) <= kMaxSceneLength))
-        refuse("the plane is too far from the origin: at most 1e30 with a normal of length 1");
-    plane.surface = take_flat_surface();
-    scene_.planes.push_back(plane);
-}
-
-void NffReader::read_checker() {
-    if (checker_) refuse("a second '#raya checker' before a plane or polygon has used the first");
-    Checker checker{read_colour("the first colour"), read_colour("the second colour"), 0};
-    checker.size = read_length("the size");
-    if (checker.size < kMinSceneLength) refuse("the size of the checker must be positive");
-    checker_ = checker;
-    checker_line_ = tokens_.entity_line();
-}
-
-struct Piece {
-    std::size_t begin, end;              // its entities start at begin .. end - 1
-    std::optional<NffReader> reader;     // after the piece; empty if the piece has an error
-    std::vector<SceneRemark> remarks{};  // of the reader; their lines count from the start of the piece
-};
-
-/// Returns the index of the first line at or after `from` that may start with an entity of an object, or the length of
-/// the text if there is none.
-std::size_t object_line(std::string_view text, std::size_t from) {
-    constexpr std::string_view kObjects = "spc";
-    while ((from = text.find_first_of("\r\n", from)) < text.size())
-        if (++from < text.size() && kObjects.find(text[from]) != kObjects.npos) return from;
-    return text.size();
-}
-
-/// Returns the next pieces, from `from` to the end of the text, but at most `max_pieces`.
-std::vector<Piece> next_pieces(std::string_view text, std::size_t from, std::size_t bytes, std::size_t max_pieces) {
-    std::vector<Piece> pieces;
-    while (pieces.size() < max_pieces && from < text.size()) {
-        const std::size_t end = object_line(text, from + std::min(bytes, text.size() - from));
-        pieces.push_back({from, end, {}});
-        from = end;
-    }
-    return pieces;
-}
-
-/// Moves the objects of a piece to the end of `objects`. `surface_of(i)`: new number of the piece's surface i.
-/// `pieces`: expected size of the whole text, in sizes of the text read so far.
-template <class Object, class SurfaceOf>
-void append_objects(std::vector<Object>& objects, std::vector<Object>& added, const SurfaceOf& surface_of,
-                    double pieces) {
-    for (Object& object : added) object.surface = surface_of(object.surface);
-    const std::size_t size = objects.size() + added.size();
-    // Doubling the capacity at the end of a large scene would take much more memory than it needs.
-    if (size > objects.capacity())
-        objects.reserve(static_cast<std::size_t>(static_cast<double>(size) * std::max(pieces, 1.125)));
-    std::move(added.begin(), added.end(), std::back_inserter(objects));
-}
-
-void read_piece(Piece& piece, std::string_view text, const std::string& name, bool lenient) {
-    try {
-        piece.reader.emplace(text, name, 1, lenient ? &piece.remarks : nullptr);
-        piece.reader->start_at(piece.begin);
-        piece.reader->read_until(piece.end);
-    } catch (const UserError&) {
-        piece.reader.reset();
-    }
-}
-
 }  // namespace
 
-bool NffReader::adopt(NffReader& piece, const std::vector<SceneRemark>& piece_remarks) {
-    if (checker_ || piece.has_copied_first_surface_ || (has_view_ && piece.has_view_) ||
-        (has_background_ && piece.has_background_))
-        return false;
-    for (const SceneRemark& remark : piece_remarks)
-        add_remark(*remarks_, {remark.what, remark.count, remark.line + tokens_.peek().line - 1});
-    if (piece.checker_) {
-        checker_ = piece.checker_;
-        checker_line_ = piece.checker_line_ + tokens_.peek().line - 1;
-    }
-    if (piece.has_view_) scene_.view = piece.scene_.view;
-    if (piece.has_background_) scene_.background = piece.scene_.background;
-    has_view_ |= piece.has_view_;
-    has_background_ |= piece.has_background_;
-    Scene& added = piece.scene_;
-    std::vector<int> numbers = {current_surface_};  // of the piece's surfaces; its first stands for the current one
-    for (std::size_t i = 1; i < added.surfaces.size(); ++i) numbers.push_back(number_of(added.surfaces[i]));
-    const auto surface_of = [&](int surface) { return numbers[static_cast<std::size_t>(surface)]; };
-    current_surface_ = surface_of(piece.current_surface_);
-    tokens_.continue_after(piece.tokens_);
-    scene_.lights.insert(scene_.lights.end(), added.lights.begin(), added.lights.end());
-    const double pieces = static_cast<double>(tokens_.text().size()) / static_cast<double>(tokens_.next_at());
-#define RAYA_APPEND(kind, kinds, KIND) append_objects(scene_.kinds, added.kinds, surface_of, pieces);
-    RAYA_OBJECT_LIST(RAYA_APPEND)
-    return true;
+std::string in_quotes(std::string_view text) {
+    constexpr std::size_t kShown = 24;
+    std::string shown = "'";
+    for (const char c : text.substr(0, kShown)) shown += c >= ' ' && c <= '~' ? c : '?';
+    return shown + (text.size() > kShown ? "...'" : "'");
 }
 
-Scene parse_nff(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks,
-                const NffPieces& division) {
+Scene parse_nff(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks) {
     const MailHeader header = remarks ? mail_header(text) : MailHeader{};
     if (header.bytes > 0) add_remark(*remarks, {.what = "mail header before the scene, skipped", .line = 1});
-    NffReader reader(text.substr(header.bytes), name, 1 + header.lines, remarks);
-    const NffTokens& tokens = reader.tokens();
-    if (is_sense8_keyword(tokens.peek().text))
-        tokens.refuse(tokens.peek().line,
-                      "this is Sense8's NFF (WorldToolKit), another format of the same name; raya reads E. Haines's "
-                      "NFF");
-    const std::size_t size = tokens.text().size();
-    reader.read_until(size > division.bytes ? object_line(tokens.text(), 0) : size);
-    while (!tokens.peek().text.empty()) {
-        std::vector<Piece> pieces = next_pieces(tokens.text(), tokens.next_at(), division.bytes, 4 * division.threads);
-        parallel_for(pieces.size(), division.threads,
-                     [&](std::size_t i) { read_piece(pieces[i], tokens.text(), name, remarks); });
-        for (Piece& piece : pieces) {
-            const bool adopted = piece.reader && tokens.next_at() == piece.begin && tokens.peek().first_on_line &&
-                                 reader.adopt(*piece.reader, piece.remarks);
-            if (!adopted) reader.read_until(piece.end);
-            piece.reader.reset();
-        }
-    }
-    return reader.finish();
+    return NffReader(text.substr(header.bytes), name, 1 + header.lines, remarks).read();
 }
 
 }  // namespace raya

@@ -287,10 +287,6 @@ std::span<std::uint32_t> PackedJob::append_zeros(std::size_t count) {
     return std::span(words_).subspan(at);
 }
 
-void PackedJob::append(const std::vector<std::uint32_t>& words) {
-    words_.insert(words_.end(), words.begin(), words.end());
-}
-
 PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     raya_job job = header_of(scene, settings);
     JobWords words(settings.format, std::ldexp(1.0, settings.length_exponent));

@@ -80,7 +80,6 @@ class PackedJob {
     }
 
     void set_header(const raya_job& header);
-    void append(const std::vector<std::uint32_t>& words);
     /// Appends `count` words of 0 and returns them. The span is valid until more words are appended.
     std::span<std::uint32_t> append_zeros(std::size_t count);
 

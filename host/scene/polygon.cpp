@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "host/error.hpp"
-#include "host/scene/nff_tokens.hpp"
 
 namespace raya {
 namespace {

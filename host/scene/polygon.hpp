@@ -36,6 +36,16 @@ std::vector<Polygon> triangles_of(const Polygon& polygon);
 /// unit of length; length_scale() handles lengths that are too small for a number format.
 inline constexpr double kMinSceneLength = 1e-30;
 
+/// Maximum magnitude of lengths, so that products of four lengths do not overflow a double. The packer scales lengths
+/// into the range of the number format.
+inline constexpr double kMaxSceneLength = 1e30;
+
+/// Maximum magnitude of colours, exponents and other numbers that are not lengths.
+inline constexpr double kMaxNumber = 1e9;
+
+/// Maximum of Kd, Ks and T. Values above 1 are unphysical; values above 100 are probably typing errors.
+inline constexpr double kMaxWeight = 100;
+
 /// Maximum distance of a vertex from the plane of its polygon, relative to the polygon's size (the longest side of its
 /// bounding box). In a polygon that spans 1,000 pixels, the limit 1e-3 is one pixel. Vertices that are rounded to six
 /// digits are only about 1e-5 off the plane.

@@ -1,4 +1,4 @@
-// The height field `terrain`, as a scene, as NFF and as PLY.
+// The height field `terrain`, as a scene and as PLY.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -10,7 +10,6 @@
 
 #include "host/error.hpp"
 #include "host/scene/generate.hpp"
-#include "host/scene/nff.hpp"
 #include "host/scene/split_mix.hpp"
 
 namespace raya {
@@ -74,12 +73,14 @@ class Heights {
     int side() const { return static_cast<int>(side_); }                                       // cells of a row
     int rows() const { return static_cast<int>((triangles_ + 2 * side_ - 1) / (2 * side_)); }  // rows of cells
 
-    /// Returns the heights of the points of a row, in multiples of 1 / kHeightSteps.
-    std::vector<std::int64_t> row(int row) {
+    /// Returns the heights of the points of a row.
+    std::vector<double> row(int row) {
         std::vector<std::int64_t> sums(static_cast<std::size_t>(side_) + 1, 0);
         for (Octave& octave : octaves_) octave.add_row(row, sums);
-        for (std::int64_t& sum : sums) sum >>= 12;  // each octave then reaches up to 1/8 of its spacing
-        return sums;
+        std::vector<double> heights;
+        for (const std::int64_t sum : sums)  // each octave reaches up to 1/8 of its spacing
+            heights.push_back(static_cast<double>(sum >> 12) / kHeightSteps);
+        return heights;
     }
 
     /// Returns the number of triangles in a row of cells.
@@ -90,56 +91,12 @@ class Heights {
     std::vector<Octave> octaves_;
 };
 
-/// A corner of a triangle: its column, and its row relative to the row of cells.
-struct TerrainCorner {
-    std::size_t column, row;
-};
-
-/// Returns the corners of a triangle of a row of cells. Each cell consists of two triangles, counter-clockwise seen
-/// from above.
-std::array<TerrainCorner, 3> corners_of(int triangle) {
+/// Returns the corners of a triangle of a row of cells: the column, and the row relative to that of the cells. Each
+/// cell consists of two triangles, counter-clockwise seen from above.
+std::array<std::array<std::size_t, 2>, 3> corners_of(int triangle) {
     const auto cell = static_cast<std::size_t>(triangle / 2);
     if (triangle % 2 == 0) return {{{cell, 0}, {cell + 1, 0}, {cell + 1, 1}}};
     return {{{cell, 0}, {cell + 1, 1}, {cell, 1}}};
-}
-
-Scene empty_scene(const Heights& heights, std::uint64_t seed) {
-    const double side = heights.side();
-    Scene scene;
-    scene.name = fmt::format("terrain{}_{}.nff", heights.triangles(), seed);
-    scene.background = {0.5, 0.7, 0.9};
-    scene.view = {{0.5 * side, -0.5 * side, 0.625 * side}, {0.5 * side, 0.375 * side, 0}, {0, 0, 1}, 45, 0, 512, 512};
-    scene.lights = {{{-side, -side, 2 * side}, {}}};
-    scene.surfaces = {{{0.6, 0.55, 0.4}, 1, 0, 0, 0, 1, {}}};
-    return scene;
-}
-
-/// Points of the rows below and above a row of cells.
-template <class Point>
-struct PointRows {
-    std::vector<Point> rows[2];
-    const Point& at(const TerrainCorner& corner) const { return rows[corner.row][corner.column]; }
-};
-
-/// Returns the points of a row: make(x, y, z) for each.
-template <class Make>
-auto points_of_row(Heights& heights, int row, const Make& make) {
-    std::vector<decltype(make(0, 0, 0.0))> points;
-    int x = 0;
-    for (const std::int64_t height : heights.row(row))
-        points.push_back(make(x++, row, static_cast<double>(height) / kHeightSteps));
-    return points;
-}
-
-/// Calls visit(corner, corner, corner) for each triangle of a row of cells, with the points that make(x, y, z) returns.
-template <class Point, class Make, class Visit>
-void visit_row(Heights& heights, int row, PointRows<Point>& points, const Make& make, const Visit& visit) {
-    points.rows[0] = row == 0 ? points_of_row(heights, 0, make) : std::move(points.rows[1]);
-    points.rows[1] = points_of_row(heights, row + 1, make);
-    for (int i = 0; i < heights.triangles_of_row(row); ++i) {
-        const std::array<TerrainCorner, 3> corners = corners_of(i);
-        visit(points.at(corners[0]), points.at(corners[1]), points.at(corners[2]));
-    }
 }
 
 void put_word(std::string& bytes, std::uint32_t word) {
@@ -159,35 +116,24 @@ std::string ply_header(const Heights& heights) {
 
 Scene generate_terrain(int triangles, std::uint64_t seed) {
     Heights heights(triangles, seed);
-    Scene scene = empty_scene(heights, seed);
-    PointRows<Vec3> points;
-    const auto make = [](int x, int y, double z) { return Vec3(x, y, z); };
-    for (int row = 0; row < heights.rows(); ++row)
-        visit_row(heights, row, points, make, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-            scene.polygons.push_back({{a, b, c}, {}, 0});
-        });
+    const double side = heights.side();
+    Scene scene;
+    scene.name = fmt::format("terrain{}_{}.nff", triangles, seed);
+    scene.background = {0.5, 0.7, 0.9};
+    scene.view = {{0.5 * side, -0.5 * side, 0.625 * side}, {0.5 * side, 0.375 * side, 0}, {0, 0, 1}, 45, 0, 512, 512};
+    scene.lights = {{{-side, -side, 2 * side}, {}}};
+    scene.surfaces = {{{0.6, 0.55, 0.4}, 1, 0, 0, 0, 1, {}}};
+    scene.polygons.reserve(static_cast<std::size_t>(triangles));
+    std::array<std::vector<double>, 2> rows = {heights.row(0), {}};
+    for (int row = 0; row < heights.rows(); ++row, std::swap(rows[0], rows[1])) {
+        rows[1] = heights.row(row + 1);
+        for (int i = 0; i < heights.triangles_of_row(row); ++i) {
+            Polygon& triangle = scene.polygons.emplace_back();
+            for (const auto& [x, y] : corners_of(i))
+                triangle.vertices.emplace_back(static_cast<double>(x), row + static_cast<double>(y), rows[y][x]);
+        }
+    }
     return scene;
-}
-
-std::function<std::string_view()> terrain_nff(int triangles, std::uint64_t seed) {
-    Heights heights(triangles, seed);
-    // The head of the file, with the surface before the first triangle.
-    Scene first = empty_scene(heights, seed);
-    first.polygons = generate_terrain(1, 0).polygons;
-    std::string head = write_nff(first);
-    head.resize(head.rfind("p 3\n"));
-    return
-        [heights = std::move(heights), text = std::move(head), points = PointRows<std::string>{}, row = -1]() mutable {
-            if (row++ == -1) return std::string_view(text);
-            text.clear();
-            if (row > heights.rows()) return std::string_view();
-            visit_row(
-                heights, row - 1, points, [](int x, int y, double z) { return fmt::format("{} {} {}\n", x, y, z); },
-                [&](const std::string& a, const std::string& b, const std::string& c) {
-                    text.append("p 3\n").append(a).append(b).append(c);
-                });
-            return std::string_view(text);
-        };
 }
 
 std::function<std::string_view()> terrain_ply(int triangles, std::uint64_t seed) {
@@ -198,17 +144,15 @@ std::function<std::string_view()> terrain_ply(int triangles, std::uint64_t seed)
         if (piece++ == -1) return std::string_view(bytes);
         bytes.clear();
         if (piece <= points_rows) {
-            points_of_row(heights, piece - 1, [&](int x, int y, double z) {
-                for (const double value : {double(x), double(y), z})
+            double x = 0;
+            for (const double height : heights.row(piece - 1))
+                for (const double value : {x++, piece - 1.0, height})
                     put_word(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
-                return 0;
-            });
         } else if (const int row = piece - 1 - points_rows; row < heights.rows()) {
             for (int i = 0; i < heights.triangles_of_row(row); ++i) {
                 bytes += '\3';
-                for (const TerrainCorner& corner : corners_of(i))
-                    put_word(bytes, static_cast<std::uint32_t>((static_cast<std::size_t>(row) + corner.row) * columns +
-                                                               corner.column));
+                for (const auto& [x, y] : corners_of(i))
+                    put_word(bytes, static_cast<std::uint32_t>((static_cast<std::size_t>(row) + y) * columns + x));
             }
         }
         return std::string_view(bytes);

@@ -19,8 +19,9 @@ std::vector<Vec3> vertices_of(const Scene& scene) {
 }
 
 TEST_CASE("OBJ, PLY, glTF, GLB and STL give the same triangles", "[mesh]") {
-    const std::vector<Vec3> expected = vertices_of(read_mesh("t.ply", tetrahedron_ply()).scene);
-    REQUIRE(expected.size() == 12);
+    std::vector<Vec3> expected;
+    for (const auto& face : kFaces)
+        for (const std::uint32_t c : face) expected.emplace_back(kCorners[c][0], kCorners[c][1], kCorners[c][2]);
     std::string stl = "solid tetra\n";
     for (const auto& face : kFaces) {
         stl += "facet normal 0 0 0\nouter loop\n";
@@ -28,20 +29,24 @@ TEST_CASE("OBJ, PLY, glTF, GLB and STL give the same triangles", "[mesh]") {
             stl += fmt::format("vertex {} {} {}\n", kCorners[c][0], kCorners[c][1], kCorners[c][2]);
         stl += "endloop\nendfacet\n";
     }
-    for (const auto& [name, bytes] :
-         std::vector<std::pair<std::string, std::string>>{{"t.obj", tetrahedron_obj()},
-                                                          {"T.OBJ", tetrahedron_obj()},
-                                                          {"t.ply", tetrahedron_ascii_ply()},
-                                                          {"t.stl", tetrahedron_binary_stl()},
-                                                          {"t.stl", stl + "endsolid tetra\n"},
-                                                          {"t.gltf", tetrahedron_gltf(embedded_buffer())},
-                                                          {"t.glb", tetrahedron_glb()}}) {
+    for (const auto& [name, bytes] : std::vector<std::pair<std::string, std::string>>{
+             {"t.obj", tetrahedron_obj()},
+             {"T.OBJ", tetrahedron_obj()},
+             {"t.ply", tetrahedron_ascii_ply()},
+             {"T.PLY", tetrahedron_ply()},
+             {"t.ply", tetrahedron_ply(true)},
+             {"t.ply", replaced(tetrahedron_ply(), "4\nprop", "4\r\nprop")},
+             {"t.stl", tetrahedron_binary_stl()},
+             {"t.stl", stl + "endsolid tetra\n"},
+             {"t.gltf", tetrahedron_gltf(embedded_buffer())},
+             {"t.glb", tetrahedron_glb()}}) {
         CAPTURE(name, bytes);
         const ReadMesh mesh = read_mesh(name, bytes);
         CHECK(mesh.remarks.empty());
         CHECK(vertices_of(mesh.scene) == expected);
         CHECK(mesh.scene.surfaces == std::vector{Surface{}});
         CHECK(mesh.scene.name == name);
+        CHECK(read_mesh(name, bytes, true).scene == mesh.scene);
     }
 }
 
@@ -120,12 +125,6 @@ TEST_CASE("OBJ: messages name file, mesh and face", "[mesh]") {
     const ReadMesh pentagon = read_mesh("m.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\n");
     CHECK(pentagon.scene.polygons.size() == 3);
     CHECK(pentagon.remarks.empty());
-}
-
-TEST_CASE("OBJ: smooth meshes become patches, flat normals are dropped", "[mesh]") {
-    const std::string normals = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 1 0 1\n";
-    CHECK(read_mesh("n.obj", normals + "f 1//1 2//1 3//1\n").scene.polygons[0].normals.empty());
-    CHECK(read_mesh("n.obj", normals + "f 1//1 2//2 3//1\n").scene.polygons[0].normals.size() == 3);
 }
 
 TEST_CASE("files that assimp does not accept are refused with its reason", "[mesh]") {

@@ -38,15 +38,6 @@ TEST_CASE("the project's scenes need no scaling in fp32 and in the SPA's format"
     for (const int level : {0, 4, 5}) CHECK(length_scale(generate_balls(level), kSpa22).exponent == 0);
 }
 
-TEST_CASE("the limits of formats are those of the kernels", "[length_scale]") {
-    CHECK(farthest_hit(kFp32) == std::ldexp(1, 60));
-    CHECK(farthest_hit(kSpa22) == 32768);
-    CHECK(farthest_hit(kSmall) == 128);
-    CHECK(smallest_number(kFp32) == std::ldexp(1, -126));
-    CHECK(smallest_number(kSpa22) == std::ldexp(1, -30));
-    CHECK(smallest_number(kSmall) == std::ldexp(1, -14));
-}
-
 TEST_CASE("a scene within a format's range is not scaled; outside the range it is scaled to the middle",
           "[length_scale]") {
     // e6m15: the maximum hit distance is 2^15, so the maximum length is 2^13. The minimum radius is 2^-15, which a

@@ -1,14 +1,9 @@
 // NFF dialects: the entities that the reader skips, its remarks, and the errors that it reports.
-#include <fmt/core.h>
-
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "host/base/whole_file.hpp"
 #include "host/error.hpp"
 #include "host/scene/nff.hpp"
-#include "host/scene/nff_tokens.hpp"
-#include "tests/base/scratch_folder.hpp"
 
 namespace raya {
 namespace {
@@ -32,10 +27,6 @@ Parsed parse_lenient(const std::string& text) {
 
 using Remarks = std::vector<std::string>;
 
-TEST_CASE("a scene in plain NFF has no remarks", "[dialects]") {
-    CHECK(parse_lenient(kView + kSphere).remarks.empty());
-}
-
 TEST_CASE("polygons without area are skipped and counted", "[dialects]") {
     const Parsed parsed =
         parse_lenient(kView + "p 3\n0 0 0\n1 0 0\n2 0 0\n" + kSphere + "p 3\n0 0 0\n0 0 0\n2 0 0\n" +
@@ -52,48 +43,6 @@ TEST_CASE("a self-crossing outline without signed area has its own remark", "[di
         parsed.remarks ==
         Remarks{"t.nff:9: polygon that crosses or retraces itself, so that its signed area is 0, left out (2 in all)"});
     CHECK(parsed.scene.polygons.empty());
-}
-
-TEST_CASE("the error for a file of another format names the format", "[dialects]") {
-    const ScratchFolder folder;
-    const std::string file = folder / "t.nff";
-    struct Row {
-        std::string text, format;
-    };
-    for (const auto& [text, format] :
-         std::vector<Row>{{"# Blender\nmtllib a.mtl\no Cube\nv 1 1 -1\nf 1/1/1 2/2/1 3/3/1\n", "an OBJ"},
-                          {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "an OBJ"},
-                          {"\n# a\r\n\r\nvn 0 0 1\r\n", "an OBJ"},
-                          {"ply\nformat ascii 1.0\nelement vertex 1\nend_header\n0 0 0\n", "a PLY"},
-                          {"ply\r\nformat binary_little_endian 1.0\r\nend_header\r\n\x01\x02", "a PLY"},
-                          {std::string("glTF\2\0\0\0", 8), "a glTF"},
-                          {"{\n  \"asset\": {\"version\": \"2.0\"}, \"scenes\": []}", "a glTF"},
-                          {"{\"kind\": \"raya bench\"}", "a JSON"},
-                          {"[1, 2]", "a JSON"},
-                          {"#include \"colors.inc\"\ncamera { location <0, 0, -5> }\n", "a POV-Ray"},
-                          {"// a scene\nsphere { <0, 0, 0>, 1 }\n", "a POV-Ray"},
-                          {"global_settings { assumed_gamma 1 }", "a POV-Ray"},
-                          {"camera{location 0}", "a POV-Ray"}}) {
-        CAPTURE(text);
-        forget_input(file);
-        write_whole_file(file, text);
-        const std::string message =
-            file + ":1: this looks like " + format +
-            " file; raya reads NFF, and meshes whose names end in .obj, .ply, .gltf, .glb or .stl";
-        CHECK_THROWS_WITH(read_nff(file), message);
-        std::vector<SceneRemark> remarks;
-        CHECK_THROWS_WITH(read_nff(file, &remarks), message);
-        CHECK(remarks.empty());
-    }
-    for (const std::string& text :
-         {kView, kView + "s 0 0 zero 1\n", std::string("hello world\n"), std::string("# v 1\n")}) {
-        forget_input(file);
-        write_whole_file(file, text);
-        CHECK_THROWS_WITH(read_nff(file), !Contains("looks like"));
-    }
-    forget_input(file);
-    write_whole_file(file, "#include \"a\"\n" + kView + kSphere);  // "#" starts a comment in NFF
-    CHECK(read_nff(file).spheres.size() == 1);
 }
 
 TEST_CASE("a checker before a skipped polygon is skipped, too", "[dialects]") {
@@ -170,16 +119,6 @@ TEST_CASE("text that is not NFF is refused, and so are files without view or obj
     CHECK_THROWS_WITH(parse_lenient(kView + "s 0 0 0\n"), Contains("file ends"));
     CHECK_THROWS_WITH(parse_lenient(kView + "s 0 0 0 1 2\n"), Contains("follows the end"));
     CHECK_THROWS_WITH(parse_lenient(kView + kView + kSphere), Contains("second 'v'"));
-}
-
-TEST_CASE("if parse_nff() gets no list for remarks, it refuses dialects", "[dialects]") {
-    for (const std::string entity :
-         {"p 3\n0 0 0\n1 0 0\n2 0 0\n", "p 4\n0 0 0\n1 0 0\n1 1 0.5\n0 1 0\n", "s 1 1 1 0\n", "la 1 1 1\n", "Q\n",
-          "pp 3\n0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n", "p 2\n0 0 0\n1 0 0\n"}) {
-        CAPTURE(entity);
-        CHECK_THROWS_AS(parse_nff(kView + entity + kSphere, "t.nff"), UserError);
-        CHECK_NOTHROW(parse_lenient(kView + entity + kSphere));
-    }
 }
 
 }  // namespace

@@ -58,7 +58,9 @@ TEST_CASE("files of other formats are refused", "[nff]") {
            {std::string("\x89PNG\r\n\x1a\n\0\0", 10), "2: a control character: is this a binary file?"},
            {std::string("s\0 1", 4), "1: a control character"},
            {"# \x01\n", "1: a control character"},
-           {"<html>", "1: unknown entity '<html>'; NFF has v b l f s p pp c"},
+           {"<html>", "1: unknown entity '<html>'; NFF has v b l f s p pp c; the names of meshes end in .obj,"},
+           {"mtllib a.mtl\n", "1: unknown entity 'mtllib'"},
+           {"{\"kind\": 1}", "1: unknown entity '{\"kind\":'"},
            {"\xFF\xFE", "1: unknown entity '\?\?'"},
            {"", "1: no 'v'"}});
 }
@@ -106,18 +108,18 @@ TEST_CASE("entities with too few or too many values are refused", "[nff]") {
 
 TEST_CASE("invalid views are refused", "[nff]") {
     const char* range = "must be a whole number from 1 to 16384";
-    check({{kShortView + kShortView + kOneSphere, "8: a second 'v'"},
-           {view_with("angle 40\n", ""), "7: 'v' is incomplete: 's' follows; missing parts: angle"},
-           {"v\nfrom 0 0 1\nat 0 0 0",
-            "3: 'v' is incomplete: the file ends; missing parts: up angle hither resolution"},
-           {view_with("angle 40", "at 0 0 2"), "5: 'at' occurs twice in 'v'"},
-           {view_with("at 0 0 1", "at 0 -5 1"), "1: 'from' and 'at' are the same point"},
-           {view_with("angle 40", "angle 0"), "1: the angle is 0: must lie between 0 and 180 degrees"},
-           {view_with("angle 40", "angle 180"), "1: the angle is 180"},
-           {view_with("angle 40", "angle -40"), "1: the angle is -40"},
-           {view_with("up 0 0 1", "up 0 2 0"), "1: 'up' is zero or parallel to the viewing direction"},
-           {view_with("up 0 0 1", "up 0 -1 1e-9"), "1: 'up' is zero or parallel to the viewing direction"},
-           {view_with("up 0 0 1", "up 0 0 0"), "1: 'up' is zero or parallel to the viewing direction"}});
+    check(
+        {{kShortView + kShortView + kOneSphere, "8: a second 'v'"},
+         {view_with("angle 40\n", ""), "7: 'v' is incomplete: 's' follows; missing parts: angle"},
+         {"v\nfrom 0 0 1\nat 0 0 0", "3: 'v' is incomplete: the file ends; missing parts: up angle hither resolution"},
+         {view_with("angle 40", "at 0 0 2"), "5: 'at' occurs twice in 'v'"},
+         {view_with("at 0 0 1", "at 0 -5 1"), "1: 'from' and 'at' are the same point"},
+         {view_with("angle 40", "angle 0"), "1: the angle is 0: must lie between 0 and 180 degrees"},
+         {view_with("angle 40", "angle 180"), "1: the angle is 180"},
+         {view_with("angle 40", "angle -40"), "1: the angle is -40"},
+         {view_with("up 0 0 1", "up 0 2 0"), "1: 'up' is zero or parallel to the viewing direction"},
+         {view_with("up 0 0 1", "up 0 -1 1e-9"), "1: 'up' is zero or parallel to the viewing direction"},
+         {view_with("up 0 0 1", "up 0 0 0"), "1: 'up' is zero or parallel to the viewing direction"}});
     for (const char* size : {"0 200", "-1 200", "16385 200", "1.5 200"}) {
         const std::string message = error_message_of(view_with("320 200", size));
         CHECK_THAT(message, Catch::StartsWith("folder/t.nff:7: the width of 'v' is ") && Catch::EndsWith(range));

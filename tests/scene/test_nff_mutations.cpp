@@ -1,12 +1,10 @@
 // For each mutated NFF file, the reader must return a scene or throw an error with file and line. The scene must be
 // equal after writing and reading.
-#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <exception>
 #include <string>
-#include <utility>
 
 #include "host/error.hpp"
 #include "host/scene/nff.hpp"
@@ -27,65 +25,34 @@ const std::array<std::string, 4> kTexts{
     "p 5 0 0 0 2 0 0 2 2 0 1 0.5 0 0 2 0\n#raya checker 1 0 0 0 1 0 .25 # note\npp 4\n0 0 1 0 0 1\n1 0 1 0 0 1\n"
     "1 1 1 0 0 1\n0 1 1 0 0 1\n"};
 
-class Mutator {
-  public:
-    explicit Mutator(std::uint64_t seed) : random_(seed) {}
-
-    std::string mutated() {
-        std::string text = kTexts[below(kTexts.size())];
-        for (std::size_t rounds = 1 + below(3); rounds > 0; --rounds) mutate(text);
-        return text;
-    }
-
-  private:
-    std::size_t below(std::size_t limit) { return static_cast<std::size_t>(random_.next() % limit); }
-
-    /// Returns start and length of a random piece of the text. The start may be the end of the text.
-    std::pair<std::size_t, std::size_t> piece(const std::string& text) {
-        const std::size_t start = below(text.size() + 1);
-        return {start, below(std::min<std::size_t>(40, text.size() - start) + 1)};
-    }
-
-    void mutate(std::string& text) {
-        static const std::array<std::string, 20> kTokens{
-            "nan", "-inf", "1e999", "-1",       "0",  "1e-320", "1000000000", "#raya ", "\n",  " ",
-            "p ",  "v\n",  "\ns ",  "checker ", "c ", "pp 3\n", "#",          "-",      "1e9", std::string(1, '\0')};
-        const auto [start, length] = piece(text);
-        switch (below(9)) {
-            case 0:  // flip a bit
-                if (start < text.size()) text[start] = static_cast<char>(text[start] ^ (1 << below(8)));
+/// Returns one of the texts after up to three changes: a piece is replaced by a token or by a piece of another text, or
+/// a byte by a random one.
+std::string mutated(SplitMix random) {
+    static const std::array<std::string, 20> kTokens{
+        "nan", "-inf", "1e999", "-1",       "0",  "1e-320", "1000000000", "#raya ", "\n",  " ",
+        "p ",  "v\n",  "\ns ",  "checker ", "c ", "pp 3\n", "#",          "-",      "1e9", std::string(1, '\0')};
+    const auto below = [&](std::size_t limit) { return static_cast<std::size_t>(random.next() % limit); };
+    std::string text = kTexts[below(kTexts.size())];
+    for (std::size_t rounds = 1 + below(3); rounds > 0; --rounds) {
+        const std::string& donor = kTexts[below(kTexts.size())];
+        const std::size_t start = below(text.size() + 1), length = below(3) * below(20);
+        const std::size_t digit = text.find_first_of("0123456789", start);
+        switch (below(4)) {
+            case 0:
+                text.replace(start, length, kTokens[below(kTokens.size())]);
                 break;
-            case 1:  // replace a byte
-                if (start < text.size()) text[start] = static_cast<char>(below(256));
+            case 1:
+                text.replace(start, length, donor, below(donor.size()), below(40));
                 break;
             case 2:
-            case 3: {  // replace a digit
-                const std::size_t digit = text.find_first_of("0123456789", start);
+                if (start < text.size()) text[start] = static_cast<char>(below(256));
+                break;
+            default:
                 if (digit != std::string::npos) text[digit] = static_cast<char>('0' + below(10));
-                break;
-            }
-            case 4:
-                text.erase(start, length);
-                break;
-            case 5:
-                text.insert(start, text.substr(start, length));
-                break;
-            case 6:
-                text.resize(start);
-                break;
-            case 7:
-                text.replace(start, below(2) * length, kTokens[below(kTokens.size())]);
-                break;
-            default: {  // insert a piece of another scene
-                const std::string& donor = kTexts[below(kTexts.size())];
-                const auto [donor_start, donor_length] = piece(donor);
-                text.replace(start, length, donor, donor_start, donor_length);
-            }
         }
     }
-
-    SplitMix random_;
-};
+    return text;
+}
 
 /// Returns true if a message starts with "m.nff:LINE: " and has more text after it.
 bool has_file_and_line(const std::string& message) {
@@ -117,7 +84,7 @@ TEST_CASE("mutated files are either read or refused", "[nff]") {
     const int count = variable ? std::atoi(variable) : 4000;  // number of mutated files
     int accepted = 0;
     for (int seed = 0; seed < count; ++seed) {
-        const std::string text = Mutator(static_cast<std::uint64_t>(seed)).mutated();
+        const std::string text = mutated(SplitMix(static_cast<std::uint64_t>(seed)));
         const std::string defect = reader_defect(text, accepted);
         if (defect.empty()) continue;
         CAPTURE(seed, text);

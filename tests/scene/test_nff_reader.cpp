@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -144,30 +143,4 @@ TEST_CASE("the project's scenes and SPD's files are equal after writing and read
         }
     }
     CHECK(files >= 7);
-}
-
-TEST_CASE("SPD's files have the documented numbers of objects", "[nff]") {
-    struct Row {
-        const char* file;
-        std::size_t spheres, polygons, patches, cones, lights;
-    };
-    for (const Row& row :
-         {Row{"balls4", 7381, 1, 0, 0, 3}, Row{"jacks", 6, 0, 0, 3, 1}, Row{"lattice", 2197, 0, 0, 6084, 6},
-          Row{"mount", 4, 8192, 0, 0, 1}, Row{"teapot", 0, 36, 2256, 0, 2}, Row{"tetra", 0, 4096, 0, 0, 1}}) {
-        const auto path = spd_folder() / (std::string(row.file) + ".nff");
-        if (!std::filesystem::exists(path)) {
-            WARN("file missing, skipped: " << path);
-            continue;
-        }
-        INFO(path);
-        const Scene s = read_nff(path);
-        std::size_t patches = 0;
-        for (const Polygon& p : s.polygons) patches += p.normals.empty() ? 0 : 1;
-        CHECK(s.spheres.size() == row.spheres);
-        CHECK(s.polygons.size() == row.polygons + row.patches);
-        CHECK(patches == row.patches);
-        CHECK(s.planes.empty());
-        CHECK(s.cones.size() == row.cones);
-        CHECK(s.lights.size() == row.lights);
-    }
 }
