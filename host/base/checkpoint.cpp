@@ -10,6 +10,7 @@
 
 #include "host/base/encoding.hpp"
 #include "host/base/json.hpp"
+#include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
 
@@ -59,9 +60,10 @@ CheckpointReader::CheckpointReader(std::string_view bytes, const StateSettings& 
     const std::size_t end = bytes_.find('\n');
     const auto saved_settings =
         read_json(std::string(bytes_.substr(0, end)), {"damaged header"}, [&](const Json& header) {
-            part_ = {json_number(header.at("fraction")), json_number(header.at("seconds"))};
+            part_ = {header.at("fraction").get<double>(), header.at("seconds").get<double>()};
             std::map<std::string, std::string> settings_of_header;
-            for (const auto& [name, value] : header.at("of").items()) settings_of_header[name] = json_text(value);
+            for (const auto& [name, value] : header.at("of").items())
+                settings_of_header[name] = value.get<std::string>();
             return settings_of_header;
         });
     bytes_.remove_prefix(end == std::string_view::npos ? bytes_.size() : end + 1);
@@ -86,69 +88,68 @@ void CheckpointReader::take_numbers(std::span<std::byte> numbers, std::size_t nu
     bytes_.remove_prefix(numbers.size());
 }
 
-namespace {
-
 namespace fs = std::filesystem;
+namespace {
 
 constexpr double kMaxSaveFraction = 0.05;          // maximum fraction of the run time that goes into saving
 constexpr double kMinBandS = 0.05, kMaxBandS = 2;  // bounds on a band's target duration, seconds
 
 bool is_checkpoint(const std::string& file) {
-    std::string first_bytes(kStateMagic.size(), '\0');
-    return fs::is_regular_file(file) && std::ifstream(file).read(first_bytes.data(), std::ssize(first_bytes)) &&
-           first_bytes == kStateMagic;
+    std::string line;
+    return fs::is_regular_file(file) && std::getline(std::ifstream(file), line) && line + '\n' == kStateMagic;
+}
+
+void load(const std::string& file, const std::function<RenderedPart(std::string_view bytes)>& read) {
+    try {
+        const RenderedPart part = read(read_file(file));
+        if (!is_quiet())
+            print_log(fmt::format("raya: {}: continuing at {:.1f} %; the runs so far took {:.1f} s\n", file,
+                                  100 * part.fraction, part.seconds));
+    } catch (const UnreadableFile& why) {
+        throw UserError(fmt::format("--resume: {}: {}", file, why.what()));
+    } catch (const UserError& why) {
+        throw UserError(fmt::format("--resume: {}: {}; remove the file to start anew", file, why.what()));
+    }
 }
 
 }  // namespace
 
 void check_checkpoint_options(const CheckpointOptions& options) {
     if (options.file.empty()) return;
-    if (is_standard_stream(options.file))
-        throw UserError(
-            "--checkpoint -: raya rewrites the file repeatedly, which is not possible on stdout; name a file");
+    const auto refuse = [&](const char* why) {
+        throw UserError(fmt::format("--checkpoint {}: {}", options.file, why));
+    };
+    if (is_standard_stream(options.file)) refuse("raya rewrites the file repeatedly; name a file");
     if (!fs::exists(options.file)) return;
-    if (!is_checkpoint(options.file))
-        throw UserError(
-            fmt::format("--checkpoint {}: the file exists and is not a checkpoint; name another file", options.file));
+    if (!is_checkpoint(options.file)) refuse("the file exists and is not a checkpoint; name another file");
     if (!options.resume)
-        throw UserError(
-            fmt::format("--checkpoint {}: the file exists and holds a checkpoint; add --resume to continue from it, or "
-                        "name another file",
-                        options.file));
+        refuse("the file exists and holds a checkpoint; add --resume to continue from it, or name another file");
 }
 
-CheckpointFile::CheckpointFile(const CheckpointOptions& options) : options_(options) {
-    callbacks_.band_s = std::clamp(options.every_s / 4, kMinBandS, kMaxBandS);
-    callbacks_.due = [this] { return due(); };
-    callbacks_.save = [this](const std::string& bytes) { save(bytes); };
-    if (options.resume) callbacks_.resume = [this](const auto& read) { load(read); };
-}
-
-bool CheckpointFile::due() {
-    const double elapsed_s = seconds_since(last_save_end_);
-    due_at_ = Clock::now();
-    return elapsed_s >=
-           std::max(options_.every_s, options_.every_s > 0 ? last_save_duration_s_ / kMaxSaveFraction : 0.0);
-}
-
-void CheckpointFile::save(const std::string& bytes) {
-    write_whole_file(options_.file, bytes);
-    last_save_end_ = Clock::now();
-    last_save_duration_s_ = std::chrono::duration<double>(last_save_end_ - due_at_).count();
-}
-
-void CheckpointFile::load(const std::function<RenderedPart(std::string_view bytes)>& read) const {
-    if (!fs::exists(options_.file)) return;
-    try {
-        const RenderedPart part = read(read_file(options_.file));
-        if (!is_quiet())
-            print_log(fmt::format("raya: {}: continuing at {:.1f} %; the runs so far took {:.1f} s\n", options_.file,
-                                  100 * part.fraction, part.seconds));
-    } catch (const UnreadableFile& why) {
-        throw UserError(fmt::format("--resume: {}: {}", options_.file, why.what()));
-    } catch (const UserError& why) {
-        throw UserError(fmt::format("--resume: {}: {}; remove the file to start anew", options_.file, why.what()));
-    }
+std::unique_ptr<const Checkpointing> checkpointing_of(const CheckpointOptions& options) {
+    if (options.file.empty()) return nullptr;
+    struct LastSave {
+        Clock::time_point due = Clock::now(), end = due;  // start and end of collecting and writing the state
+    };
+    auto checkpointing = std::make_unique<Checkpointing>();
+    checkpointing->band_s = std::clamp(options.every_s / 4, kMinBandS, kMaxBandS);
+    const auto last = std::make_shared<LastSave>();
+    checkpointing->due = [last, every_s = options.every_s] {
+        const std::chrono::duration<double> saving = last->end - last->due;
+        const double min_s = every_s > 0 ? std::max(every_s, saving.count() / kMaxSaveFraction) : 0;
+        if (seconds_since(last->end) < min_s) return false;
+        last->due = Clock::now();
+        return true;
+    };
+    checkpointing->save = [last, file = options.file](const std::string& bytes) {
+        write_whole_file(file, bytes);
+        last->end = Clock::now();
+    };
+    if (options.resume)
+        checkpointing->resume = [file = options.file](const auto& read) {
+            if (fs::exists(file)) load(file, read);
+        };
+    return checkpointing;
 }
 
 void remove_checkpoint(const CheckpointOptions& options) {

@@ -10,14 +10,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
-
-#include "host/base/log.hpp"
 
 namespace raya {
 
@@ -120,24 +119,8 @@ void check_checkpoint_options(const CheckpointOptions& options);
 /// Removes the checkpoint, if there is one. Call it after all outputs of the render are written.
 void remove_checkpoint(const CheckpointOptions& options);
 
-/// Saves and loads the checkpoints of a render.
-class CheckpointFile {
-  public:
-    explicit CheckpointFile(const CheckpointOptions& options);
-
-    /// Returns the callbacks with which the renderer saves and loads checkpoints; null without --checkpoint.
-    const Checkpointing* checkpointing() const { return options_.file.empty() ? nullptr : &callbacks_; }
-
-  private:
-    bool due();  // returns true if the next checkpoint is due
-    void save(const std::string& bytes);
-    void load(const std::function<RenderedPart(std::string_view bytes)>& read) const;
-
-    const CheckpointOptions& options_;
-    Checkpointing callbacks_;
-    Clock::time_point last_save_end_ = Clock::now();  // before the first save: time of construction
-    Clock::time_point due_at_;                        // time of the last call of due(), which precedes a save
-    double last_save_duration_s_ = 0;                 // of collecting and writing the state, seconds
-};
+/// Returns the callbacks with which a renderer saves and loads the checkpoint; null without --checkpoint. Saving takes
+/// at most 5 % of the time, unless `every_s` is 0.
+std::unique_ptr<const Checkpointing> checkpointing_of(const CheckpointOptions& options);
 
 }  // namespace raya

@@ -1,5 +1,7 @@
 #include "host/base/encoding.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <xxhash.h>
 #include <zlib.h>
 
@@ -7,8 +9,8 @@
 #include <array>
 #include <bit>
 #include <cstdlib>
-#include <limits>
 #include <new>
+#include <numeric>
 #include <stdexcept>
 
 namespace raya {
@@ -53,12 +55,7 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
-std::string hex_digits(std::span<const unsigned char> bytes) {
-    std::string text;
-    for (const unsigned char byte : bytes)
-        for (const int digit : {byte >> 4, byte & 15}) text += "0123456789abcdef"[digit];
-    return text;
-}
+std::string hex_digits(std::span<const unsigned char> bytes) { return fmt::format("{:02x}", fmt::join(bytes, "")); }
 
 void convert_little_endian([[maybe_unused]] std::span<std::byte> numbers, [[maybe_unused]] std::size_t number_bytes) {
     if constexpr (std::endian::native == std::endian::big)
@@ -98,20 +95,14 @@ struct GzipText::Stream {
 GzipText::GzipText() : stream_(std::make_unique<Stream>()) {}
 GzipText::~GzipText() = default;
 
-void GzipText::append(std::string_view text) {
-    constexpr std::size_t kMaxInput = std::numeric_limits<uInt>::max();  // bytes that one call of zlib accepts
-    for (; text.size() > kMaxInput; text.remove_prefix(kMaxInput)) deflate_all(text.substr(0, kMaxInput), false);
-    deflate_all(text, false);
-}
+void GzipText::append(std::string_view text) { deflate_all(text, false); }
 
 std::string GzipText::finish() {
     deflate_all({}, true);
-    stream_.reset();
     return std::move(bytes_);
 }
 
 void GzipText::deflate_all(std::string_view text, bool last) {
-    if (!stream_) throw std::logic_error("GzipText: already finished");
     z_stream& z = stream_->z;
     std::array<Bytef, 1 << 16> block{};
     const void* const in = text.data();
@@ -120,30 +111,26 @@ void GzipText::deflate_all(std::string_view text, bool last) {
     do {
         z.next_out = block.data();
         z.avail_out = static_cast<uInt>(block.size());
-        if (deflate(&z, last ? Z_FINISH : Z_NO_FLUSH) == Z_STREAM_ERROR) throw std::logic_error("zlib: deflate failed");
+        deflate(&z, last ? Z_FINISH : Z_NO_FLUSH);  // fails only for an invalid stream
         bytes_.append(block.begin(), block.end() - z.avail_out);
     } while (z.avail_out == 0);
 }
 
 namespace {
 
-/// Returns Damerau's edit distance from `a` to `b` without repeated edits of a character (optimal string alignment).
+/// Returns Levenshtein's edit distance from `a` to `b`.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
-    std::vector<std::vector<std::size_t>> distance(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-    for (std::size_t i = 0; i <= a.size(); ++i) {
-        for (std::size_t j = 0; j <= b.size(); ++j) {
-            if (i == 0 || j == 0) {
-                distance[i][j] = i + j;
-                continue;
-            }
-            const std::size_t substitution = a[i - 1] == b[j - 1] ? 0 : 1;
-            distance[i][j] =
-                std::min({distance[i - 1][j] + 1, distance[i][j - 1] + 1, distance[i - 1][j - 1] + substitution});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-                distance[i][j] = std::min(distance[i][j], distance[i - 2][j - 2] + 1);
+    std::vector<std::size_t> distance(b.size() + 1);  // [j]: from a's first characters to b's first j characters
+    std::iota(distance.begin(), distance.end(), std::size_t{0});
+    for (const char c : a) {
+        std::size_t diagonal = distance[0]++;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t replaced = diagonal + (c != b[j]);
+            diagonal = distance[j + 1];
+            distance[j + 1] = std::min({replaced, distance[j] + 1, distance[j + 1] + 1});
         }
     }
-    return distance[a.size()][b.size()];
+    return distance.back();
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ class GzipText {
 
     void append(std::string_view text);
 
-    /// Ends the compression and returns the gzip file. Later calls of append() or finish() throw std::logic_error.
+    /// Ends the compression and returns the gzip file.
     std::string finish();
 
   private:
@@ -72,8 +72,8 @@ class GzipText {
 // Suggestions for misspelt names.
 
 /// Returns the name in `names` that begins with `misspelling`, if `misspelling` has 3 or more characters. Otherwise
-/// returns the name with the smallest edit distance (insertions, deletions, substitutions, transpositions of
-/// neighbours; F. J. Damerau 1964), or "" if this distance exceeds a third of the length of `misspelling`.
+/// returns the name with the smallest edit distance (insertions, deletions, substitutions), or "" if this distance
+/// exceeds a third of the length of `misspelling`.
 std::string nearest_name(const std::string& misspelling, const std::vector<std::string>& names);
 
 /// Returns " (did you mean NAME?)" with the name that nearest_name() returns; "" if no name is similar.

@@ -1,5 +1,5 @@
-// JSON documents: the format of raya's reports, traces, studies and messages between its processes. nlohmann's library,
-// with checks of what is read.
+// JSON documents: the format of raya's reports, traces, studies and messages between its processes. Values are read and
+// written with nlohmann's library; its exceptions become UserError in read_json().
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -29,14 +29,12 @@ using Json = nlohmann::ordered_json;
 /// Returns the member `key`; a null pointer if the member is missing or `json` is not an object.
 const Json* find_member(const Json& json, const std::string& key);
 
-/// Return the value of a string, a number, an integer in 0..`max`, or the strings of an array. Throw Json::exception
-/// with the value and its path for other values.
-const std::string& json_text(const Json& json);
-double json_number(const Json& json);
+/// Return a string, the strings of an array, an array, or an integer in 0..`max`. Throw Json::exception with the path
+/// of the value for other values.
+inline std::string json_text(const Json& json) { return json.get<std::string>(); }
+inline std::vector<std::string> json_strings(const Json& json) { return json.get<std::vector<std::string>>(); }
+inline const Json::array_t& json_array(const Json& json) { return json.get_ref<const Json::array_t&>(); }
 std::uint64_t json_integer(const Json& json, std::uint64_t max = UINT64_MAX);
-std::vector<std::string> json_strings(const Json& json);
-/// Returns an array. Throws Json::exception for other values.
-const Json& json_array(const Json& json);
 
 /// Serialises the value, in one line or with `indent` blanks per level. Bytes that are not UTF-8, as a path or a
 /// driver's name may contain, become U+FFFD.
@@ -54,7 +52,7 @@ struct JsonSource {
 /// duplicate member in an object or more than 100 levels of nesting.
 Json parse_json(const std::string& text, const JsonSource& source);
 
-/// Returns the message of an exception of the library without its number: "(/rows/3/ms) "x" is not a number".
+/// Returns the message of an exception of the library: "(/rows/3/ms) type must be number, but is string".
 std::string json_reason(const Json::exception& error);
 
 /// Parses `text` and returns `read`(document). Parse errors and every Json::exception or UserError of `read` become a
@@ -71,11 +69,10 @@ auto read_json(const std::string& text, const JsonSource& source, Read&& read) {
     }
 }
 
-inline constexpr std::uint64_t kMaxJsonBytes = 64'000'000;  // default maximum size of a JSON file
+inline constexpr std::uint64_t kMaxJsonBytes = 64'000'000;  // maximum size of a JSON file
 
 /// Reads a JSON file into a string for read_json(). Throws UserError, as `source` formats it, if the file cannot be
-/// read or has more than `max_bytes` bytes.
-std::string json_file_text(const std::filesystem::path& file, const JsonSource& source, Pipes pipes = Pipes::kRefused,
-                           std::uint64_t max_bytes = kMaxJsonBytes);
+/// read or has more than kMaxJsonBytes bytes.
+std::string json_file_text(const std::filesystem::path& file, const JsonSource& source);
 
 }  // namespace raya

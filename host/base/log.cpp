@@ -76,39 +76,28 @@ void warn(std::string_view text) {
     if (verbosity() > kErrorsOnly) print_log(fmt::format("raya: {}\n", text));
 }
 
-std::string progress_line(const std::string& stage, const std::optional<StageProgress>& progress, double seconds) {
+std::string progress_line(const std::string& stage, double fraction, double seconds) {
     constexpr int kWidth = 40;              // characters of the bar
     constexpr double kMinFraction = 0.001;  // minimum completed fraction for an estimate of the remaining time
-    const double fraction = progress ? progress->fraction : 0;
     if (fraction < kMinFraction) return fmt::format("{} ... {:.0f} s", stage, seconds);
     const int filled = static_cast<int>(fraction * kWidth);
-    const double remaining_s = progress->seconds / fraction - seconds;
-    return fmt::format(
-        "[{}{}] {:3.0f} %  {}", std::string(filled, '#'), std::string(kWidth - filled, '.'),
-        std::min(99.0, std::floor(100 * fraction)),
-        remaining_s > 0 ? fmt::format("{:.0f} s left", remaining_s) : fmt::format("{:.0f} s so far", seconds));
+    return fmt::format("[{}{}] {:3.0f} %  {:.0f} s left", std::string(filled, '#'), std::string(kWidth - filled, '.'),
+                       std::min(99.0, std::floor(100 * fraction)), seconds / fraction - seconds);
 }
 
-std::jthread announce_compiling(const std::string& device, std::chrono::milliseconds patience) {
+std::jthread announce_compiling(const std::string& device) {
     if (is_quiet()) return {};
-    return std::jthread([device, patience](const std::stop_token& end) {
-        using namespace std::chrono;
+    return std::jthread([device](const std::stop_token& end) {
         std::mutex mutex;
         std::condition_variable_any ended;
         std::unique_lock lock(mutex);
-        const auto began = steady_clock::now();
+        const Clock::time_point began = Clock::now();
         const auto never = [] { return false; };
-        ended.wait_for(lock, end, 1s, never);
+        ended.wait_for(lock, end, std::chrono::seconds(1), never);
         if (end.stop_requested()) return;
         print_log(fmt::format("raya: compiling kernels for {} (first run only) ...\n", device));
-        if (ended.wait_for(lock, end, patience, never); !end.stop_requested())
-            print_log(fmt::format(
-                "raya: still compiling after {:.0f} s; remedy: fewer --lanes, or POCL_WORK_GROUP_METHOD=loops with "
-                "PoCL; raya bench --build shows which kernel is slow, docs/porting.md explains why\n",
-                duration<double>(steady_clock::now() - began).count()));
         ended.wait(lock, end, never);
-        print_log(fmt::format("raya: compiling kernels took {:.1f} s\n",
-                              duration<double>(steady_clock::now() - began).count()));
+        print_log(fmt::format("raya: compiling kernels took {:.1f} s\n", seconds_since(began)));
     });
 }
 
@@ -130,22 +119,19 @@ void ProgressBar::stage(const std::string& name) {
     const std::lock_guard lock(mutex_);
     stage_name_ = name;
     stage_began_ = Clock::now();
-    progress_.reset();
+    fraction_ = 0;
 }
 
 void ProgressBar::update(double fraction) {
     const std::lock_guard lock(mutex_);
-    fraction = std::clamp(fraction, 0.0, 1.0);
-    if (!progress_ || fraction > progress_->fraction) progress_ = {fraction, stage_seconds()};
+    fraction_ = std::max(fraction_, std::min(fraction, 1.0));
 }
-
-double ProgressBar::stage_seconds() const { return seconds_since(stage_began_); }
 
 void ProgressBar::draw_until_ended() {
     using namespace std::chrono_literals;
     std::unique_lock lock(mutex_);
     for (auto pause = 700ms; !end_.wait_for(lock, pause, [this] { return ended_; }); pause = 200ms)
-        show_status(progress_line(stage_name_, progress_, stage_seconds()));
+        show_status(progress_line(stage_name_, fraction_, seconds_since(stage_began_)));
     clear_status();
 }
 

@@ -5,7 +5,6 @@
 #include <ctime>
 #include <functional>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -69,26 +68,18 @@ void warn(std::string_view text);
 /// Called repeatedly with the completed fraction of the work, 0..1.
 using ProgressCallback = std::function<void(double)>;
 
-/// The completed fraction of a stage's work, 0..1, and the time in seconds that this fraction took.
-struct StageProgress {
-    double fraction = 0, seconds = 0;
-};
-
-/// Returns the progress line of a stage, which began `seconds` ago. The line contains a bar and an estimate of the
-/// remaining time if `progress` is known and its fraction is at least 0.1 %.
-std::string progress_line(const std::string& stage, const std::optional<StageProgress>& progress, double seconds);
+/// Returns the progress line of a stage, which began `seconds` ago and whose work is completed to `fraction`, 0..1.
+/// From 0.1 % on, the line contains a bar and an estimate of the remaining time.
+std::string progress_line(const std::string& stage, double fraction, double seconds);
 
 /// The build budget: a program that compiles for longer counts as slow. tools/portability has its own budget for each
 /// implementation.
 inline constexpr std::chrono::seconds kBuildBudget{60};
 
-/// Starts a thread that prints messages about the compilation of kernels on stderr, unless --quiet is given. After 1 s,
-/// which is longer than loading cached kernels takes, it prints that kernels are being compiled for the device. After
-/// another `patience` it prints remedies. When the returned thread is destroyed, it prints the time that compilation
-/// took, if that time was more than 1 s.
-[[nodiscard]] std::jthread announce_compiling(const std::string& device,
-                                              std::chrono::milliseconds patience = kBuildBudget -
-                                                                                   std::chrono::seconds(1));
+/// Starts a thread that reports the compilation of kernels on stderr, unless --quiet is given: after 1 s, which is
+/// longer than loading cached kernels takes, that kernels are being compiled for the device, and when the returned
+/// thread is destroyed the time that it took.
+[[nodiscard]] std::jthread announce_compiling(const std::string& device);
 
 /// A thread that draws progress_line() of the current stage as the status line (log.hpp), if stderr is a terminal and
 /// --quiet is not given. It draws first after 0.7 s, then five times a second. The destructor erases the line.
@@ -103,7 +94,7 @@ class ProgressBar {
     /// Returns true if the bar is drawn.
     bool active() const { return draw_thread_.joinable(); }
 
-    /// Starts the next stage. Its completed fraction is unknown until update() is called.
+    /// Starts the next stage.
     void stage(const std::string& name);
 
     /// Sets the completed fraction of the stage, 0..1. Ignores values that are smaller than a previous one.
@@ -111,14 +102,13 @@ class ProgressBar {
 
   private:
     void draw_until_ended();
-    double stage_seconds() const;
 
-    std::mutex mutex_;  // guards ended_, stage_name_, stage_began_ and progress_
+    std::mutex mutex_;  // guards the members below
     std::condition_variable end_;
     bool ended_ = false;
     std::string stage_name_;
     Clock::time_point stage_began_ = Clock::now();
-    std::optional<StageProgress> progress_;
+    double fraction_ = 0;
     std::thread draw_thread_;
 };
 

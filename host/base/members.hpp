@@ -183,7 +183,7 @@ class Members {
         } else if constexpr (std::is_integral_v<Type>) {
             value = static_cast<Type>(json_integer(json, std::numeric_limits<Type>::max()));
         } else if constexpr (std::is_arithmetic_v<Type>) {
-            value = json_number(json);
+            value = json.get<Type>();
         } else if constexpr (is_text<Type>) {
             value = json_text(json);
         } else {

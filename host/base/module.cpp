@@ -60,21 +60,6 @@ bool is_within(const fs::path& path, const fs::path& folder) {
     return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// Folder and owner of raya's executable, or of the file set by set_program_file().
-struct ProgramFile {
-    fs::path folder;
-    uid_t owner;
-};
-
-ProgramFile program_file() {
-    std::error_code failure;
-    const fs::path self = substitute_file.empty() ? "/proc/self/exe" : substitute_file;
-    const fs::path folder = (substitute_file.empty() ? fs::read_symlink(self, failure) : substitute_file).parent_path();
-    struct stat status {};
-    if (failure || ::stat(self.c_str(), &status) != 0) throw ModuleError(fmt::format("cannot read {}", self.string()));
-    return {folder, status.st_uid};
-}
-
 std::string loader_error() {
     const char* text = ::dlerror();
     return text != nullptr ? text : "dlerror() gives no reason";
@@ -91,14 +76,6 @@ std::string loader_error() {
     throw MissingLibrary(reason);
 }
 
-/// Returns the folder of the modules and of the other files installed with the program: ../lib/raya if the program's
-/// folder is named `bin`, else the program's folder. Throws ModuleError if the program's path cannot be read.
-fs::path module_folder() {
-    const fs::path program = program_file().folder;
-    std::error_code failure;
-    return fs::weakly_canonical(program.filename() == "bin" ? program.parent_path() / "lib/raya" : program, failure);
-}
-
 }  // namespace
 
 std::string memory_limit() {
@@ -110,15 +87,19 @@ std::string memory_limit() {
 void set_program_file(const fs::path& file) { substitute_file = file; }
 
 fs::path module_file(const std::string& name) {
-    const fs::path file = module_folder() / name;
     std::error_code failure;
+    const fs::path self = substitute_file.empty() ? "/proc/self/exe" : substitute_file;
+    const fs::path program = (substitute_file.empty() ? fs::read_symlink(self, failure) : self).parent_path();
+    struct stat status {};
+    if (failure || ::stat(self.c_str(), &status) != 0) throw ModuleError(fmt::format("cannot read {}", self.string()));
+    const fs::path folder = program.filename() == "bin" ? program.parent_path() / "lib/raya" : program;
+    const fs::path file = fs::weakly_canonical(folder, failure) / name;
     if (!fs::is_regular_file(fs::symlink_status(file, failure)))
         throw ModuleError(fmt::format("there is no file '{}'", file.string()));
-    const ProgramFile program = program_file();
+    const std::vector<uid_t> owners = {::geteuid(), status.st_uid};
     // Folders above the program are not checked, because a user who may change them could replace the program itself.
-    std::string reason =
-        unsafe_path_reason(file.parent_path(), {::geteuid(), program.owner}, Sticky::kRefused, program.folder);
-    if (reason.empty()) reason = unsafe_entry_reason(file, {::geteuid(), program.owner}, Sticky::kRefused);
+    std::string reason = unsafe_path_reason(file.parent_path(), owners, Sticky::kRefused, program);
+    if (reason.empty()) reason = unsafe_entry_reason(file, owners, Sticky::kRefused);
     if (reason.empty()) return file;
     throw UserError(
         fmt::format("refused to load '{}': {}; remedy: chmod go-w, or install raya as root", file.string(), reason));

@@ -24,17 +24,17 @@ struct MissingLibrary : ModuleError {
 /// loading.
 std::string memory_limit();
 
-/// Returns the function `symbol` of the module `name` (the file NAME.so in module_folder()). The module stays loaded.
+/// Returns the function `symbol` of the module `name` (module_file("NAME.so")). The module stays loaded.
 /// Throws ModuleError if the module does not load or has no such function. Throws UserError if users other than root,
 /// this user and the program's owner may change the file or its folder, or if a memory limit prevents loading.
 void* module_function(const std::string& name, const char* symbol);
 
-/// Returns the path of the file `name` in module_folder(): a module, or a program that raya runs. Throws ModuleError if
-/// there is no such file. Throws UserError if users other than root, this user and the program's owner may change the
-/// file or its folder.
+/// Returns the path of the file `name`, a module or a program that raya runs. It is in ../lib/raya if the program's
+/// folder is named `bin`, else in the program's folder. Throws ModuleError if there is no such file. Throws UserError
+/// if users other than root, this user and the program's owner may change the file or its folder.
 std::filesystem::path module_file(const std::string& name);
 
-/// Makes module_folder() use the path of `file` instead of the program's. For the Python module and tests.
+/// Makes module_file() use the path of `file` instead of the program's. For the Python module and tests.
 void set_program_file(const std::filesystem::path& file);
 
 /// kAllowed: accept a folder that other users may write if its sticky bit is set. The bit prevents users from replacing

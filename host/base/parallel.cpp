@@ -10,9 +10,6 @@
 #include <system_error>
 #include <thread>
 
-#ifdef __linux__
-#endif
-
 namespace raya {
 
 unsigned core_count() { return std::max(1u, std::thread::hardware_concurrency()); }
@@ -35,22 +32,17 @@ void parallel_for(std::size_t count, unsigned threads, const std::function<void(
         for (std::size_t i = 1; i < std::min<std::size_t>(threads, count); ++i) helpers.emplace_back(take_indices);
     } catch (const std::system_error&) {
         // The system allows no more threads: those that started do the work.
-    } catch (...) {
-        next = count;
-        throw;
     }
     take_indices();
     helpers.clear();
     if (exception) std::rethrow_exception(exception);
 }
 
-void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
-#ifdef __linux__
+void advise_huge_pages(void* memory, std::size_t bytes) {
     constexpr std::uintptr_t kSmallPage = 4096;
     const auto begin = (reinterpret_cast<std::uintptr_t>(memory) + kSmallPage - 1) / kSmallPage * kSmallPage;
     const auto end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / kSmallPage * kSmallPage;
     if (end > begin) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // only a request
-#endif
 }
 
 }  // namespace raya

@@ -14,14 +14,10 @@ struct UnreadableFile : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Treatment of a named pipe by read_file().
-enum class Pipes { kRefused, kRead };
-
-/// Returns all bytes of a regular file, or of stdin if the name is "-". Reads a pipe
-/// (`<(command)` in a shell) only with Pipes::kRead. Throws UnreadableFile if the file does not exist, is a folder or a
-/// device, may not be read, has more than `max_bytes` bytes, or if reading fails.
-std::string read_file(const std::filesystem::path& path, Pipes pipes = Pipes::kRefused,
-                      std::uint64_t max_bytes = std::uint64_t{1} << 36);
+/// Returns all bytes of a regular file or a pipe (`<(command)` in a shell), or of stdin if the name is "-". Throws
+/// UnreadableFile if the file does not exist, is a folder or a device, may not be read, has more than `max_bytes`
+/// bytes, or if reading fails.
+std::string read_file(const std::filesystem::path& path, std::uint64_t max_bytes = std::uint64_t{1} << 36);
 
 /// Remembers that this process reads the file at `path` for its user, so that it does not overwrite the file.
 /// `name`: the file in messages; default: the path. Does nothing if there is no such regular file. Throws UserError if
@@ -33,8 +29,7 @@ void forget_input(const std::filesystem::path& path);
 
 /// Calls register_input() and read_file(). For files that the user names, or that such a file names; raya's own files,
 /// such as checkpoints, are read and replaced without it.
-std::string read_input(const std::filesystem::path& path, Pipes pipes = Pipes::kRefused,
-                       std::uint64_t max_bytes = std::uint64_t{1} << 36);
+std::string read_input(const std::filesystem::path& path);
 
 /// Remembers that the process will write `path`; for "-", the file to which stdout is redirected. `name`: the output in
 /// messages. Throws UserError if the file is an input or a promised output with another name, also through links.
@@ -43,19 +38,13 @@ void promise_output(const std::filesystem::path& path, const std::string& name);
 /// Forgets the promised outputs: the call of the Python module that named them ends.
 void forget_promised_outputs();
 
-/// Throws UserError with file, reason and remedy if write_whole_file() could not write `path`: it is a folder, its
-/// folder is missing or not writable, or the existing file is not writable. Writes nothing. Commands call it before
-/// long work, so that they fail early. For "-", reserves stdout for the file.
+/// Throws UserError with file, reason and remedy if write_whole_file() could not create its temporary file or replace
+/// `path`. Commands call it before long work, so that they fail early. For "-", reserves stdout for the file.
 void check_writable(const std::filesystem::path& path);
 
-/// Returns a text that is the same for all paths of a file: the file's device and inode. For a file that does not
-/// exist, the text contains device and inode of the folder in which the file would be created, and the file's name.
-/// Empty for a device, a pipe or a folder. Throws UserError for a loop of symbolic links.
-std::string file_identity(const std::filesystem::path& path);
-
 /// Writes `bytes` to a temporary file in the folder of `path` and renames it, so that no reader sees a partial file and
-/// an old file stays unchanged until the new one is complete. Follows symbolic links, also to a file that does not
-/// exist yet. Writes directly to a device, a pipe (`/dev/stdout`) or stdout ("-"). Throws UserError with file, reason
+/// an old file stays unchanged until the new one is complete. Follows a symbolic link to a file; a link to nothing is
+/// replaced. Writes directly to a device, a pipe (`/dev/stdout`) or stdout ("-"). Throws UserError with file, reason
 /// and remedy, also if the file is an input. Failures and interruptions (interruption.hpp) leave no temporary file.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
@@ -73,18 +62,9 @@ bool is_standard_stream(const std::filesystem::path& path);
 std::string input_name(const std::filesystem::path& path);
 std::string output_name(const std::filesystem::path& path);
 
-/// Returns the descriptor of stdin. Prints a hint if stdin is a terminal. A second call throws UnreadableFile
-/// (whole_file.hpp), because the input has been consumed.
-int take_stdin();
-
-/// Reserves stdout for a file: from now on everything that this process and its children print to stdout goes to
-/// stderr. Further calls do nothing. Throws UserError if no file descriptor is free.
-void reserve_stdout();
+/// Returns true if check_writable() has reserved stdout for a file: everything that this process and its children print
+/// to stdout goes to stderr.
 bool stdout_is_reserved();
-
-/// Reserves stdout if necessary and returns its descriptor, which the caller closes. A second call throws UserError,
-/// because the content of two files would be mixed.
-int take_stdout();
 
 /// Throws UserError if `path` is "-" and stdout is a terminal, which binary output would garble.
 void refuse_bytes_on_terminal(const std::filesystem::path& path);

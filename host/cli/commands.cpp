@@ -205,7 +205,7 @@ int print_schema(const std::string& kind) {
                                        "Message times between MPI ranks, measured with the transport that renders use "
                                        "(docs/clusters.md). `raya ping` under mpirun prints the report to stdout.");
     if (kind == "tuned")
-        schema = schema_of<StoredTuning>(
+        schema = schema_of<TunedFile>(
             "raya/tuned-DEVICE.json",
             "Tuned values of a device, stored by `raya tune` in `$XDG_CACHE_HOME` or `~/.cache` (docs/tuning.md). "
             "Renders take their defaults from it. raya ignores a file whose format version, device, driver or version "

@@ -72,7 +72,7 @@ JsonSource report_source(const std::string& name) {
 void make_page(const PageCommand& command) {
     check_page_name("-o", command.page);
     const std::string name = input_name(command.report);
-    const std::string page = page_of_report(json_file_text(command.report, report_source(name), Pipes::kRead), name);
+    const std::string page = page_of_report(json_file_text(command.report, report_source(name)), name);
     write_whole_file(command.page, page);
     if (!is_quiet())
         fmt::print("page    {} ({:.0f} KB); open it in a browser; it needs no network\n", printable(command.page),

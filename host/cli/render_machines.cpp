@@ -59,8 +59,8 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
     RingRenderer renderer(run.session(), input.scene, settings, run.ranks, [&] { drop_objects(input.scene); });
     if (run.ranks.is_first()) warn_of_lost_objects(input.scene, renderer.scale(), settings.format, input.warnings);
     run.progress.stage("rendering");
-    const CheckpointFile checkpoint(command.checkpoint);
-    RingResult result = renderer.render(run.progress.callback(), checkpoint.checkpointing());
+    const auto checkpointing = checkpointing_of(command.checkpoint);
+    RingResult result = renderer.render(run.progress.callback(), checkpointing.get());
     auto report = finish_render(
         command, run, settings, result,
         {.describe = [&](RenderReport& r) { describe(r, command, settings, result); },
@@ -166,8 +166,8 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
     TorusRenderer renderer(run.session(), input.scene, settings, run.ranks, [&] { drop_objects(input.scene); });
     if (run.ranks.is_first()) warn_of_lost_objects(input.scene, renderer.scale(), settings.format, input.warnings);
     TorusOutputs outputs(command, recorder, settings);
-    const CheckpointFile checkpoint(command.checkpoint);
-    TorusResult result = render_without_deadlock(command, settings, run, renderer, outputs, checkpoint.checkpointing());
+    const auto checkpointing = checkpointing_of(command.checkpoint);
+    TorusResult result = render_without_deadlock(command, settings, run, renderer, outputs, checkpointing.get());
     std::optional<History> history;
     std::optional<AsynchronousTime> asynchronous;
     if (outputs.history && run.ranks.is_first()) {

@@ -96,14 +96,13 @@ void tune_device(const CLI::App& parser, TuneCommand& command) {
     TuneSettings settings{.render = render};
     std::vector<Tuning> tunings;
     double remaining_s = command.seconds;
-    const std::string date = utc_text("%Y-%m-%d");
     for (const Workload& workload : workloads) {
         settings.seconds = remaining_s / static_cast<double>(workloads.size() - tunings.size());
         tunings.push_back(
             tune(device, workload, settings, progress_printer(workload, space_of(device, workload.key()))));
         remaining_s = std::max(0.0, remaining_s - tunings.back().seconds);
         const std::string scene = render.scene.empty() ? "own" : render.scene;
-        save_tuned(device, {date, {entry_of(tunings.back(), scene)}});
+        save_tuned(device, entry_of(tunings.back(), scene));
     }
     clear_status();
     print_tunings(tunings);

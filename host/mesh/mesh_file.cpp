@@ -189,7 +189,7 @@ class MeshReader {
 
     /// Adds a surface. Refuses numbers out of the range of NFF's `f`.
     void add_surface(const Json& numbers) {
-        const auto number = [&](std::size_t i) { return json_number(numbers.at(i)); };
+        const auto number = [&](std::size_t i) { return numbers.at(i).get<double>(); };
         const Surface s{{number(1), number(2), number(3)}, number(4), number(5), number(6), number(7), number(8)};
         const bool is_legal = is_colour(s.colour) && is_weight(s.diffuse) && is_weight(s.specular) && s.shine >= 0 &&
                               s.shine <= kMaxNumber && is_weight(s.transmittance) && s.refraction_index > 0 &&

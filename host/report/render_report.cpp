@@ -377,7 +377,7 @@ std::string ranks_line(const RenderReport& r) {
     std::uint64_t messages = 0, bytes = 0;
     std::set<std::string> hosts;
     for (const auto& [rank] : r.ranks) {
-        max_waiting_s = std::max(max_waiting_s, json_number(rank.at("waiting_s")));
+        max_waiting_s = std::max(max_waiting_s, rank.at("waiting_s").get<double>());
         messages += json_integer(rank.at("messages_sent"));
         bytes += json_integer(rank.at("bytes_sent"));
         hosts.insert(json_text(rank.at("host")));

@@ -121,7 +121,7 @@ class NffWriter {
 
 Scene read_nff(const std::filesystem::path& path, std::vector<SceneRemark>* remarks) {
     try {
-        return parse_nff(read_input(path, Pipes::kRead), input_name(path), remarks);
+        return parse_nff(read_input(path), input_name(path), remarks);
     } catch (const UnreadableFile& error) {
         throw UserError(fmt::format("{}: cannot read the scene: {}", input_name(path), error.what()));
     }

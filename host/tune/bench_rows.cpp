@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "host/base/encoding.hpp"
 #include "host/cl/measure.hpp"
 #include "host/error.hpp"
 #include "host/image/image_io.hpp"
@@ -175,19 +176,14 @@ std::vector<BenchBuild> bench_builds(Session& session, const Scene& scene, RingS
                     variant_settings.antialias.method = method;
                     lanes = render_row(session, scene, variant_settings, format, variant).result.lanes;
                 }
-            for (KernelBuild& build : recorded.all) {
-                std::string& options = build.options;
-                if (const auto position = options.find(unique_option); position != options.npos)
-                    options.erase(position > 0 ? position - 1 : position,
-                                  unique_option.size() + (position > 0 ? 1 : 0));
+            for (const KernelBuild& build : recorded.all)
                 builds.push_back({.kernel = build.name,
                                   .variant = variant,
                                   .format = format_name(format),
                                   .lanes = lanes,
                                   .build_s = build.build_s,
                                   .launch_s = build.launch_s,
-                                  .build_options = options});
-            }
+                                  .build_options = replaced(build.options, " " + unique_option, "")});
             recorded.all.clear();
         }
     }

@@ -23,18 +23,14 @@ struct TunedEntry {
     std::string scene;   // name of the measured scene
 };
 
-struct TunedFile {
-    std::string date;  // date of tuning: "2026-11-22"
-    std::vector<TunedEntry> entries;
-};
-
 /// The file of a device, for to_json(), from_json() and schema_of().
-struct StoredTuning {
+struct TunedFile {
     DeviceInfo device;
-    TunedFile file;
+    std::string date{};  // of the latest search: "2026-11-22"
+    std::vector<TunedEntry> entries{};
 };
 void members_of(Members& m, TunedEntry& entry);
-void members_of(Members& m, StoredTuning& stored);
+void members_of(Members& m, TunedFile& file);
 
 /// Returns the folder of the files of tuned values: $XDG_CACHE_HOME/raya, or, if that variable is not an absolute path,
 /// $HOME/.cache/raya. Empty if neither is absolute.
@@ -42,9 +38,6 @@ std::optional<std::filesystem::path> tuned_folder();
 
 /// Returns the name of a device's file, made of the names of platform and device and the driver version.
 std::string tuned_file_name(const DeviceInfo& device);
-
-/// Returns the text of the device's file, which contains the names of device and driver and the version of raya.
-std::string tuned_text(const DeviceInfo& device, const TunedFile& file);
 
 /// Parses the text of file `name`. Throws UserError if the text is not a valid file of tuned values, has values that
 /// the device does not support, or is for another device, driver or version of raya.
@@ -54,9 +47,9 @@ TunedFile read_tuned(const std::string& text, const std::string& name, const Dev
 /// is not writable.
 std::filesystem::path tuned_path(const DeviceInfo& device);
 
-/// Merges `tuned` into the device's file: replaces entries that have the same key as an entry of `tuned`, and keeps the
-/// others. Writes the file atomically, and overwrites an unusable file. Throws UserError like tuned_path().
-void save_tuned(const DeviceInfo& device, const TunedFile& tuned);
+/// Adds an entry to the device's file, or replaces the entry with the same key. Writes the file atomically, and
+/// overwrites an unusable file. Throws UserError like tuned_path().
+void save_tuned(const DeviceInfo& device, const TunedEntry& entry);
 
 /// Returns a source of the stored values, for ScopedTunedSource. The source reads a device's file when values for the
 /// device are first requested. If the file is unusable or writable by other users, the source ignores the file and

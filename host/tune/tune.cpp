@@ -1,12 +1,15 @@
 #include "host/tune/tune.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <set>
 
 #include "host/base/child_process.hpp"
+#include "host/base/encoding.hpp"
 #include "host/base/log.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
@@ -26,23 +29,11 @@ namespace {
 
 using Values = std::vector<std::uint32_t>;
 
-// Returns the powers of two in minimum..maximum, or `maximum` if there are none; `minimum` is a power of two.
-Values group_sizes(std::uint32_t minimum, std::uint32_t maximum) {
-    Values sizes;
-    for (std::uint32_t size = minimum; size <= maximum; size *= 2) sizes.push_back(size);
-    if (sizes.empty()) sizes.push_back(maximum);
-    return sizes;
-}
-
-// Inserts the default value if `values` does not contain it.
-void add_default(Values& values, std::uint32_t value) {
-    if (std::find(values.begin(), values.end(), value) == values.end())
-        values.insert(std::lower_bound(values.begin(), values.end(), value), value);
-}
-
-std::string value_text(const TuningParameter& parameter, std::uint32_t value) {
-    if (parameter.value == &TunedValues::local_words) return value ? "yes" : "no";
-    return value ? std::to_string(value) : "default";
+// Returns the powers of two in minimum..maximum, and `default_size`.
+Values group_sizes(std::uint32_t minimum, std::uint32_t maximum, std::uint32_t default_size) {
+    std::set<std::uint32_t> sizes = {default_size};
+    for (std::uint32_t size = minimum; size <= maximum; size *= 2) sizes.insert(size);
+    return {sizes.begin(), sizes.end()};
 }
 
 constexpr double kMaxWinRatio = 0.98;
@@ -69,14 +60,13 @@ Json request_json(const Workload& workload, const TrialSetup& render, const std:
     return {{"device", render.device},
             {"scene", render.scene},
             {"kernel_dir", render.kernel_dir},
-            {"strict", render.strict ? 1 : 0},
+            {"strict", render.strict},
             {"size", std::array{render.size.width, render.size.height}},
             {"pes", render.pes},
             {"variant", workload.variant},
             {"format", format_name(workload.format)},
             {"candidates", values},
-            {"samples", samples},
-            {"stop_early", samples == kSamples ? 1 : 0}};
+            {"samples", samples}};
 }
 
 // Runs a trial in a child process, because drivers may crash or hang. Ends it after `limit_s` seconds.
@@ -111,11 +101,6 @@ Trial run_trial(const Json& request, const std::vector<TunedValues>& candidates,
 
 }  // namespace
 
-const char* TuningParameter::name() const {
-    return std::find_if(kTunedNames.begin(), kTunedNames.end(), [this](const auto& n) { return n.second == value; })
-        ->first;
-}
-
 std::vector<TunedValues> Space::candidates() const {
     std::vector<TunedValues> all = {defaults};
     for (const TuningParameter& parameter : parameters) {
@@ -137,35 +122,33 @@ std::vector<TunedValues> Space::candidates() const {
 Space space_of(const DeviceInfo& device, const TuningKey& key) {
     Space space{.parameters = {}, .defaults = default_values(device, key)};
     const bool cpu = device.type == "cpu", tests_all_objects = key.accel == RAYA_ACCEL_NONE;
-    const auto add = [&](std::uint32_t TunedValues::*value, Values values) {
-        add_default(values, space.defaults.*value);
-        space.parameters.push_back({value, std::move(values)});
-    };
-    const std::uint32_t max_group = max_group_size_of(device);
+    const std::uint32_t max_group = max_group_size_of(device), group = space.defaults.group;
     // Only llvmpipe ends loops early. It vectorises over work-items, so one lane suffices, and it needs minutes and
     // gigabytes of memory to compile kernels with several lanes.
     const bool llvmpipe = device.ends_loops_early;
-    add(&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16});
+    space.parameters.push_back({&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16}});
     // Torus nodes on a CPU keep their default group size, which preserves the order of packets (docs/architecture.md).
-    const std::uint32_t max_cpu_group = key.torus ? space.defaults.group : std::min(llvmpipe ? 16u : 4u, max_group);
-    add(&TunedValues::group, cpu ? group_sizes(1, max_cpu_group) : group_sizes(16, max_group));
-    if (tests_all_objects) add(&TunedValues::local_words, {0, 1});
+    const std::uint32_t max_cpu_group = key.torus ? group : std::min(llvmpipe ? 16u : 4u, max_group);
+    space.parameters.push_back(
+        {&TunedValues::group, cpu ? group_sizes(1, max_cpu_group, group) : group_sizes(16, max_group, group)});
+    if (tests_all_objects) space.parameters.push_back({&TunedValues::local_words, {0, 1}});
     if (tests_all_objects && key.fp32 && !key.torus)
-        add(&TunedValues::batch, cpu ? Values{0, 8, 16} : Values{0, 4, 8, 16, 32});
+        space.parameters.push_back({&TunedValues::batch, cpu ? Values{0, 8, 16} : Values{0, 4, 8, 16, 32}});
     return space;
 }
 
 std::string change_text(const Space& space, const TunedValues& old_values, const TunedValues& new_values) {
-    std::string text;
-    for (const TuningParameter& parameter : space.parameters) {
-        std::string name = parameter.name();
-        std::replace(name.begin(), name.end(), '_', ' ');
-        text +=
-            fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value_text(parameter, old_values.*parameter.value));
-        if (old_values.*parameter.value != new_values.*parameter.value)
-            text += " -> " + value_text(parameter, new_values.*parameter.value);
+    std::vector<std::string> texts;
+    for (const auto& [name, member] : kTunedNames) {
+        if (std::ranges::find(space.parameters, member, &TuningParameter::value) == space.parameters.end()) continue;
+        const auto text = [&, is_flag = member == &TunedValues::local_words](const TunedValues& values) {
+            const std::uint32_t value = values.*member;
+            return is_flag ? (value ? "yes" : "no") : value ? std::to_string(value) : "default";
+        };
+        texts.push_back(replaced(name, "_", " ") + " " + text(old_values));
+        if (old_values.*member != new_values.*member) texts.back() += " -> " + text(new_values);
     }
-    return text;
+    return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 double ratio_of(const Trial& trial) {
@@ -226,8 +209,8 @@ Tuning tune(const DeviceInfo& device, const Workload& workload, const TuneSettin
 
 namespace {
 
-constexpr std::size_t kMinSamples = 2;  // number of samples before stop_early may end a trial
-constexpr double kDropRatio = 1.25;     // stop_early ends a trial if last time / first time exceeds this ratio
+constexpr std::size_t kMinSamples = 2;  // of the search, before a slow candidate is dropped
+constexpr double kDropRatio = 1.25;     // last time / first time with which a candidate is dropped
 
 struct Variant {
     const char* name;
@@ -317,23 +300,21 @@ double mean_seconds(const std::function<double()>& render) {
     return sum / calls;
 }
 
-// `request`: see request_json() in tune.cpp.
 void run_trial(int lines, const Json& request) {
-    const auto number = [](const Json& value) { return static_cast<std::uint32_t>(json_integer(value, UINT32_MAX)); };
-    const Json& sides = json_array(request.at("size"));
-    const TrialSetup setup{.device = json_text(request.at("device")),
-                           .scene = json_text(request.at("scene")),
-                           .kernel_dir = json_text(request.at("kernel_dir")),
-                           .strict = json_integer(request.at("strict"), 1) == 1,
-                           .size = {number(sides.at(0)), number(sides.at(1))},
-                           .pes = number(request.at("pes"))};
-    const Workload workload{json_text(request.at("variant")), parse_format(json_text(request.at("format")))};
+    TrialSetup setup;
+    request.at("device").get_to(setup.device);
+    request.at("scene").get_to(setup.scene);
+    request.at("kernel_dir").get_to(setup.kernel_dir);
+    request.at("strict").get_to(setup.strict);
+    request.at("pes").get_to(setup.pes);
+    const Workload workload{request.at("variant"), parse_format(request.at("format"))};
     const Variant& variant = variant_named(workload.variant);
-    const ImageSize size = setup.size.width ? setup.size : ImageSize{variant.side, variant.side};
+    ImageSize size{request.at("size").at(0), request.at("size").at(1)};
+    if (size.width == 0) size = {variant.side, variant.side};
     const Scene scene = scene_of(setup, variant);
     Session session(choose_device(setup.device));
     std::vector<TimedRender> renders;
-    const Json& candidates = json_array(request.at("candidates"));
+    const Json& candidates = request.at("candidates");
     for (const Json& values : candidates) {
         const int check_lines = renders.size() + 1 == candidates.size() ? lines : -1;
         const KernelChoice kernels =
@@ -348,12 +329,12 @@ void run_trial(int lines, const Json& request) {
             render_with(
                 std::make_shared<RingRenderer>(session, scene, ring_settings(workload, size, setup.pes, kernels)));
     }
-    const bool stops_early = json_integer(request.at("stop_early"), 1) == 1;
+    const std::uint32_t count = request.at("samples");
     std::vector<std::vector<double>> samples(renders.size());
-    for (std::uint32_t i = 0; i < number(request.at("samples")); ++i) {
+    for (std::uint32_t i = 0; i < count; ++i) {
         for (std::size_t n = 0; n < renders.size(); ++n) samples[n].push_back(mean_seconds(renders[n]));
-        if (stops_early && samples.front().size() >= kMinSamples &&
-            *std::ranges::min_element(samples.back()) > kDropRatio * *std::ranges::min_element(samples.front()))
+        if (count == kSamples && samples.front().size() >= kMinSamples &&
+            min_of(samples.back()) > kDropRatio * min_of(samples.front()))
             break;
     }
     send_line(lines, {{"samples", samples}});

@@ -31,8 +31,6 @@ std::vector<Workload> default_workloads();
 struct TuningParameter {
     std::uint32_t TunedValues::*value = nullptr;  // the member that holds the parameter's value
     std::vector<std::uint32_t> values;
-
-    const char* name() const;  // name in kTunedNames
 };
 
 struct Space {

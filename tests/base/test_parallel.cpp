@@ -27,15 +27,3 @@ TEST_CASE("parallel_for throws the work's exception to the caller, and starts no
         CHECK(calls < 1'000'000);
     }
 }
-
-TEST_CASE("part_of_range divides a range without gaps", "[parallel]") {
-    for (const std::size_t count : {0, 1, 9, 100}) {
-        std::size_t end = 0;
-        for (std::size_t part = 0; part < 7; ++part) {
-            const IndexRange range = part_of_range(part, 7, count);
-            CHECK(range.begin == end);
-            end = range.end;
-        }
-        CHECK(end == count);
-    }
-}

@@ -1,4 +1,4 @@
-// Files are written completely or not at all: after every failure the folder is unchanged.
+// Whole files: reading them, and writing them completely or not at all.
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -7,10 +7,9 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <new>
 #include <string>
-#include <string_view>
+#include <thread>
 
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
@@ -20,11 +19,6 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
-
-std::string contents(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// For its lifetime, limits the size of this process's files to `bytes`, to simulate a full disk.
 class FileSizeLimit {
@@ -62,198 +56,155 @@ class WithoutRoot {
     bool changed_;
 };
 
-TEST_CASE("write_whole_file writes all bytes and nothing else", "[whole_file]") {
-    const ScratchFolder folder;
-    const std::string bytes("a\0b\xff\n", 5);
-    write_whole_file(folder / "report.json", bytes);
-    CHECK(contents(folder / "report.json") == bytes);
-    CHECK(folder.entries() == 1);
-}
-
-TEST_CASE("write_whole_file writes a file given in pieces", "[whole_file]") {
-    const ScratchFolder folder;
-    int pieces = 0;
-    std::string piece;
-    write_whole_file(folder / "a", [&]() -> std::string_view {
-        piece = pieces < 1000 ? std::to_string(pieces++) + "\n" : "";
-        return piece;
-    });
-    const std::string written = contents(folder / "a");
-    CHECK(written.starts_with("0\n1\n2\n"));
-    CHECK(written.ends_with("998\n999\n"));
-    CHECK(written.size() == 10 * 2 + 90 * 3 + 900 * 4);
-    write_whole_file(folder / "a", "");
-    CHECK(contents(folder / "a").empty());
-}
-
-TEST_CASE("an exception while making a piece leaves the old file and no temporary file", "[whole_file]") {
-    const ScratchFolder folder;
-    const fs::path file = folder / "x";
-    write_whole_file(file, "old");
-    int calls = 0;
-    const auto next = [&]() -> std::string_view {
-        if (++calls == 3) throw std::bad_alloc();
-        return "new";
-    };
-    CHECK_THROWS_AS(write_whole_file(file, next), std::bad_alloc);
-    CHECK(contents(file) == "old");
-    CHECK(folder.entries() == 1);
-}
-
-TEST_CASE("write_whole_file creates files with the default permissions", "[whole_file]") {
-    const ScratchFolder folder;
-    std::ofstream(folder / "other") << "x";
-    write_whole_file(folder / "report", "x");
-    CHECK(fs::status(folder / "report").permissions() == fs::status(folder / "other").permissions());
-}
-
-TEST_CASE("write_whole_file replaces an old file; processes that have the old file open still read its content",
+TEST_CASE("read_file returns all bytes of a file or a pipe, and refuses everything else with the reason",
           "[whole_file]") {
     const ScratchFolder folder;
-    write_whole_file(folder / "f", std::string(100'000, 'x'));
-    std::ifstream reader(folder / "f");  // a reader of the old file
-    write_whole_file(folder / "f", "short");
-    CHECK(contents(folder / "f") == "short");
-    CHECK(std::string(std::istreambuf_iterator<char>(reader), {}).size() == 100'000);
+    std::string bytes(300'001, 'x');
+    bytes[7] = '\0';
+    std::ofstream(folder / "a", std::ios::binary) << bytes;
+    CHECK(read_file(folder / "a") == bytes);
+    CHECK(read_file(folder / "a", bytes.size()) == bytes);
+    std::ofstream(folder / "empty");
+    CHECK(read_file(folder / "empty").empty());
+    CHECK_THAT(read_file("/proc/self/status"), Contains("Name:"));  // its size is reported as 0
+    REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
+    std::thread writer([&] { std::ofstream(folder / "pipe") << "from a pipe"; });
+    CHECK(read_file(folder / "pipe") == "from a pipe");
+    writer.join();
+    CHECK_THROWS_WITH(read_file(folder / "a", 999), Contains("larger than 999 bytes"));
+    fs::create_symlink("loop", folder / "loop");
+    for (const auto& [path, reason] : {std::pair<fs::path, std::string>{folder / "none", "No such file or directory"},
+                                       {folder.path(), "it is a directory, not a file"},
+                                       {"/dev/zero", "not a regular file"},
+                                       {"/proc/self/mem", "Input/output error"},
+                                       {folder / "loop", "Too many levels of symbolic links"}})
+        CHECK_THROWS_WITH(read_file(path), reason);
+}
+
+TEST_CASE("write_whole_file replaces a file by all pieces; who has the old file open still reads it", "[whole_file]") {
+    const ScratchFolder folder;
+    const fs::path file = folder / "f";
+    std::ofstream(file) << "old";
+    const fs::perms permissions = fs::status(file).permissions();  // the default
+    std::ifstream reader(file);
+    int pieces = 0;
+    std::string piece, all;
+    write_whole_file(file, [&]() -> std::string_view {
+        piece = pieces < 1000 ? std::to_string(pieces++) + std::string("\0\xff\n", 3) : "";
+        all += piece;
+        return piece;
+    });
+    CHECK(read_file(file) == all);
+    CHECK(std::string(std::istreambuf_iterator<char>(reader), {}) == "old");
+    CHECK(fs::status(file).permissions() == permissions);
+    write_whole_file(file, "");
+    CHECK(read_file(file).empty());
     CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("write_whole_file accepts names relative to the working folder", "[whole_file]") {
+TEST_CASE("a failure while a file is written leaves the old file and no temporary file", "[whole_file]") {
     const ScratchFolder folder;
-    const fs::path before = fs::current_path();
-    fs::current_path(folder.path());
-    write_whole_file("plain", "1");
-    fs::current_path(before);
-    CHECK(contents(folder / "plain") == "1");
+    std::ofstream(folder / "f") << "old";
+    int calls = 0;
+    CHECK_THROWS_AS(write_whole_file(folder / "f",
+                                     [&]() -> std::string_view {
+                                         if (++calls == 3) throw std::bad_alloc();
+                                         return "new";
+                                     }),
+                    std::bad_alloc);
+    {
+        const FileSizeLimit limit(4096);
+        for (const char* name : {"f", "new"})
+            CHECK_THROWS_WITH(write_whole_file(folder / name, std::string(10'000, 'x')),
+                              Contains("cannot write") && Contains("File too large") && Contains("ulimit -f"));
+    }
+    CHECK(read_file(folder / "f") == "old");
+    CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("write_whole_file follows symbolic links", "[whole_file]") {
+TEST_CASE("write_whole_file follows links to files, and writes devices and pipes directly", "[whole_file]") {
     const ScratchFolder folder;
     fs::create_directory(folder / "elsewhere");
     std::ofstream(folder / "elsewhere/real") << "old";
     fs::create_symlink("elsewhere/real", folder / "link");
     write_whole_file(folder / "link", "new");
     CHECK(fs::is_symlink(folder / "link"));
-    CHECK(contents(folder / "elsewhere/real") == "new");
-}
-
-TEST_CASE("write_whole_file writes through a link to a file that does not exist yet", "[whole_file]") {
-    const ScratchFolder folder;
-    fs::create_directory(folder / "there");
-    fs::create_symlink("there/new", folder / "link");
-    fs::create_symlink(folder / "link", folder / "link to link");
-    write_whole_file(folder / "link to link", "x");
-    CHECK(contents(folder / "there/new") == "x");
-    CHECK(fs::is_symlink(folder / "link"));
-    CHECK(fs::is_symlink(folder / "link to link"));
-    fs::create_symlink("nowhere/new", folder / "lost");
-    CHECK_THROWS_WITH(write_whole_file(folder / "lost", "x"), Contains("nowhere' does not exist"));
-}
-
-TEST_CASE("file_identity is equal for all names of a file, existing or not", "[whole_file]") {
-    const ScratchFolder folder;
-    fs::create_directory(folder / "there");
-    fs::create_directory_symlink("there", folder / "alias");
-    fs::create_symlink("there/new", folder / "link");
+    CHECK(read_file(folder / "elsewhere/real") == "new");
     const fs::path before = fs::current_path();
-    for (const bool exists : {false, true}) {
-        CAPTURE(exists);
-        if (exists) write_whole_file(folder / "there/new", "x");
-        const std::string file = file_identity(folder / "there/new");
-        for (const char* name :
-             {"there/./new", "alias/new", "link", "there/../there/new", "alias/../link", "there//new"}) {
-            CAPTURE(name);
-            CHECK(file_identity(folder / name) == file);
-        }
-        CHECK(file_identity(folder / "there/old") != file);
-        fs::current_path(folder / "there");
-        CHECK(file_identity("new") == file);
-        CHECK(file_identity("./new") == file);
-        fs::current_path(before);
-    }
-    fs::create_hard_link(folder / "there/new", folder / "hard");
-    CHECK(file_identity(folder / "hard") == file_identity(folder / "there/new"));
-    CHECK(file_identity(folder / "none/new") == file_identity(folder / "none/./new"));
-    CHECK(file_identity(folder / "none/new") != file_identity(folder / "none/old"));
-    for (const std::string& path : {std::string("/dev/null"), std::string(folder / "there")})
-        CHECK(file_identity(path).empty());
-}
-
-TEST_CASE("write_whole_file writes a device or a pipe directly", "[whole_file]") {
+    fs::current_path(folder.path());
+    write_whole_file("plain", "1");
+    fs::current_path(before);
+    CHECK(read_file(folder / "plain") == "1");
     write_whole_file("/dev/null", "nothing");
     CHECK(fs::is_character_file("/dev/null"));
     CHECK_THROWS_WITH(write_whole_file("/dev/full", "x"),
                       Contains("/dev/full") && Contains("No space left on device") && Contains("another disk"));
-    CHECK(fs::is_character_file("/dev/full"));
 }
 
-TEST_CASE("a full disk leaves the old file and no temporary file", "[whole_file]") {
+TEST_CASE("no output is an input or another output, under any of its names", "[whole_file]") {
     const ScratchFolder folder;
-    write_whole_file(folder / "f", "old");
-    {
-        const FileSizeLimit limit(4096);
-        CHECK_THROWS_WITH(write_whole_file(folder / "f", std::string(10'000, 'x')),
-                          Contains("cannot write") && Contains("File too large") && Contains("ulimit -f"));
-        CHECK_THROWS_AS(write_whole_file(folder / "new", std::string(10'000, 'x')), UserError);
+    fs::create_directory(folder / "there");
+    fs::create_directory_symlink("there", folder / "alias");
+    std::ofstream(folder / "there/in") << "input";
+    fs::create_hard_link(folder / "there/in", folder / "hard");
+    fs::create_symlink("there/in", folder / "link");
+    register_input(folder / "there/in", "SCENE in");
+    for (const char* name : {"there/./in", "alias/in", "hard", "link", "there/../link"}) {
+        CAPTURE(name);
+        CHECK_THROWS_WITH(promise_output(folder / name, "--output"),
+                          "--output: would overwrite the input SCENE in; "
+                          "name another file");
+        CHECK_THROWS_AS(write_whole_file(folder / name, "x"), UserError);
     }
-    CHECK(contents(folder / "f") == "old");
-    CHECK(folder.entries() == 1);
+    CHECK(read_file(folder / "there/in") == "input");
+    promise_output(folder / "there/out", "--output");
+    for (const char* name : {"there/./out", "alias/out", "there/../alias//out"}) {
+        CHECK_THROWS_WITH(promise_output(folder / name, "--report"), Contains("--report: the same file as --output"));
+        CHECK_NOTHROW(promise_output(folder / name, "--output"));
+    }
+    promise_output(folder / "there/other", "--report");
+    promise_output(folder / "none/out", "--page");
+    forget_promised_outputs();
+    forget_input(folder / "link");
+    write_whole_file(folder / "link", "new");
 }
 
 TEST_CASE("an output file that cannot be written is refused with file, reason and remedy", "[whole_file]") {
     const ScratchFolder folder;
     std::ofstream(folder / "file") << "x";
-    const auto check_refused = [](const fs::path& path, const std::string& reason, const std::string& remedy) {
-        CHECK_THROWS_WITH(check_writable(path), Contains(path.string()) && Contains(reason) && Contains(remedy));
-        CHECK_THROWS_WITH(write_whole_file(path, "x"), Contains(reason) && Contains(remedy));
-        CHECK_THROWS_AS(write_whole_file(path, "x"), UserError);
-    };
-    check_refused(folder / "missing/x", "missing' does not exist", "mkdir -p");
-    check_refused(folder / "file/x", "is not a folder", "name a file in another folder");
-    check_refused(folder.path(), "it is a folder", "name a file in it");
-    check_refused(folder / "missing/", "it is a folder", "name a file in it");
-    check_refused("", "the name is empty", "name a file");
-    CHECK_THROWS_WITH(write_whole_file(folder / std::string(300, 'n'), "x"), Contains("File name too long"));
-    CHECK(folder.entries() == 1);
-}
-
-TEST_CASE("invalid file names are refused with the reason", "[whole_file]") {
-    const ScratchFolder folder;
     fs::create_symlink("loop", folder / "loop");
-    for (const auto& [name, reason] : {std::pair<std::string, std::string>{std::string(300, 'n'), "File name too long"},
-                                       {"loop", "Too many levels of symbolic links"},
-                                       {"loop/x", "Too many levels of symbolic links"}}) {
-        CAPTURE(name);
-        CHECK_THROWS_AS(write_whole_file(folder / name, "x"), UserError);
-        CHECK_THROWS_WITH(check_writable(folder / name), Contains(name) && Contains(reason));
+    for (const auto& [path, reason, remedy] :
+         {std::tuple<fs::path, const char*, const char*>{folder / "missing/x", "missing' does not exist", "mkdir -p"},
+          {folder / "file/x", "is not a folder", "name a file in another folder"},
+          {folder.path(), "it is a folder", "name a file in it"},
+          {folder / "missing/", "it is a folder", "name a file in it"},
+          {folder / std::string(300, 'n'), "File name too long", "name another file"},
+          {folder / "loop", "Too many levels of symbolic links", "name another file"},
+          {folder / "loop/x", "Too many levels of symbolic links", "name another file"}}) {
+        CAPTURE(path);
+        CHECK_THROWS_WITH(check_writable(path), Contains(path.string()) && Contains(reason) && Contains(remedy));
+        CHECK_THROWS_AS(write_whole_file(path, "x"), UserError);
     }
+    check_writable(folder / "new");
+    CHECK(folder.entries() == 2);  // nothing was written
 }
 
 TEST_CASE("missing permissions are an error and change nothing", "[whole_file]") {
     const ScratchFolder folder;
     std::ofstream(folder / "old") << "old";
     fs::permissions(folder / "old", fs::perms(0444));
+    const auto check_refused = [&](const char* name, const char* reason) {
+        const WithoutRoot no_root;
+        CHECK_THROWS_WITH(check_writable(folder / name), Contains(reason) && Contains("change its permissions"));
+        CHECK_THROWS_AS(write_whole_file(folder / name, "new"), UserError);
+    };
     ::chmod(folder.path().c_str(), 0777);
-    {
-        const WithoutRoot no_root;
-        CHECK_THROWS_WITH(check_writable(folder / "old"), Contains("exists and is not writable"));
-        CHECK_THROWS_AS(write_whole_file(folder / "old", "new"), UserError);
-    }
+    check_refused("old", "exists and is not writable");
     ::chmod(folder.path().c_str(), 0555);
-    {
-        const WithoutRoot no_root;
-        CHECK_THROWS_WITH(check_writable(folder / "x"), Contains("is not writable") && Contains("permissions"));
-        CHECK_THROWS_AS(write_whole_file(folder / "x", "new"), UserError);
-    }
+    check_refused("x", "is not writable");
     ::chmod(folder.path().c_str(), 0755);
-    CHECK(contents(folder / "old") == "old");
+    CHECK(read_file(folder / "old") == "old");
     CHECK(folder.entries() == 1);
-}
-
-TEST_CASE("check_writable writes nothing", "[whole_file]") {
-    const ScratchFolder folder;
-    check_writable(folder / "x");
-    CHECK(folder.entries() == 0);
 }
 
 }  // namespace

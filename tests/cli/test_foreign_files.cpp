@@ -109,6 +109,21 @@ TEST_CASE("modules: refused if other users may write or replace them", "[cli][mo
     CHECK_THAT(prefix.run_as_rank().err, Contains("there is no file '"));
 }
 
+TEST_CASE("modules: group write permission is accepted only for the owner's own group", "[cli][module]") {
+    if (::geteuid() != 0) return;
+    const ScratchFolder folder;
+    const Installation flat(folder / "flat", ".", ".");
+    ::chmod(flat.top.c_str(), 0775);
+    CHECK(flat.run().code == 0);  // root's group has no other member
+    constexpr gid_t kUnnamedGroup = 54'321;
+    REQUIRE(::chown(flat.top.c_str(), 0, kUnnamedGroup) == 0);
+    flat.check_refused("(mode 0775)");
+    REQUIRE(::chown(flat.top.c_str(), 0, kNobody) == 0);
+    flat.check_refused("(mode 0775)");
+    REQUIRE(::chown(flat.top.c_str(), 0, 1) == 0);  // group 1 is that of the user daemon
+    flat.check_refused("(mode 0775)");
+}
+
 TEST_CASE("modules: raya loads modules of the program's owner and of root, and refuses modules of other users",
           "[cli][module]") {
     if (::geteuid() != 0) return;

@@ -42,10 +42,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         {"image", "4 x 4"}, {"--cost", "yes"}, {"--strict", "no"}, {"another scene", "a"}};
     set_verbosity(kErrorsOnly);
     const CheckpointOptions options{.file = folder.write("render.rst", text_of(data, size)), .resume = true};
-    const CheckpointFile file(options);
+    const auto checkpointing = checkpointing_of(options);
     try {
         bool found = false;
-        file.checkpointing()->resume([&](std::string_view bytes) {
+        checkpointing->resume([&](std::string_view bytes) {
             found = true;
             const Vectors vectors = read(bytes, settings);
             const std::string again = written(vectors, settings);

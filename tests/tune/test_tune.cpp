@@ -1,4 +1,5 @@
-// Tests of the decision whether a candidate is faster.
+// The tuner's search space, and the decision whether a candidate is faster.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "host/tune/tune.hpp"
@@ -6,37 +7,80 @@
 namespace raya {
 namespace {
 
-Trial make_trial(const std::string& error = {}) {
+TEST_CASE("space_of: starts at the defaults, and has only values that the device supports", "[tune]") {
+    for (const auto& [type, group_limit] :
+         {std::pair{"cpu", 4096}, {"cpu", 1}, {"gpu", 1024}, {"gpu", 8}, {"other", 16}})
+        for (const std::uint32_t accel : {RAYA_ACCEL_NONE, RAYA_ACCEL_GRID, RAYA_ACCEL_BVH}) {
+            DeviceInfo device;
+            device.type = type;
+            device.max_group_size = static_cast<std::size_t>(group_limit);
+            device.native_float_width = 8;
+            const Space space = space_of(device, {.accel = accel});
+            CAPTURE(type, group_limit, accel);
+            const std::vector<TunedValues> candidates = space.candidates();
+            CHECK(candidates.front() == default_values(device, {.accel = accel}));
+            std::size_t combinations = 1;
+            for (const TuningParameter& parameter : space.parameters) combinations *= parameter.values.size();
+            CHECK(candidates.size() == combinations);
+            const auto changes = [&](const TunedValues& values) {  // candidates near the defaults come first
+                return std::ranges::count_if(space.parameters, [&](const TuningParameter& p) {
+                    return values.*p.value != space.defaults.*p.value;
+                });
+            };
+            CHECK(std::ranges::is_sorted(candidates, {}, changes));
+            for (const TunedValues& values : candidates) {
+                CHECK(std::ranges::count(candidates, values) == 1);
+                const KernelChoice kernels = with_values({}, values);
+                CHECK_NOTHROW(check_kernel_options(
+                    {.lanes = kernels.lanes, .group_size = kernels.group_size, .sphere_batch = kernels.sphere_batch},
+                    device));
+            }
+        }
+}
+
+TEST_CASE(
+    "space_of: groups on CPUs have at most 4 work-items, 16 if the driver vectorises over work-items, 1 on the torus",
+    "[tune]") {
+    const auto groups_of = [](bool llvmpipe, const TuningKey& workload) {
+        DeviceInfo device;
+        device.type = "cpu";
+        device.max_group_size = 256;
+        device.ends_loops_early = llvmpipe;
+        for (const TuningParameter& parameter : space_of(device, workload).parameters)
+            if (parameter.value == &TunedValues::group) return parameter.values;
+        return std::vector<std::uint32_t>{};
+    };
+    CHECK(groups_of(false, {}) == std::vector<std::uint32_t>{1, 2, 4});
+    CHECK(groups_of(true, {}) == std::vector<std::uint32_t>{1, 2, 4, 8, 16});
+    for (const bool llvmpipe : {false, true})
+        CHECK(groups_of(llvmpipe, {.torus = true}) == std::vector<std::uint32_t>{1});
+}
+
+Trial trial_with(std::vector<double> first, std::vector<double> last, const std::string& error = {}) {
     Trial trial;
     trial.error = error;
-    if (error.empty()) trial.samples = {{0.2, 0.1, 0.3}, {0.08, 0.1, 0.24}};
+    trial.samples = {std::move(first), std::move(last)};
     return trial;
 }
 
 TEST_CASE("wins_significantly: requires a gain in nearly all pairs of samples, and a gain above the noise", "[tune]") {
-    Trial trial = make_trial();
-    const std::vector<double> defaults(9, 0.1), better(9, 0.09);
-    trial.samples = {defaults, better};
-    CHECK(wins_significantly(trial));
-    trial.samples[1][4] = 0.2;  // a sample that other programs slowed down
-    CHECK(wins_significantly(trial));
-    trial.samples[1][7] = 0.2;
-    CHECK_FALSE(wins_significantly(trial));
-    trial.samples = {defaults, std::vector<double>(9, 0.099)};  // a gain of 1 % is within the noise
-    CHECK_FALSE(wins_significantly(trial));
-    CHECK_FALSE(wins_significantly(make_trial("correctness: image is x")));
+    const std::vector<double> defaults(9, 0.1), better(9, 0.09), noise(9, 0.099);
+    std::vector<double> one_slow = better;
+    one_slow[4] = 0.2;  // a sample that other programs slowed down
+    std::vector<double> two_slow = one_slow;
+    two_slow[7] = 0.2;
+    CHECK(wins_significantly(trial_with(defaults, better)));
+    CHECK(wins_significantly(trial_with(defaults, one_slow)));
+    CHECK_FALSE(wins_significantly(trial_with(defaults, two_slow)));
+    CHECK_FALSE(wins_significantly(trial_with(defaults, noise)));
+    CHECK_FALSE(wins_significantly(trial_with(defaults, better, "correctness: image is x")));
 }
 
 TEST_CASE("ratio_of: is the larger of the ratio of minimum times and the median ratio of sample pairs", "[tune]") {
-    const Trial faster = make_trial();  // minima: 0.08 / 0.1; pairs: 0.4, 1.0, 0.8
-    CHECK(ratio_of(faster) == Approx(0.8));
-    Trial one_fast_sample = faster;
-    one_fast_sample.samples = {{0.2, 0.2, 0.2}, {0.1, 0.2, 0.21}};  // minima: 0.5; median of pairs: 1
-    CHECK(ratio_of(one_fast_sample) == Approx(1.0));
-    Trial disturbed = faster;
-    disturbed.samples = {{0.1, 0.4, 0.4}, {0.2, 0.2, 0.2}};  // minima: 2; median of pairs: 0.5
-    CHECK(ratio_of(disturbed) == Approx(2.0));
-    CHECK(ratio_of(make_trial("timeout: not done in 20 s")) == 1);
+    CHECK(ratio_of(trial_with({0.2, 0.1, 0.3}, {0.08, 0.1, 0.24})) == Approx(0.8));
+    CHECK(ratio_of(trial_with({0.2, 0.2, 0.2}, {0.1, 0.2, 0.21})) == Approx(1.0));
+    CHECK(ratio_of(trial_with({0.1, 0.4, 0.4}, {0.2, 0.2, 0.2})) == Approx(2.0));
+    CHECK(ratio_of({}) == 1);
 }
 
 }  // namespace
