@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <cctype>
+#include <regex>
 
 #include "host/base/encoding.hpp"
 #include "host/base/whole_file.hpp"
@@ -23,10 +23,7 @@ std::string bytes_of(const cl::CommandQueue& queue, cl_mem buffer, std::size_t b
 
 // Returns "arg2_node_memories" for argument 2 and buffer "node memories".
 std::string file_name(std::size_t index, const std::string& buffer) {
-    std::string name = fmt::format("arg{}_{}", index, buffer);
-    for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-    return name;
+    return std::regex_replace(fmt::format("arg{}_{}", index, buffer), std::regex("[^A-Za-z0-9]"), "_");
 }
 
 }  // namespace

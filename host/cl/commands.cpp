@@ -73,7 +73,6 @@ Session::~Session() {
 Program Session::build(const std::string& name, const std::string& source,
                        const std::vector<std::string>& options) const {
     std::vector<std::string> all_options = options;
-    if (recorded_launches_ > 0) all_options.emplace_back("-cl-kernel-arg-info");  // for argument_name()
     if (const std::string user_options = user_build_options(); !user_options.empty())
         all_options.push_back(user_options);
     SharedContext& shared = shared_context(device_);
@@ -161,30 +160,20 @@ void Session::read_bytes(const std::string& label, const cl::Buffer& source, con
     if (done != nullptr) *done = pending_.back().event;
 }
 
-void Session::wait_for(const std::string& label, cl::Event& read) {
-    if (read() == nullptr) return;
-    guarded(fmt::format("'{}': waiting for a read", label), [&] { std::exchange(read, {}).wait(); });
-}
-
-void Session::copy_bytes(const std::string& label, const CopyEnd& source, const CopyEnd& target, std::size_t bytes) {
-    if (bytes == 0) return;
-    submit(
-        fmt::format("'{}': copying {} bytes of buffer '{}' into buffer '{}'", label, bytes, source.name, target.name),
-        {.label = label, .kind = "copy", .bytes = bytes, .target_name = source.name + " -> " + target.name},
-        [&](cl::Event* event) {
-            queue_.enqueueCopyBuffer(source.memory, target.memory, source.offset, target.offset, bytes, nullptr, event);
-        });
-}
-
 void Session::copy_rows(const std::string& label, const CopyEnd& source, std::size_t source_pitch,
                         const CopyEnd& target, std::size_t target_pitch, std::size_t bytes, std::size_t rows) {
     if (bytes == 0 || rows == 0) return;
-    submit(fmt::format("'{}': copying {} rows of {} bytes of buffer '{}' into buffer '{}'", label, rows, bytes,
-                       source.name, target.name),
+    submit(fmt::format("'{}': copying {} x {} bytes of buffer '{}' into buffer '{}'", label, rows, bytes, source.name,
+                       target.name),
            {.label = label, .kind = "copy", .bytes = bytes * rows, .target_name = source.name + " -> " + target.name},
            [&](cl::Event* event) {
-               queue_.enqueueCopyBufferRect(source.memory, target.memory, {source.offset, 0, 0}, {target.offset, 0, 0},
-                                            {bytes, rows, 1}, source_pitch, 0, target_pitch, 0, nullptr, event);
+               if (rows == 1)
+                   queue_.enqueueCopyBuffer(source.memory, target.memory, source.offset, target.offset, bytes, nullptr,
+                                            event);
+               else
+                   queue_.enqueueCopyBufferRect(source.memory, target.memory, {source.offset, 0, 0},
+                                                {target.offset, 0, 0}, {bytes, rows, 1}, source_pitch, 0, target_pitch,
+                                                0, nullptr, event);
            });
 }
 

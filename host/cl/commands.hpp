@@ -76,14 +76,11 @@ class Session {
                 std::type_identity_t<Params>... args) {
         kernel.set_arguments(args...);
         const std::size_t local_bytes = (local_bytes_of(args) + ... + 0);
-        const bool records_arguments = recorded_launches_ > 0;
-        recorded_launches_ -= records_arguments;
         launch_kernel({.label = label,
                        .kind = "kernel",
                        .target_name = kernel.name(),
                        .groups = groups,
-                       .group_size = group_size,
-                       .arguments = records_arguments ? kernel.argument_texts(args...) : std::vector<ArgumentText>{}},
+                       .group_size = group_size},
                       kernel.handle(), local_bytes);
     }
 
@@ -120,7 +117,9 @@ class Session {
     /// Waits for all reads into `readback`. Throws DeviceError, with the label, if a read failed.
     template <class T>
     void wait(const std::string& label, Readback<T>& readback) {
-        wait_for(label, readback.last_read());
+        if (readback.last_read()() == nullptr) return;
+        guarded(fmt::format("'{}': waiting for a read", label),
+                [&] { std::exchange(readback.last_read(), {}).wait(); });
     }
 
     /// Device to device: copies `count` elements. Within one buffer the two ranges must not overlap. Does not wait.
@@ -129,8 +128,8 @@ class Session {
               std::size_t target_offset, std::size_t count) {
         check_range(label, source.name(), source.size(), source_offset, count);
         check_range(label, target.name(), target.size(), target_offset, count);
-        copy_bytes(label, {source.memory(), source.name(), source_offset * sizeof(T)},
-                   {target.memory(), target.name(), target_offset * sizeof(T)}, count * sizeof(T));
+        copy_rows(label, {source.memory(), source.name(), source_offset * sizeof(T)}, 0,
+                  {target.memory(), target.name(), target_offset * sizeof(T)}, 0, count * sizeof(T), 1);
     }
 
     /// Equidistant blocks of a buffer: block i starts at element `first` + i * `pitch`. The range to copy starts at
@@ -163,13 +162,8 @@ class Session {
                });
     }
 
-    /// For traces: from now on, span() and build() add entries to `spans`, which must outlive the session. The profile
-    /// will contain the arguments of the next `launches` kernel launches, and the arguments' names if the program is
-    /// built after this call.
-    void observe(SpanLog& spans, std::size_t launches) {
-        spans_ = &spans;
-        recorded_launches_ = launches;
-    }
+    /// For traces: from now on, span() and build() add entries to `spans`, which must outlive the session.
+    void observe(SpanLog& spans) { spans_ = &spans; }
 
     /// From now on, `observer`, which must outlive the session or ignore(), observes builds and launches.
     void observe(SessionObserver& observer) { observers_.push_back(&observer); }
@@ -224,8 +218,6 @@ class Session {
     /// Waits, unless `done` is given: it becomes the read's event.
     void read_bytes(const std::string& label, const cl::Buffer& source, const std::string& name, std::size_t offset,
                     std::size_t bytes, void* target, cl::Event* done);
-    static void wait_for(const std::string& label, cl::Event& read);
-    void copy_bytes(const std::string& label, const CopyEnd& source, const CopyEnd& target, std::size_t bytes);
     /// Copies `rows` rows of `bytes` bytes. Pitches are in bytes too.
     void copy_rows(const std::string& label, const CopyEnd& source, std::size_t source_pitch, const CopyEnd& target,
                    std::size_t target_pitch, std::size_t bytes, std::size_t rows);
@@ -255,7 +247,6 @@ class Session {
     std::unique_ptr<SessionObserver> build_log_;  // with RAYA_KERNEL_LOG
     bool announces_compiling_ = false;
     SpanLog* spans_ = nullptr;
-    std::size_t recorded_launches_ = 0;  // number of further launches whose arguments are recorded
 };
 
 template <class Enqueue>

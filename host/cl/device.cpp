@@ -35,14 +35,11 @@ std::string pci_address_of(const cl::Device& device) {
 
 std::string full_name(const DeviceInfo& device) { return device.platform + " " + device.name; }
 
-bool is_usable(const DeviceInfo& device) { return unusable_reason(device).empty(); }
-
 std::string device_list(const std::vector<DeviceInfo>& devices) {
     std::string list;
-    for (std::size_t i = 0; i < devices.size(); ++i) {
+    for (std::size_t i = 0; i < devices.size(); ++i)
         list += fmt::format("\n  {}: {} ({}{})", i, full_name(devices[i]), devices[i].type,
-                            is_usable(devices[i]) ? "" : ", not usable");
-    }
+                            unusable_reason(devices[i]).empty() ? "" : ", not usable");
     return list;
 }
 
@@ -50,7 +47,7 @@ std::string device_list(const std::vector<DeviceInfo>& devices) {
 std::vector<std::size_t> usable_devices(const std::string& type, const std::vector<DeviceInfo>& devices) {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < devices.size(); ++i)
-        if (devices[i].type == type && is_usable(devices[i])) found.push_back(i);
+        if (devices[i].type == type && unusable_reason(devices[i]).empty()) found.push_back(i);
     return found;
 }
 
@@ -64,12 +61,6 @@ std::size_t default_index(const std::vector<DeviceInfo>& devices, std::size_t or
                       device_list(devices));
 }
 
-/// Returns the entry of a comma-separated list whose index is `ordinal` modulo the number of entries.
-std::string list_entry(const std::string& list, std::size_t ordinal) {
-    const std::vector<std::string> entries = split(list, ',');
-    return entries[ordinal % entries.size()];
-}
-
 /// Interprets `wanted` as a device number, else as a type, else as part of a platform, name, version or driver. Returns
 /// the index of the first device that matches (for a type: of the first usable device), or devices.size() if no device
 /// matches.
@@ -79,10 +70,9 @@ std::size_t named_index(const std::string& wanted, const std::vector<DeviceInfo>
     const std::string part = lower_case(wanted);
     const std::vector<std::size_t> usable = usable_devices(part, devices);
     if (!usable.empty()) return usable.front();
-    const auto found = std::find_if(devices.begin(), devices.end(), [&part](const DeviceInfo& device) {
-        const std::string searched_text =
-            fmt::format("{} {} {} {}", device.platform, device.name, device.version, device.driver);
-        return lower_case(searched_text).find(part) != std::string::npos;
+    const auto found = std::ranges::find_if(devices, [&part](const DeviceInfo& d) {
+        return lower_case(fmt::format("{} {} {} {}", d.platform, d.name, d.version, d.driver)).find(part) !=
+               std::string::npos;
     });
     return static_cast<std::size_t>(found - devices.begin());
 }
@@ -168,19 +158,17 @@ std::size_t device_index(const std::string& wanted, const std::vector<DeviceInfo
                         "of clinfo, or unset the environment variable OCL_ICD_VENDORS if it hides the driver",
                         limit.empty() ? "" : fmt::format("raise {}, which may be too low for a driver, ", limit)));
     }
-    const std::string entry = list_entry(wanted, ordinal);
+    const std::vector<std::string> entries = split(wanted, ',');
+    const std::string& entry = entries[ordinal % entries.size()];
     if (entry.empty()) return default_index(devices, ordinal);
     const std::size_t found = named_index(entry, devices);
-    if (found == devices.size()) {
+    if (found == devices.size())
         throw DeviceError(fmt::format(
             "no OpenCL device matches '{}'; remedy: give a number, a type or a part of a name or version from:{}",
             entry, device_list(devices)));
-    }
-    if (!is_usable(devices[found])) {
+    if (const std::string reason = unusable_reason(devices[found]); !reason.empty())
         throw DeviceError(fmt::format("OpenCL device {} is {}; remedy: choose another device from:{}",
-                                      full_name(devices[found]), unusable_reason(devices[found]),
-                                      device_list(devices)));
-    }
+                                      full_name(devices[found]), reason, device_list(devices)));
     return found;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <map>
 #include <sstream>
 #include <string_view>
 
@@ -30,16 +31,9 @@ constexpr std::string_view kNamesFrom30 =
 }  // namespace
 
 std::string error_name(cl_int code) {
-    switch (code) {
-        case 0:
-            return "CL_SUCCESS";
-        case -1001:
-            return "CL_PLATFORM_NOT_FOUND_KHR";
-        case -9999:
-            return "NVIDIA error -9999 (illegal read or write by a kernel)";
-        default:
-            break;
-    }
+    if (code == 0) return "CL_SUCCESS";
+    if (code == -1001) return "CL_PLATFORM_NOT_FOUND_KHR";
+    if (code == -9999) return "NVIDIA error -9999 (illegal read or write by a kernel)";
     const bool is_first = code > -30;
     std::istringstream names{std::string(is_first ? kNamesFrom1 : kNamesFrom30)};
     std::string name;
@@ -49,44 +43,37 @@ std::string error_name(cl_int code) {
 }
 
 std::string error_remedy(cl_int code) {
-    switch (code) {
-        case -1:
-        case -1001:
-            return "install an OpenCL driver (Debian: pocl-opencl-icd), unset OCL_ICD_VENDORS, see clinfo";
-        case -2:
-            return "another program may hold the device: see clinfo, or choose another device";
-        case -3:
-            return "the driver cannot compile kernels: choose another device";
-        case -4:
-        case -5:
-            return "the device has too little memory or too few registers: use fewer pixels, smaller work-groups, or "
-                   "another device";
-        case -6:
-            return "the host has too little memory: raise its limit (ulimit -v), or render fewer pixels";
-        case -8:
-            return "copy between two buffers, or between parts of one buffer that do not overlap";
-        case -11:
-            return "read the build log";
-        case -14:
-            return "an earlier command failed: run under oclgrind to see which command";
-        case -43:
-            return "the driver does not know one of the build options";
-        case -46:
-            return "the program has no kernel of this name: compare the host's name with the .cl file";
-        case -50:
-        case -51:
-        case -52:
-            return "compare the host's argument list with the kernel's parameters: order, types, sizes";
-        case -54:
-        case -55:
-            return "use a work-group size that the device and the kernel allow (a kernel may require one)";
-        case -61:
-            return "use a smaller buffer: fewer pixels or a smaller scene";
-        case -9999:
-            return "a kernel accessed memory outside of its buffers: run under oclgrind";
-        default:
-            return "";
-    }
+    constexpr const char* kNoDriver =
+        "install an OpenCL driver (Debian: pocl-opencl-icd), unset OCL_ICD_VENDORS, see clinfo";
+    constexpr const char* kDeviceMemory =
+        "the device has too little memory or too few registers: use fewer pixels, smaller work-groups, or another "
+        "device";
+    constexpr const char* kArguments =
+        "compare the host's argument list with the kernel's parameters: order, types, sizes";
+    constexpr const char* kGroupSize =
+        "use a work-group size that the device and the kernel allow (a kernel may require one)";
+    static const std::map<cl_int, const char*> remedies = {
+        {-1, kNoDriver},
+        {-1001, kNoDriver},
+        {-2, "another program may hold the device: see clinfo, or choose another device"},
+        {-3, "the driver cannot compile kernels: choose another device"},
+        {-4, kDeviceMemory},
+        {-5, kDeviceMemory},
+        {-6, "the host has too little memory: raise its limit (ulimit -v), or render fewer pixels"},
+        {-8, "copy between two buffers, or between parts of one buffer that do not overlap"},
+        {-11, "read the build log"},
+        {-14, "an earlier command failed: run under oclgrind to see which command"},
+        {-43, "the driver does not know one of the build options"},
+        {-46, "the program has no kernel of this name: compare the host's name with the .cl file"},
+        {-50, kArguments},
+        {-51, kArguments},
+        {-52, kArguments},
+        {-54, kGroupSize},
+        {-55, kGroupSize},
+        {-61, "use a smaller buffer: fewer pixels or a smaller scene"},
+        {-9999, "a kernel accessed memory outside of its buffers: run under oclgrind"}};
+    const auto remedy = remedies.find(code);
+    return remedy == remedies.end() ? "" : remedy->second;
 }
 
 DeviceError device_error(const std::string& call, cl_int code, const std::string& operation) {

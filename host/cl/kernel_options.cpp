@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -18,7 +19,7 @@ constexpr std::uint32_t kMaxBounces = 31;  // the kernels store the pending rays
 }  // namespace
 
 void check_kernel_options(const KernelOptions& options, const DeviceInfo& device) {
-    if (std::find(kLanes.begin(), kLanes.end(), options.lanes) == kLanes.end())
+    if (std::ranges::find(kLanes, options.lanes) == kLanes.end())
         throw UserError(fmt::format("--lanes {}: must be 1, 4, 8 or 16", options.lanes));
     const std::uint32_t max_size = max_group_size_of(device);
     if (options.group_size < 1 || options.group_size > max_size)

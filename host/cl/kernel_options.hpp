@@ -1,11 +1,9 @@
 // Build options of the kernels for a device. build_options() makes all -D options.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "host/cl/commands.hpp"
@@ -57,9 +55,9 @@ std::uint32_t default_lanes(const DeviceInfo& device);
 
 /// Returns the default L. On a CPU it is 1, because a work-item's lanes fill the vectors. On llvmpipe it is 8,
 /// because llvmpipe vectorises over work-items with 256-bit vectors. For a torus it is 1 on every CPU, because a node
-/// of one work-item keeps packets in order (docs/architecture.md). On other devices it is 128, or, if `pes` is not 0, the
-/// power of 2 from 32 to 256 with which that many PEs have about 512 work-items on each compute unit: the fastest size
-/// for a ring without acceleration structure on an H100 (docs/porting.md).
+/// of one work-item keeps packets in order (docs/architecture.md). On other devices it is 128, or, if `pes` is not 0,
+/// the power of 2 from 32 to 256 with which that many PEs have about 512 work-items on each compute unit: the fastest
+/// size for a ring without acceleration structure on an H100 (docs/porting.md).
 std::uint32_t default_group_size(const DeviceInfo& device, bool torus = false, std::uint32_t pes = 0);
 
 /// Returns true if the error bounds of kernels/geometry/sphere_filter.clh and outline_filter.clh are valid: `format` is
@@ -96,13 +94,6 @@ struct TunedValues {
     std::uint32_t batch = 0;        // KernelChoice::sphere_batch
     bool operator==(const TunedValues&) const = default;
 };
-
-/// The names of the values in output and files.
-inline constexpr std::array<std::pair<const char*, std::uint32_t TunedValues::*>, 4> kTunedNames = {
-    {{"lanes", &TunedValues::lanes},
-     {"group", &TunedValues::group},
-     {"local_words", &TunedValues::local_words},
-     {"batch", &TunedValues::batch}}};
 
 /// Returns the default values for a device that was not tuned. `pes`: number of PEs, 0 if unknown.
 TunedValues default_values(const DeviceInfo& device, const TuningKey& key, std::uint32_t pes = 0);

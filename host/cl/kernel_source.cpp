@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <optional>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -168,15 +169,8 @@ std::string compiled_to_spirv(const std::string& source, const std::string& opti
 }  // namespace
 
 bool remove_il_option(std::string& options) {
-    std::istringstream words(options);
-    std::string others;
-    bool found = false;
-    for (std::string word; words >> word;) {
-        found = found || word == kIlOption;
-        if (word != kIlOption) others += (others.empty() ? "" : " ") + word;
-    }
-    if (found) options = others;
-    return found;
+    const std::string others = std::regex_replace(options, std::regex(" ?\\B--il\\b"), "");
+    return std::exchange(options, others) != others;
 }
 
 void use_il() {

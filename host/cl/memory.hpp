@@ -37,7 +37,7 @@ class Buffer {
 template <class T>
 struct LocalMemory {
     std::size_t count = 0;
-    std::size_t bytes() const { return count * sizeof(T); }
+    std::size_t local_bytes() const { return count * sizeof(T); }
 };
 
 /// Host memory for asynchronous reads of up to `size()` elements of T by Session::read(). The destructor waits for the

@@ -10,11 +10,6 @@
 
 namespace raya {
 
-/// An argument of a kernel, as text.
-struct ArgumentText {
-    std::string name, value;
-};
-
 /// A device command. Times are nanoseconds of the device's clock (CL_PROFILING_COMMAND_*), all 0 without profiling.
 struct CommandRecord {
     std::string label;
@@ -23,7 +18,6 @@ struct CommandRecord {
     std::uint64_t bytes = 0;                   // transferred, copied or filled; 0 for a kernel
     std::string target_name{};                 // name of the kernel, of the buffer, or of both buffers of a copy
     std::uint64_t groups = 0, group_size = 0;  // of a kernel launch; group_size in work-items
-    std::vector<ArgumentText> arguments{};     // of a kernel launch; only if Session::observe() requested them
 };
 
 /// Summary of all commands of one label and kind. total_ns, min_ns, mean_ns and max_ns are nanoseconds from start to

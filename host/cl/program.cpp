@@ -38,15 +38,6 @@ std::string failure_text(const cl::Error& error, const std::string& operation, c
 
 }  // namespace
 
-std::string argument_name(const cl::Kernel& kernel, cl_uint index) {
-    try {
-        const std::string name = kernel.getArgInfo<CL_KERNEL_ARG_NAME>(index);
-        if (!name.empty()) return name;
-    } catch (const cl::Error&) {  // without -cl-kernel-arg-info, drivers need not know the names
-    }
-    return std::to_string(index);
-}
-
 std::string user_build_options() { return environment_value("RAYA_BUILD_OPTIONS"); }
 
 void KernelBuilds::write_log(double seconds, const char* step, const std::string& name,

@@ -31,39 +31,8 @@ struct FixedText {
 /// passing the argument of another parameter does not compile.
 template <FixedText Name>
 struct Uint {
-    static constexpr const char* kName = Name.text;
     cl_uint value;
 };
-
-/// Returns the name of parameter `index` in the kernel's source, or `index` as text if the driver reports no names.
-std::string argument_name(const cl::Kernel& kernel, cl_uint index);
-
-/// Returns a kernel argument as text: name and size of a buffer, bytes of local memory, a number, or the size of a
-/// struct.
-template <class T>
-std::string argument_text(const Buffer<T>& buffer) {
-    return fmt::format("{}, {} x {} bytes", buffer.name(), buffer.size(), sizeof(T));
-}
-
-template <class T>
-std::string argument_text(const LocalMemory<T>& local) {
-    return fmt::format("local, {} bytes", local.bytes());
-}
-
-template <FixedText Name>
-std::string argument_text(const Uint<Name>& number) {
-    return fmt::format("{}", number.value);
-}
-
-template <class T>
-std::string argument_text(const T& value) {
-    if constexpr (std::is_arithmetic_v<T>)
-        return fmt::format("{}", value);
-    else if constexpr (std::is_enum_v<T>)
-        return fmt::format("{}", static_cast<std::underlying_type_t<T>>(value));
-    else
-        return fmt::format("struct of {} bytes", sizeof(T));
-}
 
 /// A kernel. Args, in the kernel's order: `const Buffer<T>&` for an input, `Buffer<T>&` for an output, LocalMemory<T>
 /// for __local memory, Uint for a `uint`, and plain values such as cl_float or an enum for the rest.
@@ -76,12 +45,6 @@ class Kernel {
 
     const std::string& name() const { return name_; }
     const cl::Kernel& handle() const { return kernel_; }
-
-    /// Returns the arguments of a launch as text: argument_name() and value of each.
-    std::vector<ArgumentText> argument_texts(const Args&... args) const {
-        cl_uint index = 0;
-        return {ArgumentText{argument_name(kernel_, index++), argument_text(args)}...};
-    }
 
     /// Sets all arguments for the following launches. Throws DeviceError, with the kernel's name and the argument's
     /// index from 0, if the driver rejects an argument.
@@ -98,7 +61,7 @@ class Kernel {
 
     template <class T>
     void set_argument(cl_uint index, const LocalMemory<T>& local) {
-        set_bytes(index, local.bytes(), nullptr);
+        set_bytes(index, local.local_bytes(), nullptr);
     }
 
     template <class T>
@@ -120,13 +83,9 @@ class Kernel {
 
 /// Returns the number of bytes of local memory that a kernel argument requires: 0 unless it is a LocalMemory.
 template <class T>
-std::size_t local_bytes_of(const T&) {
+std::size_t local_bytes_of(const T& argument) {
+    if constexpr (requires { argument.local_bytes(); }) return argument.local_bytes();
     return 0;
-}
-
-template <class T>
-std::size_t local_bytes_of(const LocalMemory<T>& local) {
-    return local.bytes();
 }
 
 /// Returns the value of the environment variable RAYA_BUILD_OPTIONS, which is appended to the options of every program.

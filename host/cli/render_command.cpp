@@ -78,7 +78,7 @@ void check_trace(const TraceOptions& trace) {
 
 void RenderRecorder::observe(Session& session, Ranks& ranks) {
     if (!traces() && !profile_) return;
-    session.observe(spans_, traces() ? trace_.events : 0);
+    session.observe(spans_);
     if (traces() && session.profile().timed()) device_clock_offset_ = measure_clock_offset(session);
     if (traces() && ranks.has_several()) align_clocks(ranks);
 }

@@ -178,8 +178,6 @@ Json arguments_of(const CommandRecord& c) {
     if (c.kind == "kernel") {
         json["groups"] = c.groups;
         json["group_size"] = c.group_size;
-        json["arguments"] = Json::object();
-        for (const ArgumentText& a : c.arguments) json["arguments"][a.name] = a.value;
     } else {
         json["bytes"] = c.bytes;
     }

@@ -116,7 +116,7 @@ void add_host_spans(TraceFile& trace, const std::vector<HostSpan>& spans, std::u
                     const TraceRank& rank = {});
 
 /// Adds a slice from start to end for each command. Its arguments are the command's four times on the device's clock
-/// and its bytes; a kernel has the launch's groups and arguments instead of bytes. The command queue is in order, so
+/// and its bytes; a kernel has the launch's groups instead of bytes. The command queue is in order, so
 /// one track contains all slices, except commands whose reported times overlap: they are in further tracks. Times that
 /// are out of order or before `begin` are moved to the nearest valid time. The metadata contains the number of moved
 /// times and the offset between the clocks. For a device that does not time its commands, the function adds only a

@@ -9,7 +9,6 @@
 #include <set>
 
 #include "host/base/child_process.hpp"
-#include "host/base/encoding.hpp"
 #include "host/base/log.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
@@ -126,27 +125,27 @@ Space space_of(const DeviceInfo& device, const TuningKey& key) {
     // Only llvmpipe ends loops early. It vectorises over work-items, so one lane suffices, and it needs minutes and
     // gigabytes of memory to compile kernels with several lanes.
     const bool llvmpipe = device.ends_loops_early;
-    space.parameters.push_back({&TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16}});
+    space.parameters.push_back({"lanes", &TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16}});
     // Torus nodes on a CPU keep their default group size, which preserves the order of packets (docs/architecture.md).
     const std::uint32_t max_cpu_group = key.torus ? group : std::min(llvmpipe ? 16u : 4u, max_group);
     space.parameters.push_back(
-        {&TunedValues::group, cpu ? group_sizes(1, max_cpu_group, group) : group_sizes(16, max_group, group)});
-    if (tests_all_objects) space.parameters.push_back({&TunedValues::local_words, {0, 1}});
+        {"group", &TunedValues::group, cpu ? group_sizes(1, max_cpu_group, group) : group_sizes(16, max_group, group)});
+    if (tests_all_objects) space.parameters.push_back({"local words", &TunedValues::local_words, {0, 1}});
     if (tests_all_objects && key.fp32 && !key.torus)
-        space.parameters.push_back({&TunedValues::batch, cpu ? Values{0, 8, 16} : Values{0, 4, 8, 16, 32}});
+        space.parameters.push_back({"batch", &TunedValues::batch, cpu ? Values{0, 8, 16} : Values{0, 4, 8, 16, 32}});
     return space;
 }
 
 std::string change_text(const Space& space, const TunedValues& old_values, const TunedValues& new_values) {
     std::vector<std::string> texts;
-    for (const auto& [name, member] : kTunedNames) {
-        if (std::ranges::find(space.parameters, member, &TuningParameter::value) == space.parameters.end()) continue;
-        const auto text = [&, is_flag = member == &TunedValues::local_words](const TunedValues& values) {
-            const std::uint32_t value = values.*member;
-            return is_flag ? (value ? "yes" : "no") : value ? std::to_string(value) : "default";
+    for (const TuningParameter& parameter : space.parameters) {
+        const auto text = [&](const TunedValues& values) {
+            const std::uint32_t value = values.*parameter.value;
+            if (parameter.value == &TunedValues::local_words) return std::string(value ? "yes" : "no");
+            return value ? std::to_string(value) : "default";
         };
-        texts.push_back(replaced(name, "_", " ") + " " + text(old_values));
-        if (old_values.*member != new_values.*member) texts.back() += " -> " + text(new_values);
+        texts.push_back(fmt::format("{} {}", parameter.name, text(old_values)));
+        if (text(old_values) != text(new_values)) texts.back() += " -> " + text(new_values);
     }
     return fmt::format("{}", fmt::join(texts, ", "));
 }

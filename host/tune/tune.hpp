@@ -29,6 +29,7 @@ std::vector<Workload> default_workloads();
 
 /// A tuning parameter and its possible values.
 struct TuningParameter {
+    const char* name = "";
     std::uint32_t TunedValues::*value = nullptr;  // the member that holds the parameter's value
     std::vector<std::uint32_t> values;
 };

@@ -125,7 +125,7 @@ TEST_CASE("a failed build is not cached, and fails again", "[cl]") {
 TEST_CASE("a program is built once per text and options", "[cl]") {
     Session session(choose_device(""));
     SpanLog spans;
-    session.observe(spans, 0);
+    session.observe(spans);
     const auto build = [&](const char* shift, const std::string& source) {
         return session.build("test", "// built once\n" + source, {shift});
     };
