@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <cstdlib>
+#include <limits>
 #include <new>
 #include <numeric>
 #include <stdexcept>
@@ -95,7 +96,11 @@ struct GzipText::Stream {
 GzipText::GzipText() : stream_(std::make_unique<Stream>()) {}
 GzipText::~GzipText() = default;
 
-void GzipText::append(std::string_view text) { deflate_all(text, false); }
+void GzipText::append(std::string_view text) {
+    constexpr std::size_t kMaxInput = std::numeric_limits<uInt>::max();  // bytes that one call of zlib accepts
+    for (; text.size() > kMaxInput; text.remove_prefix(kMaxInput)) deflate_all(text.substr(0, kMaxInput), false);
+    deflate_all(text, false);
+}
 
 std::string GzipText::finish() {
     deflate_all({}, true);

@@ -407,9 +407,8 @@ void add_measured(RenderReport& report, const RenderCommand& command, RenderRun&
     for (const std::string& text : ranks.gather(json_dump(to_json(rank))))
         report.ranks.push_back({parse_json(text, {"the report of a rank"})});
     if (roofline)
-        report.rank_rooflines =
-            ranks.gather(fmt::format("rank {} on {}, {}\n{}", ranks.rank(), ranks.host(), session.device().name,
-                                     roofline_table(*roofline, ranks.is_first())));
+        report.rank_rooflines = ranks.gather(fmt::format("rank {} on {}, {}\n{}", ranks.rank(), ranks.host(),
+                                                         session.device().name, roofline_table(*roofline)));
 }
 
 }  // namespace

@@ -19,8 +19,6 @@ auto key(const BenchMeasurement& r) {
     return std::tie(r.kernel, r.scene, r.size, r.array, r.format, r.lanes, r.group_size);
 }
 
-bool is_valid_time(double seconds) { return seconds > 0; }  // JSON has no infinite numbers
-
 BenchReport report_of(const Json& json) {
     const Json* const kind = find_member(json, "kind");
     if (kind == nullptr || !kind->is_string() || json_text(*kind) != kBenchReportKind)
@@ -30,7 +28,7 @@ BenchReport report_of(const Json& json) {
     std::set<decltype(key(report.rows.front()))> keys;
     for (const BenchMeasurement& row : report.rows) {
         const std::string name = fmt::format("row with {} and {} lanes", row.format, row.lanes);
-        if (!is_valid_time(row.best_s) || !is_valid_time(row.median_s) || row.rays == 0)
+        if (row.best_s <= 0 || row.median_s <= 0 || row.rays == 0)
             throw UserError(name + ": rays and times must be positive");
         if (!keys.insert(key(row)).second) throw UserError(name + " occurs twice");
     }
@@ -134,21 +132,12 @@ namespace {
 using Rows = std::vector<BenchMeasurement>;
 
 const BenchMeasurement* find_row(const Rows& rows, const BenchMeasurement& wanted) {
-    const auto found = std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return key(row) == key(wanted); });
+    const auto found = std::ranges::find_if(rows, [&](const auto& row) { return key(row) == key(wanted); });
     return found == rows.end() ? nullptr : &*found;
 }
 
 /// Returns the change of a rate in percent.
 double percent_change(double before, double now) { return 100 * (now / before - 1); }
-
-std::vector<std::string> key_cells(const BenchMeasurement& row) {
-    return {row.kernel, row.scene, row.size, row.format, std::to_string(row.lanes), std::to_string(row.group_size)};
-}
-
-std::vector<std::string> joined(std::vector<std::string> first, const std::vector<std::string>& more) {
-    first.insert(first.end(), more.begin(), more.end());
-    return first;
-}
 
 /// Counts a row of both runs in `comparison`, and sets its verdict.
 void count_row(BenchComparison& comparison, ComparedRow& row, double tolerance) {
@@ -168,12 +157,20 @@ void count_row(BenchComparison& comparison, ComparedRow& row, double tolerance) 
     }
 }
 
-/// Returns the table's cells of a rate: this run, the baseline, the change.
-std::vector<std::string> rate_cells(const ComparedRow& row, double (BenchMeasurement::*rate)() const) {
-    const auto cell = [&](const BenchMeasurement* of) { return of ? fmt::format("{:.1f}", (of->*rate)()) : "-"; };
-    const bool has_both = row.now != nullptr && row.before != nullptr;
-    return {cell(row.now), cell(row.before),
-            has_both ? fmt::format("{:+.1f} %", percent_change((row.before->*rate)(), (row.now->*rate)())) : "-"};
+/// Returns the table's cells of a row: its key, then for both rates this run, the baseline and the change.
+std::vector<std::string> cells_of(const ComparedRow& row) {
+    const BenchMeasurement& key = row.now != nullptr ? *row.now : *row.before;
+    std::vector<std::string> cells = {
+        key.kernel, key.scene, key.size, key.format, std::to_string(key.lanes), std::to_string(key.group_size)};
+    for (const auto rate : {&BenchMeasurement::best_rate, &BenchMeasurement::median_rate}) {
+        for (const BenchMeasurement* run : {row.now, row.before})
+            cells.push_back(run != nullptr ? fmt::format("{:.1f}", (run->*rate)()) : "-");
+        const bool has_both = row.now != nullptr && row.before != nullptr;
+        cells.push_back(has_both ? fmt::format("{:+.1f} %", percent_change((row.before->*rate)(), (row.now->*rate)()))
+                                 : "-");
+    }
+    cells.push_back(row.verdict);
+    return cells;
 }
 
 /// Adds a remark and a warning if the two runs have different texts for `property`.
@@ -187,8 +184,8 @@ void add_difference(BenchComparison& comparison, const char* property, const std
 }  // namespace
 
 int rows_in_common(const BenchReport& baseline, const BenchReport& now) {
-    return static_cast<int>(std::count_if(now.rows.begin(), now.rows.end(),
-                                          [&](const auto& row) { return find_row(baseline.rows, row) != nullptr; }));
+    return static_cast<int>(
+        std::ranges::count_if(now.rows, [&](const auto& row) { return find_row(baseline.rows, row) != nullptr; }));
 }
 
 BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& now, double tolerance) {
@@ -208,10 +205,7 @@ BenchComparison compare_bench(const BenchReport& baseline, const BenchReport& no
     }
     for (const BenchMeasurement& row : baseline.rows)
         if (find_row(now.rows, row) == nullptr) comparison.rows.push_back({&row, nullptr, "in the baseline alone"});
-    for (const ComparedRow& row : comparison.rows)
-        table.push_back(joined(joined(key_cells(row.now != nullptr ? *row.now : *row.before),
-                                      rate_cells(row, &BenchMeasurement::best_rate)),
-                               joined(rate_cells(row, &BenchMeasurement::median_rate), {row.verdict})));
+    for (const ComparedRow& row : comparison.rows) table.push_back(cells_of(row));
     comparison.text += text_table(table);
     return comparison;
 }

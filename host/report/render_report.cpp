@@ -23,22 +23,19 @@ double as_double(std::uint64_t count) { return static_cast<double>(count); }
 
 double per_second(double count, double seconds) { return seconds > 0 ? count / seconds : 0; }
 
-// Returns the time of the operations, in seconds, at the peak rates of multiply-adds, divisions and square roots in the
-// number format.
-double seconds_in_format(const KernelWork& w, const DevicePeak& peak) {
-    return as_double(w.operations) / peak.multiply_per_s + as_double(w.divisions) / peak.divide_per_s +
-           as_double(w.roots) / peak.sqrt_per_s;
-}
-
 RooflineRow row_of(const KernelWork& work, const LabelSummary& launches, const DevicePeak& peak) {
     const double seconds = 1e-9 * as_double(launches.total_ns);
     RooflineRow row{.work = work, .seconds = seconds};
     const double operations = as_double(work.all_operations()), bytes = as_double(work.bytes);
     row.intensity = bytes > 0 ? operations / bytes : 0;
     const double compute_s = operations / peak.fp32_per_s, copy_s = bytes / peak.copy_bytes_per_s;
-    row.bound = compute_s >= copy_s ? Bound::kCompute : Bound::kBandwidth;
+    row.bound = compute_s >= copy_s ? "compute" : "bandwidth";
     row.roof_fraction = std::max(compute_s, copy_s) / seconds;
-    if (operations > 0) row.format_fraction = seconds_in_format(work, peak) / seconds;
+    if (operations > 0)
+        row.format_fraction =
+            (as_double(work.operations) / peak.multiply_per_s + as_double(work.divisions) / peak.divide_per_s +
+             as_double(work.roots) / peak.sqrt_per_s) /
+            seconds;
     return row;
 }
 
@@ -46,67 +43,24 @@ bool is_known(const DevicePeak& p) {
     return p.fp32_per_s > 0 && p.multiply_per_s > 0 && p.divide_per_s > 0 && p.sqrt_per_s > 0 && p.copy_bytes_per_s > 0;
 }
 
-const char* bound_name(Bound bound) { return bound == Bound::kCompute ? "compute" : "bandwidth"; }
-
-std::string percent_text(double fraction) { return fmt::format("{:.2f}", 100 * fraction); }
-
-// Returns `text`, or "-" if the value is 0.
-std::string cell(double value, const std::string& text) { return value > 0 ? text : "-"; }
+/// Returns the value as a table's cell; "-" if it is 0.
+std::string cell(const char* format, double value) {
+    return value > 0 ? fmt::format(fmt::runtime(format), value) : "-";
+}
 
 std::vector<std::string> cells_of(const RooflineRow& r) {
     const double operations = as_double(r.work.all_operations()), rays = as_double(r.work.rays),
                  bytes = as_double(r.work.bytes);
     return {r.work.label,
-            cell(rays, fmt::format("{:.2f}", 1e-6 * per_second(rays, r.seconds))),
-            cell(operations, fmt::format("{:.4f}", 1e-9 * operations)),
-            cell(operations, fmt::format("{:.3f}", 1e-9 * per_second(operations, r.seconds))),
-            cell(bytes, fmt::format("{:.3f}", 1e-6 * bytes)),
-            cell(bytes, fmt::format("{:.3f}", 1e-9 * per_second(bytes, r.seconds))),
-            cell(r.intensity, fmt::format("{:.3g}", r.intensity)),
-            bound_name(r.bound),
-            percent_text(r.roof_fraction),
-            r.format_fraction ? percent_text(*r.format_fraction) : "-"};
-}
-
-std::string peak_line(const DevicePeak& p) {
-    return fmt::format(
-        "peak    {:.2f} Gop/s multiply-adds in fp32; in {}: {:.2f} multiply-adds, {:.2f} divisions, {:.2f} square "
-        "roots; "
-        "{:.2f} GB/s copied{}\n",
-        1e-9 * p.fp32_per_s, p.format, 1e-9 * p.multiply_per_s, 1e-9 * p.divide_per_s, 1e-9 * p.sqrt_per_s,
-        1e-9 * p.copy_bytes_per_s,
-        p.scatter > kMaxScatter ? fmt::format("; unreliable, measurements differ by {:.0f} %", 100 * p.scatter) : "");
-}
-
-std::string legend_lines(const DevicePeak& p) {
-    return fmt::format(
-        "        measured in this run by small programs; copies of {} MB, each byte counted as read and as written\n"
-        "        (the table of commands counts it once)\n"
-        "op      an addition, multiplication, comparison, multiply-add, division or square root in the budgets of "
-        "the counted events\n"
-        "MB      the minimum that the kernel has to read and write. The roof is compute above {:.2f} op/byte, "
-        "otherwise bandwidth\n",
-        p.copy_bytes >> 20, p.fp32_per_s / p.copy_bytes_per_s);
-}
-
-std::string format_remark(const DevicePeak& p) {
-    const std::string text =
-        "format  the time of the same operations at the rates of " + p.format + ", in % of the kernel's time";
-    if (p.format == "fp32") return text + "\n";
-    return text +
-           "; each operation takes many instructions;\n"
-           "        it is above 100 % if most operations are cheaper: comparisons, and spheres that the fp32 filter "
-           "rejects\n";
-}
-
-// Returns a line with the kernel's bound and the percentage of the roof that it achieves.
-std::string verdict(const RooflineRow& r, const DevicePeak& p) {
-    const bool compute = r.bound == Bound::kCompute;
-    std::string line =
-        fmt::format("roof    {}: {} bound, {:.2f} % of {}", r.work.label, bound_name(r.bound), 100 * r.roof_fraction,
-                    compute ? "the fp32 multiply-add rate" : "the copy bandwidth");
-    if (r.format_fraction) line += fmt::format(", {:.2f} % of the rates of {}", 100 * *r.format_fraction, p.format);
-    return line + "\n";
+            cell("{:.2f}", 1e-6 * per_second(rays, r.seconds)),
+            cell("{:.4f}", 1e-9 * operations),
+            cell("{:.3f}", 1e-9 * per_second(operations, r.seconds)),
+            cell("{:.3f}", 1e-6 * bytes),
+            cell("{:.3f}", 1e-9 * per_second(bytes, r.seconds)),
+            cell("{:.3g}", r.intensity),
+            r.bound,
+            fmt::format("{:.2f}", 100 * r.roof_fraction),
+            cell("{:.2f}", 100 * r.format_fraction.value_or(0))};
 }
 
 }  // namespace
@@ -122,9 +76,8 @@ KernelWork work_of(const std::string& label, const EventCounts& events) {
 
 Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
                   const std::vector<LabelSummary>& commands) {
+    if (!is_known(peak)) return {.unavailable = "the device does not time its commands"};
     Roofline all{.peak = peak};
-    if (!is_known(peak)) all.unavailable = "the device does not time its commands";
-    if (!is_known(peak)) return all;
     for (const KernelWork& work : works)
         for (const LabelSummary& c : commands)
             if (c.label == work.label && c.kind == "kernel" && c.total_ns > 0)
@@ -132,15 +85,18 @@ Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
     return all;
 }
 
-std::string roofline_table(const Roofline& roofline, bool legend) {
+std::string roofline_table(const Roofline& roofline) {
     if (!roofline.unavailable.empty()) return "no roofline: " + roofline.unavailable + "\n";
     std::vector<std::vector<std::string>> rows = {
         {"kernel", "Mrays/s", "Gop", "Gop/s", "MB", "GB/s", "op/byte", "bound", "% of roof", "% of format"}};
     for (const RooflineRow& row : roofline.rows) rows.push_back(cells_of(row));
-    std::string text = text_table(rows) + peak_line(roofline.peak);
-    if (legend) text += legend_lines(roofline.peak) + format_remark(roofline.peak);
-    for (const RooflineRow& row : roofline.rows) text += verdict(row, roofline.peak);
-    return text;
+    const DevicePeak& p = roofline.peak;
+    return text_table(rows) +
+           fmt::format(
+               "peak    {:.2f} Gop/s multiply-adds in fp32; in {}: {:.2f} multiply-adds, {:.2f} divisions, "
+               "{:.2f} square roots; {:.2f} GB/s copied; docs/profile.md explains the columns\n",
+               1e-9 * p.fp32_per_s, p.format, 1e-9 * p.multiply_per_s, 1e-9 * p.divide_per_s, 1e-9 * p.sqrt_per_s,
+               1e-9 * p.copy_bytes_per_s);
 }
 
 void members_of(Members& m, const DevicePeak& p) {
@@ -166,7 +122,7 @@ void members_of(Members& m, const RooflineRow& r) {
     m("bytes", r.work.bytes, "Minimum number of bytes that the kernel has to read and write.");
     m("bytes_per_s", rate(r.work.bytes), "Bytes per second of device time.");
     m("operations_per_byte", r.intensity, "Arithmetic intensity: `operations` / `bytes`.");
-    m("bound", bound_name(r.bound), "The lower roof: `compute` (fp32 multiply-adds) or `bandwidth` (copies).");
+    m("bound", r.bound, "The lower roof: `compute` (fp32 multiply-adds) or `bandwidth` (copies).");
     m("share_of_roof", r.roof_fraction, "Rate / roof at this arithmetic intensity; 1 at the limit of the device.");
     m("share_of_format", r.format_fraction,
       "Time at the peak rates of the format / time of the kernel; null without operations.");

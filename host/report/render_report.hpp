@@ -38,15 +38,12 @@ struct KernelWork {
 /// Returns the rays and operations of these events. The caller must set `bytes`.
 KernelWork work_of(const std::string& label, const EventCounts& events);
 
-/// The lower of a kernel's two roofs.
-enum class Bound { kCompute, kBandwidth };
-
 /// One kernel's rate compared with the device's peak.
 struct RooflineRow {
     KernelWork work;
     double seconds = 0;                       // total time of all launches, from start to end of each
     double intensity = 0;                     // operations per byte
-    Bound bound = Bound::kCompute;            // the lower roof at this intensity
+    const char* bound = "compute";            // the lower roof at this intensity: "compute" or "bandwidth"
     double roof_fraction = 0;                 // achieved rate divided by the roof; 1: as fast as the device's peak
     std::optional<double> format_fraction{};  // time at the format's peak rates divided by `seconds`; empty: unknown
 };
@@ -64,9 +61,8 @@ struct Roofline {
 Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
                   const std::vector<LabelSummary>& commands);
 
-/// Returns the table, the peak, for each kernel its bound and fraction of the roof, and with `legend` the meaning of
-/// the columns.
-std::string roofline_table(const Roofline& roofline, bool legend = true);
+/// Returns the table and the peak as text.
+std::string roofline_table(const Roofline& roofline);
 
 void members_of(Members& m, const DevicePeak& peak);
 void members_of(Members& m, const RooflineRow& row);

@@ -42,11 +42,6 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows) {
 
 namespace {
 
-std::string ms(double ns) { return fmt::format("{:.3f}", ns * 1e-6); }
-double number(std::uint64_t count) { return static_cast<double>(count); }
-
-double mean(std::uint64_t total, const LabelSummary& c) { return number(total) / static_cast<double>(c.launches); }
-
 std::string build_line(double build_s, const std::vector<ProgramBuild>& builds) {
     std::string text = fmt::format("kernel build {:.3f} s, not among the commands", build_s);
     for (std::size_t i = 0; i < builds.size(); ++i)
@@ -59,6 +54,8 @@ std::string build_line(double build_s, const std::vector<ProgramBuild>& builds) 
 
 std::string profile_table(double build_s, const std::vector<ProgramBuild>& builds,
                           const std::vector<LabelSummary>& commands) {
+    const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
+    const auto ms = [](double ns) { return fmt::format("{:.3f}", ns * 1e-6); };
     double total_ns = 0;  // total time of all commands
     for (const LabelSummary& c : commands) total_ns += number(c.total_ns);
     std::vector<std::vector<std::string>> rows = {{"label", "kind", "launches", "total ms", "share %", "min ms",
@@ -68,13 +65,12 @@ std::string profile_table(double build_s, const std::vector<ProgramBuild>& build
         const double total = number(c.total_ns);
         rows.push_back({c.label, c.kind, std::to_string(c.launches), ms(total),
                         fmt::format("{:.1f}", total_ns > 0 ? 100 * total / total_ns : 0), ms(number(c.min_ns)),
-                        ms(c.mean_ns), ms(number(c.max_ns)), ms(mean(c.submit_ns, c)), ms(mean(c.start_ns, c)),
+                        ms(c.mean_ns), ms(number(c.max_ns)), ms(number(c.submit_ns) / number(c.launches)),
+                        ms(number(c.start_ns) / number(c.launches)),
                         c.bytes > 0 ? fmt::format("{:.3f}", 1e-6 * number(c.bytes)) : "-",
                         c.bytes > 0 && c.total_ns > 0 ? fmt::format("{:.3f}", number(c.bytes) / total) : "-"});
     }
-    return build_line(build_s, builds) + text_table(rows) +
-           "total, share, min, mean and max: times from start to end; queue->submit and submit->start: mean waiting "
-           "times before the start\n";
+    return build_line(build_s, builds) + text_table(rows);
 }
 
 }  // namespace raya

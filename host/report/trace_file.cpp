@@ -5,20 +5,17 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
-#include <string_view>
 
 #include "host/base/encoding.hpp"
 
 namespace raya {
 namespace {
 
-std::string text_of(const Json& json) { return json_dump(json); }
-
 std::string microseconds(std::uint64_t ns) { return fmt::format("{}.{:03}", ns / 1000, ns % 1000); }
 
 std::string name_record(const char* record_name, TraceTrack track, const Json& arguments) {
     return fmt::format(R"({{"ph":"M","name":"{}","pid":{},"tid":{},"args":{}}})", record_name, track.process,
-                       track.thread, text_of(arguments));
+                       track.thread, json_dump(arguments));
 }
 
 }  // namespace
@@ -60,9 +57,9 @@ void TraceFile::slice(TraceTrack track, const std::string& name, std::uint64_t s
         throw std::logic_error(fmt::format("trace: slice '{}' from {} to {} overlaps another slice", name, start, end));
     last = start;
     ends.push_back(end);
-    add(fmt::format(R"({{"ph":"X","name":{},"pid":{},"tid":{},"ts":{},"dur":{},"args":{}}})", text_of(name),
+    add(fmt::format(R"({{"ph":"X","name":{},"pid":{},"tid":{},"ts":{},"dur":{},"args":{}}})", json_dump(name),
                     track.process, track.thread, microseconds(start), microseconds(end - start),
-                    arguments.is_null() ? "{}" : text_of(arguments)));
+                    arguments.is_null() ? "{}" : json_dump(arguments)));
 }
 
 void TraceFile::counter(std::uint32_t process, const std::string& name, std::uint64_t at_ns,
@@ -73,8 +70,8 @@ void TraceFile::counter(std::uint32_t process, const std::string& name, std::uin
         if (!std::isfinite(value)) throw std::logic_error(fmt::format("trace: counter '{}' is {}", name, value));
         arguments[series] = value;
     }
-    add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{}}})", text_of(name), process, microseconds(at_ns),
-                    text_of(arguments)));
+    add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{}}})", json_dump(name), process,
+                    microseconds(at_ns), json_dump(arguments)));
 }
 
 void TraceFile::flow(const std::string& name, TraceTrack start_track, std::uint64_t start_ns, TraceTrack end_track,
@@ -85,8 +82,8 @@ void TraceFile::flow(const std::string& name, TraceTrack start_track, std::uint6
     if (!reserve(2)) return;
     ++flows_;
     const auto add_end = [&](const char* phase, TraceTrack track, std::uint64_t at_ns) {
-        add(fmt::format(R"({{"ph":{},"cat":"flow","name":{},"id":{},"pid":{},"tid":{},"ts":{}}})", phase, text_of(name),
-                        flows_, track.process, track.thread, microseconds(at_ns)));
+        add(fmt::format(R"({{"ph":{},"cat":"flow","name":{},"id":{},"pid":{},"tid":{},"ts":{}}})", phase,
+                        json_dump(name), flows_, track.process, track.thread, microseconds(at_ns)));
     };
     add_end(R"("s")", start_track, start_ns);
     add_end(R"("f","bp":"e")", end_track, end_ns);
@@ -100,24 +97,16 @@ void TraceFile::add(const Part& part) {
     max_events_ = std::max(max_events_, events_);
 }
 
-std::string TraceFile::head() const { return "{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n"; }
-
-std::string TraceFile::tail() const {
+std::string TraceFile::finish(bool compressed) const {
     Json about = metadata_;
     about["events"] = events_;
     about["events_left_out"] = left_out_;
-    return "\n],\"otherData\":" + text_of(about) + "}\n";
-}
-
-std::string TraceFile::finish(bool compressed) const {
-    std::string_view names = names_, text = text_;
-    // No comma follows the last event.
-    (text.empty() ? names : text).remove_suffix(text.empty() && names.empty() ? 0 : 2);
-    const std::string beginning = head(), end = tail();
-    if (!compressed) return fmt::format("{}{}{}{}", beginning, names, text, end);
+    std::string text = "{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n" + names_ + text_;
+    if (text.ends_with(",\n")) text.resize(text.size() - 2);  // no comma follows the last event
+    text += "\n],\"otherData\":" + json_dump(about) + "}\n";
+    if (!compressed) return text;
     GzipText file;
-    for (const std::string_view part : {std::string_view(beginning), names, text, std::string_view(end)})
-        file.append(part);
+    file.append(text);
     return file.finish();
 }
 
@@ -152,26 +141,6 @@ std::string name_of(const std::string& process, const TraceRank& rank) {
     return rank.named ? fmt::format("rank {} {}", rank.number, process) : process;
 }
 
-// Converts times on the device's clock to nanoseconds since the start of the trace.
-class DeviceTimes {
-  public:
-    DeviceTimes(const ClockOffset& offset, std::uint64_t begin)
-        : shift_(offset.offset_ns - static_cast<std::int64_t>(begin)) {}
-
-    // Returns the converted time `device_ns`, or `not_before` if that is later; counts the latter as moved.
-    std::uint64_t trace_ns(std::uint64_t device_ns, std::uint64_t not_before) {
-        const std::int64_t shifted = static_cast<std::int64_t>(device_ns) + shift_;
-        if (shifted >= static_cast<std::int64_t>(not_before)) return static_cast<std::uint64_t>(shifted);
-        ++moved_count_;
-        return not_before;
-    }
-    std::uint64_t moved_count() const { return moved_count_; }
-
-  private:
-    std::int64_t shift_;
-    std::uint64_t moved_count_ = 0;
-};
-
 Json arguments_of(const CommandRecord& c) {
     Json json = {{"kind", c.kind}};
     json[c.kind == "kernel" ? "kernel" : "buffer"] = c.target_name;
@@ -192,24 +161,13 @@ Json arguments_of(const CommandRecord& c) {
 // `busy_until`[track - 1]: end time of the track's last slice.
 std::uint32_t free_track(TraceFile& trace, std::uint32_t process, std::vector<std::uint64_t>& busy_until,
                          std::uint64_t start) {
-    const auto found =
-        std::find_if(busy_until.begin(), busy_until.end(), [&](std::uint64_t end) { return end <= start; });
+    const auto found = std::ranges::find_if(busy_until, [&](std::uint64_t end) { return end <= start; });
     const auto track = static_cast<std::uint32_t>(found - busy_until.begin()) + 1;
     if (found == busy_until.end()) {
         busy_until.push_back(0);
         trace.name_track({process, track}, track == 1 ? "queue" : fmt::format("queue, overlapping {}", track));
     }
     return track;
-}
-
-Json clock_json(const ClockOffset& offset) {
-    return {
-        {"same_as_host", offset.same_clock},
-        {"offset_ns", offset.offset_ns},
-        {"uncertainty_ns", offset.uncertainty_ns},
-        {"note", offset.same_clock ? "device times are on the host's clock (CLOCK_MONOTONIC_RAW)"
-                                   : "host time = device time + offset; offset measured with one command between two "
-                                     "readings of the host's clock; drift is not corrected"}};
 }
 
 }  // namespace
@@ -229,16 +187,26 @@ void add_device_commands(TraceFile& trace, const std::string& device, const Prof
     }
     const std::uint32_t process = process_of(kTraceDevice, rank);
     trace.name_process(process, name_of(fmt::format("device: {} (measured)", device), rank));
-    DeviceTimes times(offset, begin);
+    std::uint64_t moved_count = 0;
+    // Converts a time on the device's clock, or returns `not_before` if that is later.
+    const auto trace_ns = [&](std::uint64_t device_ns, std::uint64_t not_before) {
+        const auto ns = static_cast<std::int64_t>(device_ns - begin) + offset.offset_ns;
+        if (ns >= static_cast<std::int64_t>(not_before)) return static_cast<std::uint64_t>(ns);
+        ++moved_count;
+        return not_before;
+    };
     std::vector<std::uint64_t> busy_until;
     for (const CommandRecord& c : profile.commands()) {
-        const std::uint64_t start = times.trace_ns(c.started, 0), end = times.trace_ns(c.ended, start);
+        const std::uint64_t start = trace_ns(c.started, 0), end = trace_ns(c.ended, start);
         const std::uint32_t track = free_track(trace, process, busy_until, start);
         trace.slice({process, track}, c.label, start, end, arguments_of(c));
         busy_until[track - 1] = end;
     }
-    trace.metadata()["device_clock"] = clock_json(offset);
-    if (times.moved_count() > 0) trace.metadata()["device_times_moved"] = times.moved_count();
+    trace.metadata()["device_clock"] = {{"same_as_host", offset.same_clock},
+                                        {"offset_ns", offset.offset_ns},
+                                        {"uncertainty_ns", offset.uncertainty_ns},
+                                        {"note", "host time (CLOCK_MONOTONIC_RAW) = device time + offset"}};
+    if (moved_count > 0) trace.metadata()["device_times_moved"] = moved_count;
 }
 
 }  // namespace raya

@@ -78,8 +78,6 @@ class TraceFile {
     bool reserve(std::size_t events);
     void check_named(TraceTrack track) const;
     void add(const std::string& event);
-    std::string head() const;
-    std::string tail() const;
 
     std::size_t max_events_, events_ = 0, left_out_ = 0, flows_ = 0;
     // [track]: end times of the open slices, outer slices first.

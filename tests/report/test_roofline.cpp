@@ -36,7 +36,7 @@ TEST_CASE("roofline: a kernel with many operations is compute bound", "[report]"
     const KernelWork work = {
         .label = "trace", .rays = 5, .operations = 970, .divisions = 20, .roots = 10, .bytes = 100};
     const RooflineRow row = row_of(work, 100);
-    CHECK(row.bound == Bound::kCompute);
+    CHECK(row.bound == std::string("compute"));
     CHECK(row.intensity == Approx(10));
     CHECK(row.roof_fraction == Approx(0.1));  // 1000 operations in 100 ns: 10 Gop/s of 100 Gop/s
     REQUIRE(row.format_fraction);
@@ -46,12 +46,12 @@ TEST_CASE("roofline: a kernel with many operations is compute bound", "[report]"
 
 TEST_CASE("roofline: a kernel with many bytes is bandwidth bound", "[report]") {
     const RooflineRow row = row_of({.label = "move", .operations = 0, .bytes = 1000}, 100);
-    CHECK(row.bound == Bound::kBandwidth);
+    CHECK(row.bound == std::string("bandwidth"));
     CHECK(row.roof_fraction == Approx(0.5));  // 10 GB/s of 20 GB/s
     CHECK_FALSE(row.format_fraction);
     // The ridge point is 100 Gop/s / 20 GB/s = 5 operations per byte.
-    CHECK(row_of({.label = "a", .operations = 501, .bytes = 100}, 1).bound == Bound::kCompute);
-    CHECK(row_of({.label = "a", .operations = 499, .bytes = 100}, 1).bound == Bound::kBandwidth);
+    CHECK(row_of({.label = "a", .operations = 501, .bytes = 100}, 1).bound == std::string("compute"));
+    CHECK(row_of({.label = "a", .operations = 499, .bytes = 100}, 1).bound == std::string("bandwidth"));
 }
 
 TEST_CASE("roofline: has rows only for kernels that ran and were timed", "[report]") {
@@ -87,9 +87,7 @@ TEST_CASE("roofline_table: contains the bound of each kernel and its percentage 
         {kernel("trace", 100), kernel("route", 100)});
     const std::string table = roofline_table(all);
     CAPTURE(table);
-    CHECK_THAT(table, Contains("trace: compute bound, 10.00 % of the fp32 multiply-add rate") &&
-                          Contains("route: bandwidth bound, 50.00 % of the copy bandwidth\n") &&
-                          Contains("compute above 5.00 op/byte"));
+    CHECK_THAT(table, Contains("compute    10.00") && Contains("bandwidth  50.00"));
     CHECK(to_json(all.rows[0]).at("rays_per_s") == Approx(5e7));
     CHECK(to_json(all.rows[0]).at("operations_per_s") == Approx(1e10));
     CHECK(to_json(all.rows[1]).at("share_of_format").is_null());

@@ -61,8 +61,7 @@ TEST_CASE("add_device_commands: a slice has times, bytes and launch parameters",
                  .ended = 2251,
                  .target_name = "trace_kernel",
                  .groups = 7,
-                 .group_size = 3,
-                 .arguments = {{"band", "12"}}});
+                 .group_size = 3});
     profile.add(command("move", 3000, 3000));
     TraceFile trace(100);
     add_device_commands(trace, "a device", profile, {}, 250);
