@@ -1,7 +1,12 @@
-// Loops whose iterations run on several threads.
+// Loops whose iterations run on several threads, and a timer.
 #pragma once
+#include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <functional>
+#include <mutex>
+#include <thread>
+#include <utility>
 #include <vector>
 
 namespace raya {
@@ -13,6 +18,17 @@ unsigned core_count();
 /// threads take the indices in ascending order. If a call throws, no further calls start, and the exception is thrown
 /// to the caller; of several exceptions, one.
 void parallel_for(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work);
+
+/// Calls `action` in a thread after `delay_s` seconds, unless the returned object is destroyed before.
+[[nodiscard]] inline std::jthread call_after(double delay_s, std::function<void()> action) {
+    return std::jthread([delay_s, action = std::move(action)](const std::stop_token& cancelled) {
+        std::mutex mutex;
+        std::unique_lock lock(mutex);
+        std::condition_variable_any().wait_for(lock, cancelled, std::chrono::duration<double>(delay_s),
+                                               [] { return false; });
+        if (!cancelled.stop_requested()) action();
+    });
+}
 
 /// The indices begin .. end - 1.
 struct IndexRange {

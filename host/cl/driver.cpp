@@ -21,6 +21,7 @@
 #include "host/base/interruption.hpp"
 #include "host/base/log.hpp"
 #include "host/base/module.hpp"
+#include "host/base/parallel.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/error.hpp"
 
@@ -33,12 +34,13 @@ std::atomic<const char*> current_operation{nullptr};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
 std::atomic<bool> is_searching{false};
-bool has_handlers = false;  // install_crash_handlers() was called
 
 constexpr std::array kCrashSignals = {SIGABRT, SIGSEGV, SIGBUS, SIGILL};  // PoCL handles SIGFPE: kernels divide by 0
 
 std::array<char, 300> crash_prefix{};  // "rank 1 on node7: ", or empty
 unsigned int crash_delay_us = 0;
+
+constexpr double kLongSearch_s = 10;
 
 // Size of a thread's stack in bytes: more than the largest stack frame measured for a work-group, 88 MB (1,024
 // work-items of 16 lanes with a grid and 31 bounces).
@@ -52,13 +54,7 @@ void write_message(const char* text) {
 }
 
 constexpr const char* kLeaveOut =
-    "; remedy: leave out the driver: set OCL_ICD_VENDORS to the .icd file of another one (/etc/OpenCL/vendors)\n";
-
-extern "C" void report_long_search(int) {
-    if (verbosity() <= kErrorsOnly) return;
-    write_message("raya: warning: the OpenCL drivers need long to list their devices; one may hang");
-    write_message(kLeaveOut);
-}
+    "; remedy: leave out the driver: set OCL_ICD_VENDORS to the .icd file of another one (/etc/OpenCL/vendors)";
 
 extern "C" void report_driver_crash(int signal) {
     static std::atomic<pid_t> crashed_thread{0};
@@ -86,7 +82,8 @@ extern "C" void report_driver_crash(int signal) {
             ? kLeaveOut
             : "; remedy: smaller work-groups (--group) or fewer lanes (--lanes), an empty folder as POCL_CACHE_DIR in "
               "case the cache is damaged, more memory (ulimit -v), a mounted /sys, or another driver (raya devices); "
-              "raya verify shows the driver's errors\n");
+              "raya verify shows the driver's errors");
+    write_message("\n");
     ::_exit(kExitDeviceError);
 }
 
@@ -142,7 +139,6 @@ void set_crash_prefix(const std::string& prefix, double delay_s) {
 }
 
 void install_crash_handlers(bool is_worker) {
-    has_handlers = true;
     if (!is_worker) {
         std::atexit(report_driver_exit);
         for (const int signal : kCrashSignals) handle_signal(signal, report_driver_crash);
@@ -198,18 +194,13 @@ std::string driver_cache_problem() {
     }
 }
 
-DeviceSearch::DeviceSearch() {
-    constexpr unsigned kLongSearch_s = 10;
-    if (!has_handlers) return;
+DeviceSearch::DeviceSearch()
+    : warning_(call_after(kLongSearch_s, [] {
+          warn(std::string("warning: the OpenCL drivers need long to list their devices; one may hang") + kLeaveOut);
+      })) {
     is_searching = true;
-    std::signal(SIGALRM, report_long_search);
-    ::alarm(kLongSearch_s);
 }
 
-DeviceSearch::~DeviceSearch() {
-    if (!is_searching.exchange(false)) return;
-    ::alarm(0);
-    std::signal(SIGALRM, SIG_DFL);
-}
+DeviceSearch::~DeviceSearch() { is_searching = false; }
 
 }  // namespace raya

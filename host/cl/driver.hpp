@@ -1,6 +1,7 @@
 // Messages about drivers that crash, hang or end the program, and the folder of PoCL's kernel cache.
 #pragma once
 #include <string>
+#include <thread>
 
 namespace raya {
 
@@ -41,13 +42,16 @@ void set_driver_cache_folder();
 std::string driver_cache_problem();
 
 /// Marks a search for devices while this object exists. If it takes more than 10 s, because a driver may hang, prints a
-/// warning with the remedy. Does nothing unless install_crash_handlers() was called.
+/// warning with the remedy.
 class DeviceSearch {
   public:
     DeviceSearch();
     ~DeviceSearch();
     DeviceSearch(const DeviceSearch&) = delete;
     DeviceSearch& operator=(const DeviceSearch&) = delete;
+
+  private:
+    std::jthread warning_;
 };
 
 }  // namespace raya

@@ -12,16 +12,10 @@
 namespace raya {
 namespace {
 
-constexpr int kDoubleFractionBits = 52, kDoubleBias = 1023;
-
-// Returns 2^exponent, which must be in the range of normal doubles.
-double power_of_two(int exponent) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(kDoubleBias + exponent) << kDoubleFractionBits);
-}
-
 // Rounds to `bits` fraction bits, ties to even; truncates if `truncates`. A carry out of the fraction gives the next
 // power of two, or infinity. The result for denormal doubles does not matter: they are below the range of every format.
 double with_fraction_bits(double value, int bits, bool truncates) {
+    constexpr int kDoubleFractionBits = 52;
     const int dropped = kDoubleFractionBits - bits;
     auto pattern = std::bit_cast<std::uint64_t>(value);
     const std::uint64_t unit = std::uint64_t{1} << dropped;
@@ -59,19 +53,17 @@ double farthest_hit(const NumberFormat& format) {
 
 float round_to_format(double value, const NumberFormat& format) {
     if (std::isnan(value)) throw std::invalid_argument("no format represents NaN");
-    const int highest = (1 << (format.exponent_bits - 1)) - 1, lowest = 1 - highest;
+    const int highest = (1 << (format.exponent_bits - 1)) - 1;
     const double rounded = with_fraction_bits(value, format.fraction_bits, format.truncates);
-    const double largest = (2 - power_of_two(-format.fraction_bits)) * power_of_two(highest);
+    const double largest = std::ldexp(2 - std::ldexp(1.0, -format.fraction_bits), highest);
     if (std::abs(rounded) > largest) return static_cast<float>(std::copysign(largest, value));
-    if (std::abs(rounded) < power_of_two(lowest)) return static_cast<float>(std::copysign(0.0, value));
+    if (std::abs(rounded) < smallest_number(format)) return static_cast<float>(std::copysign(0.0, value));
     return static_cast<float>(rounded);
 }
 
 namespace {
 
 constexpr std::uint64_t kKb = 1024;
-
-std::string tenths_text(std::uint64_t tenths) { return fmt::format("{}.{} KB", tenths / 10, tenths % 10); }
 
 }  // namespace
 
@@ -80,12 +72,14 @@ std::string counted(std::uint64_t count, const std::string& singular, const std:
 }
 
 std::string required_size_text(std::uint64_t bytes) {
-    return bytes < kKb ? fmt::format("{} bytes", bytes) : tenths_text((10 * bytes + kKb - 1) / kKb);
+    if (bytes < kKb) return fmt::format("{} bytes", bytes);
+    return fmt::format("{:.1f} KB", std::ceil(10. * static_cast<double>(bytes) / kKb) / 10);
 }
 
 std::string available_size_text(std::uint64_t bytes) {
     if (bytes < kKb) return fmt::format("{} bytes", bytes);
-    return bytes % kKb == 0 ? fmt::format("{} KB", bytes / kKb) : tenths_text(10 * bytes / kKb);
+    if (bytes % kKb == 0) return fmt::format("{} KB", bytes / kKb);
+    return fmt::format("{:.1f} KB", std::floor(10. * static_cast<double>(bytes) / kKb) / 10);
 }
 
 std::string data_text(double bytes) {

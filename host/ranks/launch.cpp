@@ -43,7 +43,7 @@ std::unique_ptr<Transport> open_transport(const Launch& launch) {
             "raya: rank 0 has waited {:g} s for the start of {} ranks; remedy: look for a process that hangs or has "
             "ended, or raise the limit with RAYA_RANK_TIMEOUT=SECONDS\n",
             limit_s, processes);
-        const Deadline deadline(limit_s, launch.rank == 0 ? timeout_message : "", kExitDeviceError);
+        const std::jthread limit = deadline(limit_s, launch.rank == 0 ? timeout_message : "", kExitDeviceError);
         return std::unique_ptr<Transport>(make_transport(limit_s));
     } catch (const ModuleError& error) {
         throw UserError(

@@ -136,7 +136,7 @@ class MpiTransport final : public Transport {
 
     [[noreturn]] void abort(int code) override {
         constexpr double kAbortLimit_s = 5;  // maximum duration of MPI_Abort
-        const Deadline deadline(kAbortLimit_s, "", code);
+        const std::jthread limit = deadline(kAbortLimit_s, "", code);
         // MPICH's mpirun may lose output that is written just before MPI_Abort.
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
         MPI_Abort(MPI_COMM_WORLD, code);
@@ -144,8 +144,8 @@ class MpiTransport final : public Transport {
     }
 
     void close() override {
-        const Deadline deadline(limit_s_, rank_ == 0 ? fmt::format("raya: {}\n", timeout_text()) : "",
-                                kExitDeviceError);
+        const std::jthread limit =
+            deadline(limit_s_, rank_ == 0 ? fmt::format("raya: {}\n", timeout_text()) : "", kExitDeviceError);
         MPI_Finalize();
     }
 

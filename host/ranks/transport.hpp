@@ -1,20 +1,17 @@
 // Interface for the transfer of bytes between ranks. Its implementations are the MPI module raya_mpi.so, threads in
 // tests, and a stub for a single rank.
 #pragma once
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
-#include <mutex>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <thread>
-#include <utility>
+
+#include "host/base/parallel.hpp"
 
 namespace raya {
 
@@ -93,23 +90,13 @@ using MakeMpiTransport = Transport*(double limit_s);
 
 inline constexpr const char *kMpiModule = "raya_mpi", *kMakeMpiTransport = "raya_make_mpi_transport";
 
-/// Time limit for calls that have no time limit themselves, such as MPI_Init and MPI_Finalize. If the Deadline is not
-/// destroyed within `limit_s` seconds, it prints `text` on stderr and ends the process with exit code `code`.
-class Deadline {
-  public:
-    Deadline(double limit_s, std::string text, int code)
-        : timer_thread_([limit_s, text = std::move(text), code](const std::stop_token& cancellation) {
-              std::mutex mutex;
-              std::unique_lock lock(mutex);
-              const std::chrono::duration<double> limit(limit_s);
-              std::condition_variable_any().wait_for(lock, cancellation, limit, [] { return false; });
-              if (cancellation.stop_requested()) return;
-              if (!text.empty() && ::write(STDERR_FILENO, text.data(), text.size()) < 0) std::_Exit(code);
-              std::_Exit(code);
-          }) {}
-
-  private:
-    std::jthread timer_thread_;
-};
+/// Time limit for calls that have no time limit themselves, such as MPI_Init and MPI_Finalize. Unless the returned
+/// object is destroyed within `limit_s` seconds, prints `text` on stderr and ends the process with exit code `code`.
+[[nodiscard]] inline std::jthread deadline(double limit_s, const std::string& text, int code) {
+    return call_after(limit_s, [text, code] {
+        std::fputs(text.c_str(), stderr);
+        std::_Exit(code);
+    });
+}
 
 }  // namespace raya
