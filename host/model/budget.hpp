@@ -42,7 +42,6 @@ struct Budget {
     // On a T805 (host/model/t805.hpp), instead of multiply-accumulates. Each word of a created packet costs a store.
     std::uint32_t additions = 0, multiplications = 0;
     CreatedPacket creates = CreatedPacket::kNone;
-    const char* work = "";  // text: the work that the budget includes and excludes
 };
 
 /// Returns the budgets of all events, in the order of kernels/shared/events.h.
