@@ -80,21 +80,14 @@ std::string bytes_hash(std::string_view bytes) {
     return hex_digits(canonical.digest);
 }
 
-struct GzipText::Stream {
-    Stream() {
-        const int code = deflateInit2(&z, kCompressionLevel, Z_DEFLATED, kWindowBits, kMemLevel, Z_DEFAULT_STRATEGY);
-        if (code == Z_MEM_ERROR) throw std::bad_alloc();
-        if (code != Z_OK) throw std::runtime_error("zlib: deflateInit2 failed");
-    }
-    Stream(const Stream&) = delete;
-    Stream& operator=(const Stream&) = delete;
-    ~Stream() { deflateEnd(&z); }
-
-    z_stream z{};
-};
-
-GzipText::GzipText() : stream_(std::make_unique<Stream>()) {}
-GzipText::~GzipText() = default;
+GzipText::GzipText()
+    : stream_(new z_stream{}, [](z_stream* stream) {
+          deflateEnd(stream);
+          delete stream;
+      }) {
+    if (deflateInit2(stream_.get(), kCompressionLevel, Z_DEFLATED, kWindowBits, kMemLevel, Z_DEFAULT_STRATEGY) != Z_OK)
+        throw std::bad_alloc();
+}
 
 void GzipText::append(std::string_view text) {
     constexpr std::size_t kMaxInput = std::numeric_limits<uInt>::max();  // bytes that one call of zlib accepts
@@ -108,7 +101,7 @@ std::string GzipText::finish() {
 }
 
 void GzipText::deflate_all(std::string_view text, bool last) {
-    z_stream& z = stream_->z;
+    z_stream& z = *stream_;
     std::array<Bytef, 1 << 16> block{};
     const void* const in = text.data();
     z.next_in = const_cast<Bytef*>(static_cast<const Bytef*>(in));  // zlib does not write to it

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+struct z_stream_s;  // of zlib
+
 namespace raya {
 
 /// Returns `text` with every occurrence of `old_part` replaced by `new_part`.
@@ -52,9 +54,6 @@ std::string words_hash(std::span<const std::uint32_t> words);
 class GzipText {
   public:
     GzipText();
-    ~GzipText();
-    GzipText(const GzipText&) = delete;
-    GzipText& operator=(const GzipText&) = delete;
 
     void append(std::string_view text);
 
@@ -62,10 +61,9 @@ class GzipText {
     std::string finish();
 
   private:
-    struct Stream;
     void deflate_all(std::string_view text, bool last);
 
-    std::unique_ptr<Stream> stream_;
+    std::unique_ptr<z_stream_s, void (*)(z_stream_s*)> stream_;
     std::string bytes_;
 };
 

@@ -102,17 +102,8 @@ std::jthread announce_compiling(const std::string& device) {
 }
 
 ProgressBar::ProgressBar(bool wanted, const std::string& name) : stage_name_(name) {
-    if (wanted && shows_progress()) draw_thread_ = std::thread([this] { draw_until_ended(); });
-}
-
-ProgressBar::~ProgressBar() {
-    if (!active()) return;
-    {
-        const std::lock_guard lock(mutex_);
-        ended_ = true;
-    }
-    end_.notify_one();
-    draw_thread_.join();
+    if (wanted && shows_progress())
+        draw_thread_ = std::jthread([this](const std::stop_token& end) { draw_until(end); });
 }
 
 void ProgressBar::stage(const std::string& name) {
@@ -127,11 +118,14 @@ void ProgressBar::update(double fraction) {
     fraction_ = std::max(fraction_, std::min(fraction, 1.0));
 }
 
-void ProgressBar::draw_until_ended() {
+void ProgressBar::draw_until(const std::stop_token& end) {
     using namespace std::chrono_literals;
+    std::condition_variable_any ended;
     std::unique_lock lock(mutex_);
-    for (auto pause = 700ms; !end_.wait_for(lock, pause, [this] { return ended_; }); pause = 200ms)
-        show_status(progress_line(stage_name_, fraction_, seconds_since(stage_began_)));
+    for (auto pause = 700ms; !end.stop_requested(); pause = 200ms) {
+        ended.wait_for(lock, end, pause, [] { return false; });
+        if (!end.stop_requested()) show_status(progress_line(stage_name_, fraction_, seconds_since(stage_began_)));
+    }
     clear_status();
 }
 

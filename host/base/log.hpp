@@ -87,9 +87,6 @@ class ProgressBar {
   public:
     /// Starts the first stage, `name`. Draws nothing if `wanted` is false.
     ProgressBar(bool wanted, const std::string& name);
-    ~ProgressBar();
-    ProgressBar(const ProgressBar&) = delete;
-    ProgressBar& operator=(const ProgressBar&) = delete;
 
     /// Returns true if the bar is drawn.
     bool active() const { return draw_thread_.joinable(); }
@@ -101,15 +98,13 @@ class ProgressBar {
     void update(double fraction);
 
   private:
-    void draw_until_ended();
+    void draw_until(const std::stop_token& end);
 
     std::mutex mutex_;  // guards the members below
-    std::condition_variable end_;
-    bool ended_ = false;
     std::string stage_name_;
     Clock::time_point stage_began_ = Clock::now();
     double fraction_ = 0;
-    std::thread draw_thread_;
+    std::jthread draw_thread_;  // last, so that it ends first
 };
 
 }  // namespace raya

@@ -29,29 +29,23 @@ std::string array_text(const RingSettings& s) {
     return text + ", accel " + accel_text(s.accel);
 }
 
-BenchMeasurement make_measurement(const std::string& kernel, const Scene& scene, const RingSettings& settings,
-                                  const std::string& array) {
-    return {.kernel = kernel,
-            .scene = scene.name,
-            .size = fmt::format("{}x{}", settings.mapping.width, settings.mapping.height),
-            .array = array,
-            .format = format_name(settings.format),
-            .hash = {}};
-}
-
 // Renders one image and returns a row with the image's event counts. `seconds`: returns the measured seconds of a
-// render.
+// render. `size`: settings of a ring with the image size and number format of the row.
 template <class Renderer, class Seconds>
-BenchRow row_of(BenchMeasurement measurement, const NumberFormat& format, std::shared_ptr<Renderer> renderer,
-                const Seconds& seconds) {
+BenchRow row_of(const std::string& kernel, const Scene& scene, const RingSettings& size, const std::string& array,
+                std::shared_ptr<Renderer> renderer, const Seconds& seconds) {
     const RenderResult result = renderer->render();
-    measurement.lanes = result.lanes;
-    measurement.group_size = result.group_size;
-    measurement.rays = ray_count(result.events);
-    measurement.hash = pixel_hash(result.image);
-    measurement.build_options = result.build_options;
-    return {.format = format,
-            .result = std::move(measurement),
+    return {.format = size.format,
+            .result = {.kernel = kernel,
+                       .scene = scene.name,
+                       .size = fmt::format("{}x{}", size.mapping.width, size.mapping.height),
+                       .array = array,
+                       .format = format_name(size.format),
+                       .lanes = result.lanes,
+                       .group_size = result.group_size,
+                       .rays = ray_count(result.events),
+                       .hash = pixel_hash(result.image),
+                       .build_options = result.build_options},
             .events = result.events,
             .build_s = result.build_s,
             .tuned = result.tuned,
@@ -60,6 +54,8 @@ BenchRow row_of(BenchMeasurement measurement, const NumberFormat& format, std::s
 }
 
 double render_seconds(const RenderResult& r) { return r.render_s; }
+
+}  // namespace
 
 TorusSettings torus_settings_of(const RingSettings& s) {
     TorusSettings t = default_torus({s.mapping.width, s.mapping.height});
@@ -70,8 +66,6 @@ TorusSettings torus_settings_of(const RingSettings& s) {
     return t;
 }
 
-}  // namespace
-
 const BenchRow& first_row_of_format(const std::vector<BenchRow>& rows, const BenchRow& row) {
     return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) { return r.format == row.format; });
 }
@@ -81,8 +75,7 @@ BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, 
     settings.format = format;
     settings.kernels.lanes = lanes;
     const auto renderer = std::make_shared<RingRenderer>(session, scene, settings);
-    BenchRow row =
-        row_of(make_measurement("trace", scene, settings, array_text(settings)), format, renderer, trace_seconds);
+    BenchRow row = row_of("trace", scene, settings, array_text(settings), renderer, trace_seconds);
     row.work = ring_kernel_work(settings, renderer->render()).front();
     return row;
 }
@@ -96,8 +89,7 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
     if (key.torus) {
         const TorusSettings t = torus_settings_of(s);
         const std::string array = fmt::format("4x4x4 nodes, torus3d, 4x4x4 voxels, {} bounces", t.bounces);
-        return row_of(make_measurement("torus", scene, s, array), format,
-                      std::make_shared<TorusRenderer>(session, scene, t), render_seconds);
+        return row_of("torus", scene, s, array, std::make_shared<TorusRenderer>(session, scene, t), render_seconds);
     }
     s.accel = {.kind = static_cast<AccelKind>(key.accel)};
     if (packets) use_packets(s, s.mapping.kind != RAYA_TILES);
@@ -105,8 +97,8 @@ BenchRow render_row(Session& session, const Scene& scene, const RingSettings& se
         throw UserError(fmt::format(
             "--variants packets: needs --format fp32 and tiles that divide the image, not {} and {}x{} pixels",
             format_name(format), s.mapping.width, s.mapping.height));
-    return row_of(make_measurement("render, " + variant, scene, s, array_text(s)), format,
-                  std::make_shared<RingRenderer>(session, scene, s), render_seconds);
+    return row_of("render, " + variant, scene, s, array_text(s), std::make_shared<RingRenderer>(session, scene, s),
+                  render_seconds);
 }
 
 void check_rows(const std::vector<BenchRow>& rows) {

@@ -12,6 +12,7 @@
 #include "host/report/render_report.hpp"
 #include "host/ring/ring_result.hpp"
 #include "host/scene/scene.hpp"
+#include "host/torus/torus_plan.hpp"
 
 namespace raya {
 
@@ -39,6 +40,10 @@ BenchRow trace_row(Session& session, const Scene& scene, RingSettings settings, 
 /// Throws UserError for another variant.
 BenchRow render_row(Session& session, const Scene& scene, const RingSettings& settings, const NumberFormat& format,
                     const std::string& variant);
+
+/// Returns the settings of a torus of 4 x 4 x 4 nodes without a memory limit with the size, bounces, format, sampling
+/// and kernels of a ring.
+TorusSettings torus_settings_of(const RingSettings& ring);
 
 /// Throws DeviceError if rows of the same format differ in image or number of rays, or if rows of the same format and
 /// kernel differ in event counts.

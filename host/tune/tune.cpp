@@ -19,8 +19,8 @@
 #include "host/ring/ring_renderer.hpp"
 #include "host/scene/generate.hpp"
 #include "host/scene/nff.hpp"
-#include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_renderer.hpp"
+#include "host/tune/bench_rows.hpp"
 #include "host/tune/store.hpp"
 
 namespace raya {
@@ -227,8 +227,6 @@ const Variant& variant_named(const std::string& name) {
     throw UserError(fmt::format("--variants {}: must be none, grid, bvh or torus", name));
 }
 
-constexpr std::uint32_t kBounces = 8;
-
 Scene scene_of(const TrialSetup& render, const Variant& variant) {
     constexpr const char* kSpheres = "scenes/spheres.nff";
     constexpr int kLevel = 4;
@@ -244,32 +242,11 @@ RingSettings ring_settings(const Workload& workload, const ImageSize& size, std:
     s.machine = machine_named("grande");
     s.mapping =
         make_mapping(cyclic_mapping(16 % size.width, Fold::kCyclic), size, std::min(pes, size.width * size.height));
-    s.bounces = kBounces;
+    s.bounces = 8;
     s.format = workload.format;
     s.accel.kind = variant_named(workload.variant).accel;
     s.kernels = kernels;
     return s;
-}
-
-TorusSettings torus_settings(const Workload& workload, const ImageSize& size, const KernelChoice& kernels) {
-    TorusSettings s = default_torus(size);
-    s.bounces = kBounces;
-    s.format = workload.format;
-    s.kernels = kernels;
-    return s;
-}
-
-/// Renders one image with kernels that are already built. Returns the seconds from the packed scene to the image.
-using TimedRender = std::function<double()>;
-
-// Renders the first image. Writes the line "check" if `lines` is a descriptor. Returns a function that renders further
-// images.
-template <class Renderer>
-TimedRender first_image(int lines, std::shared_ptr<Renderer> renderer) {
-    const RenderResult result = renderer->render();
-    const std::string check = fmt::format("{}, {} rays", pixel_hash(result.image), ray_count(result.events));
-    if (lines >= 0) send_line(lines, {{"check", check}});
-    return [renderer] { return renderer->render().render_s; };
 }
 
 }  // namespace
@@ -312,21 +289,23 @@ void run_trial(int lines, const Json& request) {
     if (size.width == 0) size = {variant.side, variant.side};
     const Scene scene = scene_of(setup, variant);
     Session session(choose_device(setup.device));
-    std::vector<TimedRender> renders;
+    std::vector<std::function<double()>> renders;  // each renders an image and returns its seconds
     const Json& candidates = request.at("candidates");
+    const auto add = [&]<class Renderer>(const std::shared_ptr<Renderer>& renderer) {
+        send_line(lines, {{"built", renders.size() + 1}});
+        const RenderResult result = renderer->render();
+        const std::string check = fmt::format("{}, {} rays", pixel_hash(result.image), ray_count(result.events));
+        if (renders.size() + 1 == candidates.size()) send_line(lines, {{"check", check}});
+        renders.push_back([renderer] { return renderer->render().render_s; });
+    };
     for (const Json& values : candidates) {
-        const int check_lines = renders.size() + 1 == candidates.size() ? lines : -1;
         const KernelChoice kernels =
             with_values({.sources = {.folder = setup.kernel_dir}}, from_json<TunedValues>(values));
-        const auto render_with = [&]<class Renderer>(std::shared_ptr<Renderer> renderer) {
-            send_line(lines, {{"built", renders.size() + 1}});
-            renders.push_back(first_image(check_lines, std::move(renderer)));
-        };
+        const RingSettings ring = ring_settings(workload, size, setup.pes, kernels);
         if (workload.key().torus)
-            render_with(std::make_shared<TorusRenderer>(session, scene, torus_settings(workload, size, kernels)));
+            add(std::make_shared<TorusRenderer>(session, scene, torus_settings_of(ring)));
         else
-            render_with(
-                std::make_shared<RingRenderer>(session, scene, ring_settings(workload, size, setup.pes, kernels)));
+            add(std::make_shared<RingRenderer>(session, scene, ring));
     }
     const std::uint32_t count = request.at("samples");
     std::vector<std::vector<double>> samples(renders.size());
