@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 #include <tuple>
 #include <utility>
@@ -17,6 +18,11 @@
 #include "host/ranks/ranks.hpp"
 
 namespace raya {
+
+/// Thrown in ranks that wait for a rank that has failed.
+struct RankFailure : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 
 /// Messages that ranks have sent and that their receivers have not received yet.
 struct MessageStore {
@@ -35,7 +41,7 @@ struct MessageStore {
     void take(const Key& key, std::span<std::byte> bytes) {
         std::unique_lock lock(mutex);
         changed.wait(lock, [&] { return failed || !messages[key].empty(); });
-        if (messages[key].empty()) throw RankFailure("another rank failed", 1);
+        if (messages[key].empty()) throw RankFailure("another rank failed");
         const std::vector<std::byte> message = std::move(messages[key].front());
         messages[key].pop_front();
         if (message.size() != bytes.size())
