@@ -46,7 +46,7 @@ inline constexpr int kErrorsOnly = -2;       // errors
 inline constexpr int kQuiet = -1;            // errors, warnings
 inline constexpr int kDefaultVerbosity = 0;  // errors, warnings, progress, summary
 inline constexpr int kVerbose = 1;           // also the steps of the host, with their times
-inline constexpr int kDetailed = 2;          // also kernel builds, and times of device commands
+inline constexpr int kDetailed = 2;          // also kernel builds
 
 /// Sets the level, clamped to kErrorsOnly..kDetailed.
 void set_verbosity(int level);

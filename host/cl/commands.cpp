@@ -5,7 +5,6 @@
 
 #include <cstdlib>
 #include <cstring>
-#include <exception>
 #include <mutex>
 #include <stdexcept>
 
@@ -61,13 +60,6 @@ Session::~Session() {
     // The device must be idle when the program ends: PoCL's threads, which may still be compiling a kernel, crash with
     // SIGSEGV if PoCL's library is unloaded while they run. clFinish() does not throw.
     clFinish(queue_());
-    if (!profile_.timed() || verbosity() < kDetailed || std::uncaught_exceptions() > 0) return;
-    try {
-        for (const LabelSummary& label : profile().summary())
-            log_message(kDetailed, fmt::format("on the device: {} ({}) x {}: {:.3f} ms", label.label, label.kind,
-                                               label.launches, 1e-6 * static_cast<double>(label.total_ns)));
-    } catch (const std::exception&) {  // the render has already reported the error
-    }
 }
 
 Program Session::build(const std::string& name, const std::string& source,

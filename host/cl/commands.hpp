@@ -34,7 +34,7 @@ class Session {
   public:
     explicit Session(const cl::Device& device, Timing timing = Timing::kOn);
     Session(Session&&) = default;  // not copyable: a copy would report the same commands twice
-    /// Waits for all commands, also during stack unwinding. Logs their times at level kDetailed (host/base/log.hpp).
+    /// Waits for all commands, also during stack unwinding.
     ~Session();
 
     const DeviceInfo& device() const { return info_; }

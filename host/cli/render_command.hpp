@@ -151,10 +151,7 @@ struct RenderCommand {
     bool keep_packets = false;    // torus: store packets, cycles and link_words in Render
 
     /// Returns kOn only if times of device commands are printed or written, because timing slows down a GPU's queue.
-    Timing timing() const {
-        return profile || needs_report() || !trace.file.empty() || verbosity() >= kDetailed ? Timing::kOn
-                                                                                            : Timing::kOff;
-    }
+    Timing timing() const { return profile || needs_report() || !trace.file.empty() ? Timing::kOn : Timing::kOff; }
     /// Returns true if a report is needed: for --report, or for --page, which is made from a report.
     bool needs_report() const { return !report.empty() || !page.empty(); }
     /// Returns true if all events must be counted, not only rays. On the machine `grande`, which is no model of a

@@ -182,9 +182,7 @@ void members_of(Members& m, const RankReport& r) {
     m.when(!r.torus, "pes", r.parts, "Number of PEs of the ring that this rank models.");
     m.when(r.torus, "nodes", r.parts, "Number of nodes of the torus that this rank models.");
     m("device", "OpenCL device of the rank.", [&](Members& d) {
-        d("name", r.device.name, "CL_DEVICE_NAME.");
-        d("platform", r.device.platform, "CL_PLATFORM_NAME.");
-        d("version", r.device.version, "CL_DEVICE_VERSION.");
+        raya::device_members(d, r.device);
         d("compute_units", r.device.compute_units, "CL_DEVICE_MAX_COMPUTE_UNITS.");
         d("lanes", r.lanes, kLanesMeaning);
         d("group_size", r.group_size, kGroupMeaning);
