@@ -39,8 +39,6 @@ struct Uint {
 template <class... Args>
 class Kernel {
   public:
-    static constexpr std::size_t kArgumentCount = sizeof...(Args);
-
     Kernel(cl::Kernel kernel, std::string name) : kernel_(std::move(kernel)), name_(std::move(name)) {}
 
     const std::string& name() const { return name_; }

@@ -42,12 +42,6 @@ class TestCheckpointing {
     Checkpointing checkpointing_;
 };
 
-/// Returns the header of a checkpoint.
-inline Json checkpoint_header(const std::string& bytes) {
-    const std::size_t magic_end = bytes.find('\n') + 1;
-    return parse_json(bytes.substr(magic_end, bytes.find('\n', magic_end) - magic_end), {"the header"});
-}
-
 /// The vectors of a checkpoint, for damage with a valid hash.
 struct CheckpointBody {
     explicit CheckpointBody(const std::string& bytes)
@@ -76,13 +70,5 @@ struct CheckpointBody {
 
     std::string header, body;
 };
-
-/// Returns the settings in a checkpoint.
-inline StateSettings saved_settings(const std::string& bytes) {
-    const Json header = checkpoint_header(bytes);
-    StateSettings settings;
-    for (const auto& [name, value] : header.at("of").items()) settings.emplace_back(name, json_text(value));
-    return settings;
-}
 
 }  // namespace raya

@@ -13,10 +13,6 @@ namespace raya {
 /// anything from the network. Without JavaScript it shows the JSON.
 std::string report_page(const Json& report);
 
-/// Maximum number of cycles of an image, summed over its pixels. The explorer's script computes with doubles, which
-/// represent integers exactly up to this limit.
-inline constexpr std::uint64_t kExactCycles = std::uint64_t{1} << 53;
-
 /// The costs of pixels for the explorer's script. The gzip data has a plane for each byte of a cost, from the lowest to
 /// the highest byte. A plane has one byte per pixel, row by row. Planes compress better than interleaved bytes, because
 /// adjacent pixels rarely differ in the high bytes of their costs.
