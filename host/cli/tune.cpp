@@ -44,11 +44,11 @@ std::vector<Workload> workloads_of(const TuneCommand& command) {
     return workloads;
 }
 
-TrialProgress progress_printer(const Workload& workload, const Space& space) {
+TrialProgress progress_printer(const Workload& workload) {
     return [=](const TunedValues& values, double seconds) {
         if (shows_progress())
-            show_status(fmt::format("tuning {}: {} ... {:.0f} s", workload.name(), change_text(space, values, values),
-                                    seconds));
+            show_status(
+                fmt::format("tuning {}: {} ... {:.0f} s", workload.name(), change_text(values, values), seconds));
     };
 }
 
@@ -57,9 +57,9 @@ void print_tunings(const std::vector<Tuning>& tunings) {
         {"workload", "speed-up", "tried", "of", "dropped", "s", "defaults -> best"}};
     for (const Tuning& t : tunings)
         table.push_back({t.workload.name(), fmt::format("{:.2f}", 1 / t.ratio), std::to_string(t.tried),
-                         std::to_string(t.space.candidates().size()), std::to_string(t.dropped.size()),
+                         std::to_string(t.space.candidates.size()), std::to_string(t.dropped.size()),
                          fmt::format("{:.1f}", t.seconds),
-                         change_text(t.space, t.space.defaults, t.best) + (t.complete ? "" : " (time limit)")});
+                         change_text(t.space.defaults, t.best) + (t.complete ? "" : " (time limit)")});
     fmt::print("{}", text_table(table));
     fmt::print(
         "speed-up: time of a render with the defaults / time with the best values, median of 9 pairs of renders "
@@ -69,7 +69,7 @@ void print_tunings(const std::vector<Tuning>& tunings) {
         fmt::print("time limit: the limit ended the search; a larger --seconds allows a longer search\n");
     for (const Tuning& t : tunings)
         for (const Trial& trial : t.dropped)
-            fmt::print("dropped: {}: {}: {}\n", t.workload.name(), change_text(t.space, trial.values, trial.values),
+            fmt::print("dropped: {}: {}: {}\n", t.workload.name(), change_text(trial.values, trial.values),
                        trial.error);
 }
 
@@ -98,8 +98,7 @@ void tune_device(const CLI::App& parser, TuneCommand& command) {
     double remaining_s = command.seconds;
     for (const Workload& workload : workloads) {
         settings.seconds = remaining_s / static_cast<double>(workloads.size() - tunings.size());
-        tunings.push_back(
-            tune(device, workload, settings, progress_printer(workload, space_of(device, workload.key()))));
+        tunings.push_back(tune(device, workload, settings, progress_printer(workload)));
         remaining_s = std::max(0.0, remaining_s - tunings.back().seconds);
         const std::string scene = render.scene.empty() ? "own" : render.scene;
         save_tuned(device, entry_of(tunings.back(), scene));

@@ -28,6 +28,12 @@ namespace {
 
 using Values = std::vector<std::uint32_t>;
 
+constexpr std::pair<const char*, std::uint32_t TunedValues::*> kParameters[] = {
+    {"lanes", &TunedValues::lanes},
+    {"group", &TunedValues::group},
+    {"local words", &TunedValues::local_words},
+    {"batch", &TunedValues::batch}};
+
 // Returns the powers of two in minimum..maximum, and `default_size`.
 Values group_sizes(std::uint32_t minimum, std::uint32_t maximum, std::uint32_t default_size) {
     std::set<std::uint32_t> sizes = {default_size};
@@ -100,52 +106,41 @@ Trial run_trial(const Json& request, const std::vector<TunedValues>& candidates,
 
 }  // namespace
 
-std::vector<TunedValues> Space::candidates() const {
-    std::vector<TunedValues> all = {defaults};
-    for (const TuningParameter& parameter : parameters) {
-        std::vector<TunedValues> combined;
-        for (TunedValues values : all)
-            for (const std::uint32_t value : parameter.values) {
-                values.*parameter.value = value;
-                combined.push_back(values);
-            }
-        all = std::move(combined);
-    }
-    std::ranges::stable_sort(all, {}, [this](const TunedValues& values) {
-        return std::ranges::count_if(parameters,
-                                     [&](const TuningParameter& p) { return values.*p.value != defaults.*p.value; });
-    });
-    return all;
-}
-
 Space space_of(const DeviceInfo& device, const TuningKey& key) {
-    Space space{.parameters = {}, .defaults = default_values(device, key)};
     const bool cpu = device.type == "cpu", tests_all_objects = key.accel == RAYA_ACCEL_NONE;
-    const std::uint32_t max_group = max_group_size_of(device), group = space.defaults.group;
+    const TunedValues defaults = default_values(device, key);
+    const std::uint32_t max_group = max_group_size_of(device);
     // Only llvmpipe ends loops early. It vectorises over work-items, so one lane suffices, and it needs minutes and
     // gigabytes of memory to compile kernels with several lanes.
     const bool llvmpipe = device.ends_loops_early;
-    space.parameters.push_back({"lanes", &TunedValues::lanes, llvmpipe ? Values{1} : Values{1, 4, 8, 16}});
+    const Values lanes = llvmpipe ? Values{1} : Values{1, 4, 8, 16};
     // Torus nodes on a CPU keep their default group size, which preserves the order of packets (docs/architecture.md).
-    const std::uint32_t max_cpu_group = key.torus ? group : std::min(llvmpipe ? 16u : 4u, max_group);
-    space.parameters.push_back(
-        {"group", &TunedValues::group, cpu ? group_sizes(1, max_cpu_group, group) : group_sizes(16, max_group, group)});
-    if (tests_all_objects) space.parameters.push_back({"local words", &TunedValues::local_words, {0, 1}});
-    if (tests_all_objects && key.fp32 && !key.torus)
-        space.parameters.push_back({"batch", &TunedValues::batch, cpu ? Values{0, 8, 16} : Values{0, 4, 8, 16, 32}});
+    const std::uint32_t max_cpu_group = key.torus ? defaults.group : std::min(llvmpipe ? 16u : 4u, max_group);
+    const Values groups =
+        cpu ? group_sizes(1, max_cpu_group, defaults.group) : group_sizes(16, max_group, defaults.group);
+    const Values local_words = tests_all_objects ? Values{0, 1} : Values{defaults.local_words};
+    Values batches = {defaults.batch};
+    if (tests_all_objects && key.fp32 && !key.torus) batches = cpu ? Values{0, 8, 16} : Values{0, 4, 8, 16, 32};
+    Space space{defaults};
+    for (const std::uint32_t l : lanes)
+        for (const std::uint32_t g : groups)
+            for (const std::uint32_t w : local_words)
+                for (const std::uint32_t b : batches) space.candidates.push_back({l, g, w, b});
+    std::ranges::stable_sort(space.candidates, {}, [&](const TunedValues& values) {
+        return std::ranges::count_if(
+            kParameters, [&](const auto& parameter) { return values.*parameter.second != defaults.*parameter.second; });
+    });
     return space;
 }
 
-std::string change_text(const Space& space, const TunedValues& old_values, const TunedValues& new_values) {
+std::string change_text(const TunedValues& old_values, const TunedValues& new_values) {
     std::vector<std::string> texts;
-    for (const TuningParameter& parameter : space.parameters) {
-        const auto text = [&](const TunedValues& values) {
-            const std::uint32_t value = values.*parameter.value;
-            if (parameter.value == &TunedValues::local_words) return std::string(value ? "yes" : "no");
-            return value ? std::to_string(value) : "default";
+    for (const auto& [name, member] : kParameters) {
+        const auto text = [&, is_flag = member == &TunedValues::local_words](std::uint32_t value) {
+            return is_flag ? (value ? "yes" : "no") : value ? std::to_string(value) : "default";
         };
-        texts.push_back(fmt::format("{} {}", parameter.name, text(old_values)));
-        if (text(old_values) != text(new_values)) texts.back() += " -> " + text(new_values);
+        texts.push_back(fmt::format("{} {}", name, text(old_values.*member)));
+        if (old_values.*member != new_values.*member) texts.back() += " -> " + text(new_values.*member);
     }
     return fmt::format("{}", fmt::join(texts, ", "));
 }
@@ -184,7 +179,7 @@ Tuning tune(const DeviceInfo& device, const Workload& workload, const TuneSettin
                         workload.name(), first.error));
     expected_check = first.check;
     TunedValues found = defaults;
-    for (const TunedValues& candidate : result.space.candidates()) {
+    for (const TunedValues& candidate : result.space.candidates) {
         if (candidate == defaults) continue;
         const double left_s = settings.seconds - seconds_since(start);
         result.complete = left_s > 0;

@@ -27,34 +27,26 @@ struct Workload {
 /// fp32.
 std::vector<Workload> default_workloads();
 
-/// A tuning parameter and its possible values.
-struct TuningParameter {
-    const char* name = "";
-    std::uint32_t TunedValues::*value = nullptr;  // the member that holds the parameter's value
-    std::vector<std::uint32_t> values;
-};
-
+/// The values that the search tries.
 struct Space {
-    std::vector<TuningParameter> parameters;
     TunedValues defaults;
-
-    /// Returns all combinations of values; those that differ from the defaults in fewer parameters come first.
-    std::vector<TunedValues> candidates() const;
+    /// All combinations of values; those that differ from the defaults in fewer parameters come first.
+    std::vector<TunedValues> candidates{};
 };
 
-/// Returns the tuning parameters of these kernels on this device:
+/// Returns the values to try for these kernels on this device:
 ///   - lanes;
 ///   - group size: on a CPU few work-items, because lanes already use its vector instructions; for torus nodes on a
 ///     CPU 1, because larger groups change the order of packets;
 ///   - without an accelerator: the memory of the job's words (local or global);
 ///   - without an accelerator, on the ring in fp32: the number of spheres in a batch.
 /// Settings that change counts of the modelled machine, such as the width of the BVH and the queues of torus nodes, are
-/// not tuning parameters, so that modelled figures do not depend on tuning.
+/// not tuned, so that modelled figures do not depend on tuning.
 Space space_of(const DeviceInfo& device, const TuningKey& key);
 
-/// Returns a text with the old values of all parameters, and their new values where they differ:
-/// "lanes 16, group 1 -> 2, batch default". Value 0 is printed as "default": the kernels choose the value.
-std::string change_text(const Space& space, const TunedValues& old_values, const TunedValues& new_values);
+/// Returns a text with the old values of all parameters, and their new values where they differ: "lanes 16, group 1 ->
+/// 2, local words yes, batch default". Value 0 is printed as "default": the kernels choose the value.
+std::string change_text(const TunedValues& old_values, const TunedValues& new_values);
 
 /// Device, scene and image size of trials. The default scene has 30 spheres and a plane; for a variant with an
 /// accelerator it is "balls" of the Standard Procedural Databases, with 7,381 spheres. The default image has 512 x 512
