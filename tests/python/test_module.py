@@ -105,7 +105,7 @@ def test_owners_and_balances_of_random_mappings_on_the_page(tmp_path):
         const owners = ownersOf(setting, size), balance = balanceOf(loadsOf(owners, costs, setting.pes));
         return [[...owners], balance.imbalance, balance.speedup];
     }})))"""
-    found = json.loads(subprocess.run(["node", "-e", script], check=True, capture_output=True, text=True).stdout)
+    found = json.loads(subprocess.run(["node", "-"], input=script, check=True, capture_output=True, text=True).stdout)
     for case, (owners, *balance), (right_owners, *right_balance) in zip(cases, found, wanted):
         assert owners == right_owners and balance == pytest.approx(right_balance, rel=1e-12), f"{case}, seed {SEED}"
 
