@@ -334,7 +334,7 @@ TEST_CASE("verify --as: runs the checks of a render, and finds a fault only if t
 
 TEST_CASE("verify --as: builds the same program as the render", "[cli][verify]") {
     const ScratchFolder scratch;
-    const std::string options = " --lanes 8 --group 2 --bounces 3 --format fp32 --accel grid --size 64";
+    const std::string options = " --lanes 4 --group 3 --bounces 4 --format fp32 --accel grid --size 64";
     const auto trace_builds = [&](const Arguments& arguments) {
         const std::string log = scratch / "log";
         const RunOutcome run = run_raya(arguments, {.variables = {{"RAYA_KERNEL_LOG", log}}});

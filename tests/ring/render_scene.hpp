@@ -19,8 +19,8 @@ struct RingCase {
     std::uint32_t pes = 64, offset = 8;
     Fold fold = Fold::kCyclic;
     std::string machine = "grande";
-    std::optional<MappingRule> mapping{};                                // empty: cyclic with `offset` and `fold`
-    std::uint32_t lanes = default_test_lanes(), group = 0, bounces = 8;  // lanes or group 0: the device's default
+    std::optional<MappingRule> mapping{};  // empty: cyclic with `offset` and `fold`
+    std::uint32_t lanes = default_test_lanes(), group = 0, bounces = kTestBounces;  // lanes, group 0: the device's
     Sampling sampling = Sampling::kCentres;
     std::string format = "fp32";
     bool filter = true;
