@@ -18,7 +18,10 @@ namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
+/// Runs raya verify, with four lanes unless --lanes or --as is given, because their kernels compile fastest.
 RunOutcome verify(Arguments more, const RunOptions& options = {}) {
+    const auto sets_lanes = [](const std::string& option) { return option == "--lanes" || option == "--as"; };
+    if (std::ranges::none_of(more, sets_lanes)) more.insert(more.end(), {"--lanes", "4"});
     more.insert(more.begin(), "verify");
     return run_raya(more, options);
 }
