@@ -1,4 +1,4 @@
-// raya bench: the report, the comparison with an earlier report, variants, compile times, and exit codes.
+// raya bench: the report, the comparison with an earlier report, variants and exit codes. Compile times: tools.reports.
 #include <fstream>
 
 #include "tests/cli/refusals.hpp"
@@ -70,20 +70,6 @@ TEST_CASE("bench --variants: times each variant, and all variants render the sam
         CHECK((rows[i]["kernel"] == kernels[i] && rows[i]["ms"]["best"] > 0));
         CHECK((rows[i]["hash"] == rows[0]["hash"] && rows[i]["rays"] == rows[0]["rays"]));
     }
-}
-
-TEST_CASE("bench --build: lists compile times, and exits with 4 if one takes longer than --limit", "[cli]") {
-    const ScratchFolder folder;
-    bench({"--build", "--variants", "none", "--pes", "4", "--report", folder / "b.json"});
-    const Document builds = json_of(folder / "b.json")["builds"];
-    REQUIRE(builds.size() == 3);
-    const char* const kernels[] = {"ring/trace.cl", "ring/filter.cl", "ring/contrast.cl"};
-    for (std::size_t i = 0; i < 3; ++i)
-        CHECK((builds[i]["kernel"] == kernels[i] && builds[i]["build_s"] > 0 && builds[i]["first_launch_s"] > 0));
-    CHECK_THAT(
-        bench({"--build", "--variants", "none", "--pes", "4", "--limit", "0.001"}, 4).err,
-        Catch::StartsWith("raya: ring/trace.cl, none, fp32, 4 lanes: ") && Catch::Contains("above --limit 0.001 s"));
-    CHECK_THAT(bench({"--compare", folder / "b.json"}, 2).err, Catch::Contains("the report has no measurements"));
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST_CASE("render --profile: without memory for the peak measurement it prints n
           "[cli]") {
     // The n-th buffer and all later ones fail: for small n one of the render, for larger n one of the measurement.
     int failed_renders = 0, missing_peaks = 0;
-    for (int n = 1; n < 60; n += thorough() ? 1 : 4) {
+    for (int n = 1; n < 60; n += thorough() ? 1 : 8) {
         const ScratchFolder outputs;
         const RunOutcome run = run_raya(small_render(outputs, {"--profile"}),
                                         device_with_fault("clCreateBuffer " + std::to_string(n) + " -4"));
