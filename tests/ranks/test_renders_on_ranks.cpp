@@ -15,9 +15,7 @@
 namespace raya {
 namespace {
 
-/// Scenes with and without polygons; if thorough(), with every kind of object.
-const std::vector<std::string> kScenes =
-    quick<std::string>(2, {"planes", "glass", "centre", "spheres", "mirrors", "polygons", "cones"});
+const std::vector<std::string> kScenes = project_scenes(2);
 
 /// Result of a rank. `text`: packets, or the message of a deadlock.
 template <class Result>

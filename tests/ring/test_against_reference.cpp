@@ -12,8 +12,7 @@ namespace raya {
 TEST_CASE("fp32 renders agree with the double-precision reference", "[ring]") {
     constexpr std::uint32_t kSide = 160;
     constexpr double kMaxExcused = 0.02;  // maximum fraction of pixels that may differ because their rays graze an edge
-    for (const std::string& name :
-         quick<std::string>(4, {"glass", "polygons", "cones", "planes", "centre", "spheres", "mirrors"})) {
+    for (const std::string& name : project_scenes(4)) {
         CAPTURE(name);
         const Scene scene = project_scene(name);
         const RingResult result = render_scene(scene, {.width = kSide, .height = kSide});

@@ -22,8 +22,7 @@ TEST_CASE("spa22 images show neither shadow acne nor light leaks", "[ring]") {
     // rounding moves edges by less than an eighth of a pixel; shadow acne and light leaks would affect whole areas.
     constexpr std::uint32_t kSide = 128;
     constexpr double kMaxWrongPixels = 0.002;  // fraction of all pixels
-    for (const std::string& name :
-         quick<std::string>(3, {"glass", "polygons", "cones", "planes", "centre", "spheres", "mirrors"})) {
+    for (const std::string& name : project_scenes(3)) {
         CAPTURE(name);
         const Scene scene = project_scene(name);
         const RingResult result = render_scene(scene, {.width = kSide, .height = kSide, .format = "spa22"});
