@@ -372,7 +372,7 @@ void check_seen(const Seen& seen) {
 TEST_CASE("ring: image and counts are those of the simplest machine", "[property][ring]") {
     Session session(choose_device(""));
     Seen seen;
-    for (const std::uint64_t seed : seeds(kFailedRingSeeds, 120, 3000)) {
+    for (const std::uint64_t seed : seeds(kFailedRingSeeds, 80, 3000)) {
         CAPTURE(seed);
         CHECK(check_ring(session, seed, seen) == "");
     }
@@ -382,7 +382,7 @@ TEST_CASE("ring: image and counts are those of the simplest machine", "[property
 TEST_CASE("torus: image and counts are those of the simplest machine", "[property][torus]") {
     Session session(choose_device(""));
     Seen seen;
-    for (const std::uint64_t seed : seeds(kFailedTorusSeeds, 50, 1000)) {
+    for (const std::uint64_t seed : seeds(kFailedTorusSeeds, 35, 1000)) {
         CAPTURE(seed);
         CHECK(check_torus(session, seed, seen) == "");
     }
