@@ -1,4 +1,5 @@
-// raya bench: the report, the comparison with an earlier report, variants and exit codes. Compile times: tools.reports.
+// raya bench: the report, the comparison with an earlier report, and exit codes. Compile times and variants:
+// tools.reports.
 #include <fstream>
 
 #include "tests/cli/refusals.hpp"
@@ -58,18 +59,6 @@ TEST_CASE("bench --compare: a later run is compared with the rows of a report", 
                Catch::Contains("OTHER IMAGE: ") && Catch::Contains(", was 01234567"));
     CHECK_THAT(bench_with({"--compare", base, "--offset", "3"}, 2).err,
                Catch::Contains("contains no row of this run") && Catch::Contains("cyclic:3"));
-}
-
-TEST_CASE("bench --variants: times each variant, and all variants render the same image", "[cli][slow]") {
-    const ScratchFolder folder;
-    bench({"--variants", "grid,torus,none", "--machine", "grande", "--samples", "1", "--report", folder / "r.json"});
-    const Document rows = json_of(folder / "r.json")["rows"];
-    REQUIRE(rows.size() == 3);
-    const char* const kernels[] = {"render, grid", "torus", "render, none"};
-    for (std::size_t i = 0; i < 3; ++i) {
-        CHECK((rows[i]["kernel"] == kernels[i] && rows[i]["ms"]["best"] > 0));
-        CHECK((rows[i]["hash"] == rows[0]["hash"] && rows[i]["rays"] == rows[0]["rays"]));
-    }
 }
 
 }  // namespace

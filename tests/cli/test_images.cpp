@@ -41,19 +41,6 @@ TEST_CASE("render --exposure: changes the 8-bit values, not the hash; report and
     CHECK(image->spec().get_string_attribute("raya:exposure") == "-1.5");
 }
 
-TEST_CASE("render --machine grande: without a report the image is the same", "[cli]") {
-    const ScratchFolder folder;
-    const auto image = [&](const Arguments& more) {
-        Arguments arguments = {
-            "render", scene_file("polygons"), "--machine", "grande", "--accel", "bvh", "--size", "32", "--lanes", "4",
-            "-o",     folder / "x.ppm"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        REQUIRE(run_raya(arguments).code == 0);
-        return file_contents(folder / "x.ppm");
-    };
-    CHECK(image({}) == image({"--report", folder / "r.json"}));
-}
-
 TEST_CASE("render: loads OpenCL drivers before the image encoder module", "[cli]") {
     const ScratchFolder scratch;
     const RunOptions log_libraries{.variables = {{"LD_DEBUG", "libs"}}};

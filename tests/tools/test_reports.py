@@ -104,6 +104,8 @@ class Reports:
         scene = SCENES / "spheres.nff"
         quick_options = ["--format", "fp32", "--size", "16", "--lanes", "4", "--bounces", "4", "--samples", "1", "--report"]
         self.make("bench", "bench", scene, *quick_options, "base.json", file="base.json")
+        hashes = {row["hash"] for row in self.made[-1][2]["rows"]}
+        assert len(hashes) == 1, hashes  # all variants render the same image
         self.make("bench", "bench", scene, "--variants", "none", "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *quick_options, "r.json")
         # Exit code 4: a build took longer than --limit.
         self.make("bench", "bench", scene, "--build", "--variants", "none", "--limit", "0.001", *quick_options, "r.json", code=4)
