@@ -21,6 +21,10 @@ inline bool thorough() {
 /// if RAYA_OWN_LANES is set; otherwise 4, because kernels for 4 lanes compile in a third of the time of 16 lanes.
 inline std::uint32_t default_test_lanes() { return thorough() || std::getenv("RAYA_OWN_LANES") != nullptr ? 0 : 4; }
 
+/// The number of bounces of tests that hold for any number, so that they use the same kernels. Reference images of
+/// raya verify have this number, too.
+inline constexpr std::uint32_t kTestBounces = 4;
+
 /// Returns the first `few` of `all`, or all of them if thorough(): `for (... : quick(2, {...}))`.
 template <class T>
 std::vector<T> quick(std::size_t few, std::initializer_list<T> all) {

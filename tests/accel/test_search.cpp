@@ -87,7 +87,7 @@ void check_hits(std::uint32_t lanes, const NumberFormat& format, AccelKind kind)
 
 TEST_CASE("a search in a grid or BVH finds the hits of testing all objects, in every format", "[search]") {
     for (const char* name : quick(2, {"fp32", "e6m15", "e5m10", "e8m12", "e6m15t"}))
-        for (const std::uint32_t lanes : quick(1, {16u, 1u, 4u, 8u}))
+        for (const std::uint32_t lanes : quick(1, {4u, 16u, 1u, 8u}))
             for (const AccelKind kind : {AccelKind::kGrid, AccelKind::kBvh}) {
                 CAPTURE(name, lanes, accel_text({kind}));
                 check_hits(lanes, parse_format(name), kind);

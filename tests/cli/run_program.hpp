@@ -183,6 +183,9 @@ inline RunOutcome run_raya(std::vector<std::string> arguments, const RunOptions&
         detail::redirect_stream(options.out_file, STDOUT_FILENO);
         detail::redirect_stream(options.error_file, STDERR_FILENO);
         detail::limit_files(options.max_file_bytes);
+        // A shell starts commands in the background with ignored signals, and raya does not handle ignored SIGHUP and
+        // SIGQUIT.
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_DFL);
         if (options.as_nobody) detail::become_nobody();
         detail::limit_memory(options.max_memory_bytes);
         ::fexecve(program, argv.data(), envp.data());

@@ -1,4 +1,5 @@
-// raya bench: the report, the comparison with an earlier report, variants, compile times, and exit codes.
+// raya bench: the report, the comparison with an earlier report, and exit codes. Compile times and variants:
+// tools.reports.
 #include <fstream>
 
 #include "tests/cli/refusals.hpp"
@@ -10,7 +11,8 @@ namespace {
 
 /// Runs raya bench with one row that takes less than a second.
 RunOutcome bench(const Arguments& more, int code = 0) {
-    Arguments arguments = {"bench", scene_file("mirrors"), "--size", "32", "--lanes", "4", "--format", "fp32"};
+    Arguments arguments = {"bench", scene_file("mirrors"), "--size", "32", "--lanes", "4", "--format",
+                           "fp32",  "--bounces",           "4"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     RunOutcome run = run_raya(arguments);
     INFO(run.describe());
@@ -30,7 +32,7 @@ TEST_CASE("bench --compare: a later run is compared with the rows of a report", 
     const Document report = json_of(base);
     REQUIRE(report["rows"].size() == 1);
     const Document& row = report["rows"][0];
-    CHECK((row["kernel"] == "trace" && row["array"] == "32 PEs, cyclic:16, 8 bounces, accel none" &&
+    CHECK((row["kernel"] == "trace" && row["array"] == "32 PEs, cyclic:16, 4 bounces, accel none" &&
            row["samples"] == 3));
     CHECK(row["ms"]["best"] <= row["ms"]["median"]);
     CHECK(row["mrays_per_s"]["best"].get<double>() ==
@@ -55,34 +57,8 @@ TEST_CASE("bench --compare: a later run is compared with the rows of a report", 
     CHECK(json_of(folder / "now.json")["rows"][0]["hash"] == hash);  // a slower run also writes the report
     CHECK_THAT(bench_with({"--compare", changed(1e-3, "0123456789")}, 4).out,
                Catch::Contains("OTHER IMAGE: ") && Catch::Contains(", was 01234567"));
-    CHECK_THAT(bench_with({"--compare", base, "--bounces", "1"}, 2).err,
-               Catch::Contains("contains no row of this run") && Catch::Contains("1 bounces"));
-}
-
-TEST_CASE("bench --variants: times each variant, and all variants render the same image", "[cli][slow]") {
-    const ScratchFolder folder;
-    bench({"--variants", "grid,torus,none", "--machine", "grande", "--samples", "1", "--report", folder / "r.json"});
-    const Document rows = json_of(folder / "r.json")["rows"];
-    REQUIRE(rows.size() == 3);
-    const char* const kernels[] = {"render, grid", "torus", "render, none"};
-    for (std::size_t i = 0; i < 3; ++i) {
-        CHECK((rows[i]["kernel"] == kernels[i] && rows[i]["ms"]["best"] > 0));
-        CHECK((rows[i]["hash"] == rows[0]["hash"] && rows[i]["rays"] == rows[0]["rays"]));
-    }
-}
-
-TEST_CASE("bench --build: lists compile times, and exits with 4 if one takes longer than --limit", "[cli]") {
-    const ScratchFolder folder;
-    bench({"--build", "--variants", "none", "--pes", "4", "--report", folder / "b.json"});
-    const Document builds = json_of(folder / "b.json")["builds"];
-    REQUIRE(builds.size() == 3);
-    const char* const kernels[] = {"ring/trace.cl", "ring/filter.cl", "ring/contrast.cl"};
-    for (std::size_t i = 0; i < 3; ++i)
-        CHECK((builds[i]["kernel"] == kernels[i] && builds[i]["build_s"] > 0 && builds[i]["first_launch_s"] > 0));
-    CHECK_THAT(
-        bench({"--build", "--variants", "none", "--pes", "4", "--limit", "0.001"}, 4).err,
-        Catch::StartsWith("raya: ring/trace.cl, none, fp32, 4 lanes: ") && Catch::Contains("above --limit 0.001 s"));
-    CHECK_THAT(bench({"--compare", folder / "b.json"}, 2).err, Catch::Contains("the report has no measurements"));
+    CHECK_THAT(bench_with({"--compare", base, "--offset", "3"}, 2).err,
+               Catch::Contains("contains no row of this run") && Catch::Contains("cyclic:3"));
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST_CASE("render --profile: without memory for the peak measurement it prints n
           "[cli]") {
     // The n-th buffer and all later ones fail: for small n one of the render, for larger n one of the measurement.
     int failed_renders = 0, missing_peaks = 0;
-    for (int n = 1; n < 60; n += thorough() ? 1 : 4) {
+    for (int n = 1; n < 60; n += thorough() ? 1 : 8) {
         const ScratchFolder outputs;
         const RunOutcome run = run_raya(small_render(outputs, {"--profile"}),
                                         device_with_fault("clCreateBuffer " + std::to_string(n) + " -4"));
@@ -102,6 +102,12 @@ TEST_CASE("render: a failed allocation anywhere in raya ends the run with a mess
                   {.max_memory_bytes = 100 << 20});
     check_refused(outputs, {"render", scene_file("planes"), "-o", outputs / "x.pfm", "--size", "512", "--lanes", "4"},
                   2, {"x.pfm", "File too large", "ulimit -f"}, {.max_file_bytes = 1 << 21});
+    const ScratchFolder inputs;
+    std::ofstream mesh(inputs / "large.obj");  // assimp needs far more memory than this text
+    for (int i = 0; i < 100'000; ++i) mesh << "v 0 0 1\n";
+    for (int i = 0; i < 400'000; ++i) mesh << "f 1 2 3\n";
+    mesh.close();
+    check_refused(outputs, {"info", inputs / "large.obj"}, 2, {"large.obj: "}, {.max_memory_bytes = 150 << 20});
 }
 
 TEST_CASE("render: faults of kernels: one that does not compile, one that ends early, a wrong build option", "[cli]") {

@@ -44,9 +44,9 @@ TEST_CASE("info: figures equal those of renders, for machines, accelerators and 
                                          {random, "--machine", "torus"},
                                          {random, "--machine", "grande", "--accel", "grid"}};
     for (const Arguments& row : quick_of(6, rows)) {
-        Arguments info = {"info", "--json", "--size", "16", "--bounces", "1"},
+        Arguments info = {"info", "--json", "--size", "16", "--bounces", "4"},
                   render = {"render", "-o", folder / "x.pfm", "--report", folder / "x.json", "--lanes", "4",
-                            "--size", "16", "--bounces",      "1"};
+                            "--size", "16", "--bounces",      "4"};
         for (Arguments* arguments : {&info, &render}) arguments->insert(arguments->end(), row.begin(), row.end());
         const RunOutcome printed = run_raya(
                              info, {.variables = {{"OCL_ICD_VENDORS", "/nowhere"}, {"OCL_ICD_FILENAMES", ""}}}),

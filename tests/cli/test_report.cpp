@@ -147,6 +147,7 @@ TEST_CASE("render --antialias: counts of the exchange, of supersampled pixels, a
     std::map<std::string, Document> hashes;
     for (const std::string method : {"none", "filter", "supersample"})
         for (const std::string exchange : {"ring", "bus", "bus-broadcast"}) {
+            if (method == "none" && exchange != "ring") continue;
             Arguments options = {"--offset", "3", "--antialias", method};
             if (method != "none") options.insert(options.end(), {"--exchange", exchange});
             const Document report = RenderFiles("planes", options).report();
@@ -184,21 +185,17 @@ TEST_CASE("render --antialias: counts of the exchange, of supersampled pixels, a
             } else {
                 CHECK(report["rays"] == plain["rays"]);
             }
-            const auto approx = [](double value) { return Approx(value).epsilon(1e-9); };
-            const double setup_ms = 1.375, ms_per_word = (140 - setup_ms) / 196'608, ms_per_cycle = 1e-4 * 7 / 1.0752;
-            const double filter = method == "filter" ? 42 * ms_per_cycle * kTestHeight : 0,
-                         compare = method == "supersample" ? 121 * ms_per_cycle * kTestHeight : 0;
-            CHECK((ms["filter"] == approx(filter) && ms["compare"] == approx(compare)));
-            CHECK(ms["compute"] == approx(ms_per_cycle * static_cast<double>(max_load) + filter + compare));
-            CHECK(ms["objects"] == approx(setup_ms + ms_per_word * communication["broadcast_words"].get<double>()));
-            CHECK(ms["image"] == approx(setup_ms + ms_per_word * communication["gather_words"].get<double>()));
-            CHECK(ms["display"] == approx(1130 * kPixels / 65'536.0));
-            const auto moved = static_cast<double>(rotations + transfers + broadcasts);
-            CHECK(ms["communication"] == approx(moves ? setup_ms + moved * (0.1845 + kBlock / 6e3) : 0));
+            // The formulas of the modelled times: tests/model/test_time_model.cpp.
+            const double ms_per_cycle = 1e-4 * 7 / 1.0752;
+            CHECK((ms["filter"] > 0) == (method == "filter"));
+            CHECK((ms["compare"] > 0) == (method == "supersample"));
+            CHECK((ms["communication"] > 0) == moves);
+            CHECK(ms["compute"].get<double>() == Approx(ms_per_cycle * static_cast<double>(max_load) +
+                                                        ms["filter"].get<double>() + ms["compare"].get<double>()));
             double total = 0;
             for (const char* part : {"objects", "compute", "communication", "image", "display"})
                 total += ms[part].get<double>();
-            CHECK(ms["total"] == approx(total));
+            CHECK(ms["total"].get<double>() == Approx(total));
         }
 }
 

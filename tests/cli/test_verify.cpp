@@ -11,13 +11,17 @@
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/kernels/write_kernels.hpp"
+#include "tests/thorough.hpp"
 #include "tests/verify/faults.hpp"
 
 namespace raya {
 namespace {
 namespace fs = std::filesystem;
 
+/// Runs raya verify, with four lanes unless --lanes or --as is given, because their kernels compile fastest.
 RunOutcome verify(Arguments more, const RunOptions& options = {}) {
+    const auto sets_lanes = [](const std::string& option) { return option == "--lanes" || option == "--as"; };
+    if (std::ranges::none_of(more, sets_lanes)) more.insert(more.end(), {"--lanes", "4"});
     more.insert(more.begin(), "verify");
     return run_raya(more, options);
 }
@@ -273,53 +277,54 @@ TEST_CASE("verify --as: runs the checks of a render, and finds a fault only if t
         Arguments parts;
         std::string absent = "machine ";
     };
-    for (const Row& row :
-         {Row{"polygons",
-              "--lanes 4 --format fp32" + lost_light,
-              {},
-              0,
-              {"PASS  number    fp32, 4 lanes", "PASS  geometry  known hits of cones, fp32, 4 lanes",
-               "PASS  image     polygons fp32, as given", "PASS  image     glass fp32 filter, as given",
-               "PASS  image     polygons.nff 32x32, as given and as simple as possible"}},
-          Row{"polygons",
-              "--lanes 4 --format fp32 --accel bvh --size 40x20" + lost_light,
-              {"--only", "image polygons"},
-              4,
-              {"FAIL  image     polygons fp32, as given", "-DRAYA_ACCEL=2",
-               "FAIL  image     polygons.nff 32x16, as given and as simple as possible"}},
-          // Without reference images in the format: compares with the simplest render.
-          Row{"polygons",
-              "--lanes 4 --format e7m11 --accel bvh" + lost_light,
-              {},
-              4,
-              {"SKIP  number    e7m11, 4 lanes", "there are no stored results in e7m11",
-               "there is no reference image in e7m11",
-               "FAIL  image     polygons.nff 32x32, as given and as simple as possible"}},
-          Row{"polygons",
-              "--machine grande --accel bvh --lanes 16" + wrong_packet,
-              {"--only", "image polygons"},
-              4,
-              {"FAIL  image     polygons fp32, as given", "-DRAYA_RAY_PACKETS=1"}},
-          // A report needs all counts, so that there are no packets.
-          Row{"polygons",
-              "--machine grande --accel bvh --lanes 16 --report r.json" + wrong_packet,
-              {"--only", "image polygons"},
-              0,
-              {}},
-          Row{"polygons",
-              "--machine torus --nodes 2x2x1 --lanes 4",
-              {"--only", "image polygons"},
-              0,
-              {"PASS  image     polygons fp32, as given", "PASS  image     polygons.nff 32x32"},
-              "filter"},
-          Row{"mirrors",
-              "--size 40 --offset 35 --lanes 4",
-              {"--only", "image mirrors"},
-              0,
-              {"SKIP  image     mirrors spa22, as given", "--offset 35: must be 0..19",
-               "PASS  image     mirrors.nff 40x40"}},
-          Row{"mirrors", "--lanes 4" + rounding, {"--only", "number"}, 4, {"FAIL  number    e6m15, 4 lanes"}},
-          Row{"mirrors", "--lanes 4", {"--only", "number", "--soak", "1s"}, 0, {}}}) {
+    const std::vector<Row> rows = {
+        {"polygons",
+         "--lanes 4 --format fp32" + lost_light,
+         {},
+         0,
+         {"PASS  number    fp32, 4 lanes", "PASS  geometry  known hits of cones, fp32, 4 lanes",
+          "PASS  image     polygons fp32, as given", "PASS  image     glass fp32 filter, as given",
+          "PASS  image     polygons.nff 32x32, as given and as simple as possible"}},
+        {"polygons",
+         "--lanes 4 --format fp32 --accel bvh --size 40x20" + lost_light,
+         {"--only", "image polygons"},
+         4,
+         {"FAIL  image     polygons fp32, as given", "-DRAYA_ACCEL=2",
+          "FAIL  image     polygons.nff 32x16, as given and as simple as possible"}},
+        {"polygons",
+         "--machine grande --accel bvh --lanes 4" + wrong_packet,
+         {"--only", "image polygons"},
+         4,
+         {"FAIL  image     polygons fp32, as given", "-DRAYA_RAY_PACKETS=1"}},
+        {"polygons",
+         "--machine torus --nodes 2x2x1 --lanes 4",
+         {"--only", "image polygons"},
+         0,
+         {"PASS  image     polygons fp32, as given", "PASS  image     polygons.nff 32x32"},
+         "filter"},
+        {"mirrors",
+         "--size 40 --offset 35 --lanes 4",
+         {"--only", "image mirrors"},
+         0,
+         {"SKIP  image     mirrors spa22, as given", "--offset 35: must be 0..19",
+          "PASS  image     mirrors.nff 40x40"}},
+        {"mirrors", "--lanes 4" + rounding, {"--only", "number"}, 4, {"FAIL  number    e6m15, 4 lanes"}},
+        {"mirrors", "--lanes 4", {"--only", "number", "--soak", "1s"}, 0, {}},
+        // Without reference images in the format: compares with the simplest render.
+        {"polygons",
+         "--lanes 4 --format e7m11 --accel bvh" + lost_light,
+         {},
+         4,
+         {"SKIP  number    e7m11, 4 lanes", "there are no stored results in e7m11",
+          "there is no reference image in e7m11",
+          "FAIL  image     polygons.nff 32x32, as given and as simple as possible"}},
+        // A report needs all counts, so that there are no packets.
+        {"polygons",
+         "--machine grande --accel bvh --lanes 16 --report r.json" + wrong_packet,
+         {"--only", "image polygons"},
+         0,
+         {}}};
+    for (const Row& row : quick_of(7, rows)) {
         Arguments arguments = {"--as", "raya render '" + scene_file(row.scene) + "' -o x.png " + row.options};
         arguments.insert(arguments.end(), row.more.begin(), row.more.end());
         const RunOutcome run = verify(arguments);
@@ -332,7 +337,7 @@ TEST_CASE("verify --as: runs the checks of a render, and finds a fault only if t
 
 TEST_CASE("verify --as: builds the same program as the render", "[cli][verify]") {
     const ScratchFolder scratch;
-    const std::string options = " --lanes 8 --group 2 --bounces 3 --format fp32 --accel grid --size 64";
+    const std::string options = " --lanes 4 --group 3 --bounces 4 --format fp32 --accel grid --size 64";
     const auto trace_builds = [&](const Arguments& arguments) {
         const std::string log = scratch / "log";
         const RunOutcome run = run_raya(arguments, {.variables = {{"RAYA_KERNEL_LOG", log}}});

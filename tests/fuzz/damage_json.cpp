@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
+#include "host/base/encoding.hpp"
 #include "tests/fuzz/mutate.hpp"
 
 namespace raya::fuzz {
@@ -13,70 +15,22 @@ using Document = nlohmann::ordered_json;
 // cannot write such text.
 constexpr const char* kRaw = "\x01raw";
 
-const char* const kRawValues[] = {"1e400",
-                                  "-1e400",
-                                  "1e308",
-                                  "1e-400",
-                                  "-0",
-                                  "-0.0",
-                                  "18446744073709551615",
-                                  "18446744073709551616",
-                                  "1E5",
-                                  "-9223372036854775808",
-                                  "-9223372036854775809",
-                                  "99999999999999999999999999",
-                                  "1.5e3",
-                                  "01",
-                                  "1.",
-                                  "nan",
-                                  "Infinity",
-                                  "\"\\ud800\"",
-                                  "\"\\u0000\"",
-                                  "\"\xff\xfe\"",
-                                  "\"\\x\"",
-                                  "{\"a\":1,\"a\":2}",
-                                  "[1,]",
-                                  "\"open",
-                                  "//",
-                                  "tru"};
+const std::vector<std::string> kRawValues = split(
+    "1e400|-1e400|1e308|1e-400|-0|-0.0|18446744073709551615|18446744073709551616|1E5|-9223372036854775808|-"
+    "9223372036854775809|99999999999999999999999999|1.5e3|01|1.|nan|Infinity|\"\\ud800\"|\"\\u0000\"|\"\xff\xfe\"|"
+    "\"\\x\"|{\"a\":1,\"a\":2}|[1,]|\"open|//|tru",
+    '|');
 
 const std::int64_t kIntegers[] = {0,     1,          -1,         2,          3,          4,         7,
                                   8,     16,         255,        256,        1024,       16384,     16385,
                                   65536, 2147483647, 2147483648, 4294967295, 4294967296, INT64_MAX, INT64_MIN};
 
-const char* const kTexts[] = {"",
-                              "a",
-                              "raya render",
-                              "raya bench",
-                              "raya verify",
-                              "raya tune",
-                              "cyclic",
-                              "cyclic:3",
-                              "column",
-                              "rows",
-                              "blocks",
-                              "grid:2x2",
-                              "grid:0x4",
-                              "tiles:2x2",
-                              "random:7",
-                              "dynamic:4",
-                              "hybrid:4,1,0.5",
-                              "block",
-                              "fp32",
-                              "spa22",
-                              "e5m10",
-                              "none",
-                              "grid",
-                              "bvh",
-                              "ring",
-                              "torus",
-                              "reduced",
-                              "<script>",
-                              "&\"'",
-                              "\x7f\x1b[31m",
-                              "\xf0\x9f\x98\x80",
-                              "iVBORw0KGgo=",
-                              "474a384374e81c5144a0e5405232a750"};
+const std::vector<std::string> kTexts = split(
+    "|a|raya render|raya bench|raya verify|raya "
+    "tune|cyclic|cyclic:3|column|rows|blocks|grid:2x2|grid:0x4|tiles:2x2|random:7|dynamic:4|hybrid:4,1,0.5|block|fp32|"
+    "spa22|e5m10|none|grid|bvh|ring|torus|reduced|<script>|&\"'|\x7f\x1b[31m|\xf0\x9f\x98\x80|iVBORw0KGgo=|"
+    "474a384374e81c5144a0e5405232a750",
+    '|');
 
 // Reference to a value of a document: the array or object that contains the value, and the value's index or key.
 struct ValueReference {

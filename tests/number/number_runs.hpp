@@ -7,14 +7,16 @@
 
 #include "host/verify/numbers.hpp"
 #include "tests/kernels/unoptimised.hpp"
+#include "tests/thorough.hpp"
 
 namespace raya {
 
-/// Returns the largest number of lanes to test: the environment variable RAYA_NUMBER_LANES, 16 by default. The variable
-/// exists because some compilers take very long for many lanes.
+/// Returns the largest number of lanes to test: the environment variable RAYA_NUMBER_LANES, by default 16 if
+/// thorough(), otherwise 4, as in kernels of other tests. The variable exists because some compilers take very long for
+/// many lanes.
 inline std::uint32_t widest_lanes() {
     const char* text = std::getenv("RAYA_NUMBER_LANES");
-    return text == nullptr ? 16 : static_cast<std::uint32_t>(std::stoul(text));
+    return text == nullptr ? (thorough() ? 16 : 4) : static_cast<std::uint32_t>(std::stoul(text));
 }
 
 /// Returns the number of rows of random operands: the environment variable RAYA_NUMBER_CASES, by default

@@ -18,8 +18,10 @@ constexpr std::uint64_t kOracleSeed = 1993;
 /// format and the SPA's format. The layer has separate code for X = 8 and for Y > 15. The formats include each of these
 /// cases alone, and both together.
 std::vector<NumberFormat> tested_formats() {
-    std::vector<NumberFormat> formats = {{5, 4}, {8, 7}, {7, 10}, {5, 12}, {6, 15}, {8, 15}, {7, 18}, {8, 21}, {5, 21}};
-    if (is_long_run(kDefaultRows)) formats.insert(formats.end(), {{8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
+    std::vector<NumberFormat> formats = {{5, 4}, {8, 7}, {6, 15}, {7, 18}, {8, 21}};
+    if (is_long_run(kDefaultRows))
+        formats.insert(formats.end(),
+                       {{7, 10}, {5, 12}, {8, 15}, {5, 21}, {8, 4}, {6, 7}, {8, 16}, {6, 16}, {8, 18}, {7, 21}});
     for (std::size_t i = formats.size(); i-- > 0;)
         formats.push_back({formats[i].exponent_bits, formats[i].fraction_bits, true});
     return formats;

@@ -24,7 +24,6 @@ namespace {
 const std::vector<std::uint64_t> kFailedRingSeeds = {}, kFailedTorusSeeds = {};
 
 constexpr std::uint64_t kFirstSeed = 20'260'000;
-constexpr std::uint32_t kBounces = 4;
 
 std::vector<std::uint64_t> seeds(const std::vector<std::uint64_t>& failed, unsigned few, unsigned all) {
     const char* const given = std::getenv("RAYA_PROPERTY_CASES");
@@ -117,7 +116,7 @@ Antialias random_antialias(SplitMix& random) {
 RingSettings random_ring(SplitMix& random, const Build& build) {
     RingSettings s;
     s.machine = machine_named("grande");
-    s.bounces = kBounces;
+    s.bounces = kTestBounces;
     s.format = parse_format(build.format);
     s.kernels = kernels_of(build);
     s.antialias = random_antialias(random);
@@ -276,7 +275,7 @@ TorusCase random_torus_case(SplitMix& random, const Build& build, std::uint32_t 
     TorusCase c{.width = 1 + random_below(random, 10), .height = 1 + random_below(random, 8)};
     c.lanes = build.lanes;
     c.group = build.group;
-    c.bounces = kBounces;
+    c.bounces = kTestBounces;
     c.format = build.format;
     c.nodes = random_sides(random, 4);
     const std::uint32_t voxel_choice = random_below(random, 4);
@@ -373,7 +372,7 @@ void check_seen(const Seen& seen) {
 TEST_CASE("ring: image and counts are those of the simplest machine", "[property][ring]") {
     Session session(choose_device(""));
     Seen seen;
-    for (const std::uint64_t seed : seeds(kFailedRingSeeds, 120, 3000)) {
+    for (const std::uint64_t seed : seeds(kFailedRingSeeds, 80, 3000)) {
         CAPTURE(seed);
         CHECK(check_ring(session, seed, seen) == "");
     }
@@ -383,7 +382,7 @@ TEST_CASE("ring: image and counts are those of the simplest machine", "[property
 TEST_CASE("torus: image and counts are those of the simplest machine", "[property][torus]") {
     Session session(choose_device(""));
     Seen seen;
-    for (const std::uint64_t seed : seeds(kFailedTorusSeeds, 50, 1000)) {
+    for (const std::uint64_t seed : seeds(kFailedTorusSeeds, 35, 1000)) {
         CAPTURE(seed);
         CHECK(check_torus(session, seed, seen) == "");
     }

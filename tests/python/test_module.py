@@ -81,8 +81,8 @@ def test_owners_of_the_cyclic_mapping():
 
 
 @pytest.mark.skipif(not shutil.which("node"), reason="no node (Debian: nodejs)")
-def test_owners_of_random_mappings_on_the_page(tmp_path):
-    """The page's script has the owners of the engine."""
+def test_owners_and_balances_of_random_mappings_on_the_page(tmp_path):
+    """The page's script has the owners, and computes the imbalance and speed-up, of the engine."""
     (tmp_path / "r.json").write_text('{"kind": "raya render"}')
     subprocess.run([raya.program(), "page", "r.json", "-q", "-o", "r.html"], cwd=tmp_path, check=True)
     scripts = re.findall(r"<script>(.*?)</script>", (tmp_path / "r.html").read_text(), re.DOTALL)
@@ -96,12 +96,18 @@ def test_owners_of_random_mappings_on_the_page(tmp_path):
         if kind == "grid":
             pes = a * b
         options = {"offset": offset, "fold": fold} if kind == "slots" else {}
-        wanted.append(raya.owners(width, height, mapping=text.get(kind, kind), pes=pes, **options).ravel().tolist())
-        cases.append([{"kind": kind, "offset": offset, "fold": fold, "pes": pes, "a": a, "b": b, "seed": seed}, {"width": width, "height": height}])
-    script = next(text for text in scripts if "raya_owner" in text) + f"console.log(JSON.stringify({json.dumps(cases)}.map((c) => [...ownersOf(...c)])))"
-    found = json.loads(subprocess.run(["node", "-e", script], check=True, capture_output=True, text=True).stdout)
-    for case, answer, right in zip(cases, found, wanted):
-        assert answer == right, f"{case}, seed {SEED}"
+        owners = raya.owners(width, height, mapping=text.get(kind, kind), pes=pes, **options).ravel()
+        costs = random.integers(1, 1000, width * height)
+        loads = np.bincount(owners, costs, minlength=pes)
+        wanted.append([owners.tolist(), (loads.max() - loads.mean()) / loads.mean(), loads.sum() / loads.max()])
+        cases.append([{"kind": kind, "offset": offset, "fold": fold, "pes": pes, "a": a, "b": b, "seed": seed}, {"width": width, "height": height}, costs.tolist()])
+    script = next(text for text in scripts if "raya_owner" in text) + f"""console.log(JSON.stringify({json.dumps(cases)}.map(([setting, size, costs]) => {{
+        const owners = ownersOf(setting, size), balance = balanceOf(loadsOf(owners, costs, setting.pes));
+        return [[...owners], balance.imbalance, balance.speedup];
+    }})))"""
+    found = json.loads(subprocess.run(["node", "-"], input=script, check=True, capture_output=True, text=True).stdout)
+    for case, (owners, *balance), (right_owners, *right_balance) in zip(cases, found, wanted):
+        assert owners == right_owners and balance == pytest.approx(right_balance, rel=1e-12), f"{case}, seed {SEED}"
 
 
 def test_imbalances_agree_with_loads():

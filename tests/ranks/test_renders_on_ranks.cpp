@@ -15,6 +15,8 @@
 namespace raya {
 namespace {
 
+const std::vector<std::string> kScenes = project_scenes(2);
+
 /// Result of a rank. `text`: packets, or the message of a deadlock.
 template <class Result>
 struct Output {
@@ -72,8 +74,8 @@ TEST_CASE("random rings: image, loads and counts are the same on 1 to 8 ranks", 
     const ExchangeMethod exchanges[] = {ExchangeMethod::kRing, ExchangeMethod::kBus, ExchangeMethod::kBroadcast};
     std::uint32_t several = 0, uneven = 0;
     for (std::uint32_t i = 0; i < quick_cases(24, 200); ++i) {
-        const Scene scene = project_scene(project_scenes()[i % project_scenes().size()]), empty_scene;
-        RingSettings settings = settings_of(RingCase{.lanes = 4, .group = 1, .bounces = 3});
+        const Scene scene = project_scene(kScenes[i % kScenes.size()]), empty_scene;
+        RingSettings settings = settings_of(RingCase{.lanes = 4, .group = 1});
         settings.mapping = any_mapping(random, 20);
         settings.antialias.method = methods[random_below(random, 3)];
         settings.antialias.exchange = exchanges[random_below(random, 3)];
@@ -104,8 +106,8 @@ TEST_CASE("random toruses: image, traffic and packets, or the deadlock, are the 
     SplitMix random(kSeed);
     std::uint32_t several = 0;
     for (std::uint32_t i = 0; i < quick_cases(20, 150); ++i) {
-        const Scene scene = project_scene(project_scenes()[i % project_scenes().size()]), empty_scene;
-        TorusCase c{.width = 12, .height = 10, .group = 1, .bounces = 3};
+        const Scene scene = project_scene(kScenes[i % kScenes.size()]), empty_scene;
+        TorusCase c{.width = 12, .height = 10, .group = 1};
         c.nodes = random_sides(random, 3);
         for (std::size_t axis = 0; axis < 3; ++axis)
             c.voxels[axis] = random.next() % 2 ? c.nodes[axis] : 1 + random_below(random, 7);

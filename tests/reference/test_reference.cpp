@@ -1,4 +1,5 @@
-// Tests the reference renderer with scenes whose results are known.
+// Tests the reference renderer with scenes whose results are known. Further ones: tests/ring/test_known_answers.cpp,
+// whose kernels agree with the reference.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -13,7 +14,6 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 Surface matt(const Colour& colour) { return {.colour = colour, .diffuse = 1, .checker = {}}; }
-Surface mirror(double ks) { return {.diffuse = 0, .specular = ks, .checker = {}}; }
 Surface glass(double t, double ior) {
     return {.diffuse = 0, .transmittance = t, .refraction_index = ior, .checker = {}};
 }
@@ -98,44 +98,6 @@ TEST_CASE("the colours of lights add up; shadowed and averted faces get no light
     counts = {};
     check_colour(trace_pixel(scene, options, 0, 0, counts), Colour(ambient) + Colour(0, 0.5 * std::sqrt(0.5), 0), 1e-8);
     CHECK(counts == Counts{.primary = 1, .primary_hits = 1, .shadow = 1});
-}
-
-TEST_CASE("furnace test: objects in uniform light are invisible") {
-    Scene scene = scene_from(5);
-    scene.spheres = {{{-0.7, 0, 0}, 0.6, 0}, {{0.7, 0.1, 0.4}, 0.6, 0}};
-    const Options options{.width = 24, .height = 24, .bounces = 60};
-    SECTION("white matt spheres in white ambient light") {
-        scene.background = {1, 1, 1};
-        scene.surfaces = {matt({1, 1, 1})};
-    }
-    SECTION("perfect mirrors") {
-        scene.background = {0.2, 0.4, 0.7};
-        scene.surfaces = {mirror(1)};
-    }
-    SECTION("glass of index 1") {
-        scene.background = {0.2, 0.4, 0.7};
-        scene.surfaces = {glass(1, 1)};
-    }
-    const Image image = render(scene, options);
-    for (const Colour& pixel : image.pixels) REQUIRE(pixel == scene.background);
-    CHECK(image.counts.primary == 24 * 24);
-    CHECK(image.counts.primary_hits > 100);
-    CHECK(image.counts.shadow == 0);
-}
-
-TEST_CASE("the radiance between two mirrors is a geometric series") {
-    constexpr double kKd = 0.25, kKs = 0.5;
-    Scene scene;
-    scene.view = {.from = {0, 0, 0.5}, .at = {1, 0, 0.5}, .up = {0, 0, 1}, .angle_degrees = 60};
-    scene.surfaces = {{.diffuse = kKd, .specular = kKs, .checker = {}}};
-    scene.planes = {{{0, 0, 1}, 0, 0}, {{0, 0, 1}, 1, 0}};
-    for (const int bounces : {0, 1, 8}) {
-        const Image image = render(scene, {.width = 6, .height = 4, .bounces = bounces});
-        const double series = kKd * (1 - std::pow(kKs, bounces + 1)) / (1 - kKs);
-        for (const Colour& pixel : image.pixels) check_colour(pixel, Colour(series), 1e-15);
-        CHECK(image.counts ==
-              Counts{.primary = 24, .primary_hits = 24, .reflected = 24u * static_cast<unsigned>(bounces)});
-    }
 }
 
 TEST_CASE("a glass sphere shows the squares of a checkered plane where the closed formula predicts them") {

@@ -19,8 +19,8 @@ struct RingCase {
     std::uint32_t pes = 64, offset = 8;
     Fold fold = Fold::kCyclic;
     std::string machine = "grande";
-    std::optional<MappingRule> mapping{};                                // empty: cyclic with `offset` and `fold`
-    std::uint32_t lanes = default_test_lanes(), group = 0, bounces = 8;  // lanes or group 0: the device's default
+    std::optional<MappingRule> mapping{};  // empty: cyclic with `offset` and `fold`
+    std::uint32_t lanes = default_test_lanes(), group = 0, bounces = kTestBounces;  // lanes, group 0: the device's
     Sampling sampling = Sampling::kCentres;
     std::string format = "fp32";
     bool filter = true;
@@ -52,11 +52,10 @@ inline RingResult render_scene(const Scene& scene, const RingCase& c) {
 
 inline Scene project_scene(const std::string& name) { return read_nff(RAYA_SOURCE_DIR "/scenes/" + name + ".nff"); }
 
-/// The names of the scenes in scenes/, which together contain every kind of object and surface.
-inline const std::vector<std::string>& project_scenes() {
-    static const std::vector<std::string> names = {"centre",   "spheres", "mirrors", "glass",
-                                                   "polygons", "cones",   "planes"};
-    return names;
+/// Returns the first `few` of the scenes in scenes/, or all if thorough(). They contain every kind of object and surface;
+/// the kernels of the first four differ.
+inline std::vector<std::string> project_scenes(std::size_t few) {
+    return quick<std::string>(few, {"planes", "glass", "cones", "polygons", "centre", "spheres", "mirrors"});
 }
 
 }  // namespace raya

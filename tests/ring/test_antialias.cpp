@@ -1,5 +1,5 @@
-// Anti-aliasing on the ring: sample points, thresholds, and the paper's numbers of rotations. That images do not depend
-// on the distribution of the pixels, and equal functions of the whole image: tests/property.
+// Anti-aliasing on the ring: sample points and thresholds. Numbers of rotations: test_route.cpp. That images do not
+// depend on the distribution of the pixels, and equal functions of the whole image: tests/property.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -113,23 +113,6 @@ TEST_CASE("pixels whose difference equals the threshold are marked; differences 
     CHECK(recomputed_pixels(-7, 0, 0.125, 1) == 0);
     CHECK(recomputed_pixels(1, 9, 0.125, 0) == 0);
     CHECK(recomputed_pixels(-7, 9, 1, 1) == outline_pixels);
-}
-
-TEST_CASE("with one column of pixels per PE, the upper and lower neighbours are p PEs away", "[ring][antialias]") {
-    Session session(choose_device(""));
-    const Scene scene = two_spheres();
-    // The left and right neighbours take one rotation each, the upper and lower neighbours min(p, 256 - p) each. With
-    // p = 0 the upper and lower neighbours are in the PE's own block.
-    for (const auto method : {AntialiasMethod::kFilter, AntialiasMethod::kSupersample})
-        for (const auto& [offset, rotations] : {std::pair{0u, 2u}, {8u, 18u}, {16u, 34u}, {240u, 34u}}) {
-            const RingCase c{
-                .width = 256, .height = 256, .pes = 256, .offset = offset, .antialias = {.method = method}};
-            const RingResult result = RingRenderer(session, scene, settings_of(c)).render();
-            CAPTURE(offset, antialias_name(method));
-            CHECK(result.communication.rotations == rotations);
-            CHECK(result.communication.rotation_words == rotations * 256ull * 3 * 256);
-            CHECK(result.communication.broadcasts == 1);
-        }
 }
 
 }  // namespace raya

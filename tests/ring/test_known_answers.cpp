@@ -49,7 +49,7 @@ TEST_CASE("the light between two mirrors is a geometric series with one term per
     scene.view.at = {0, 0, 1};
     scene.surfaces = {{.colour = {1, 0.5, 0.25}, .diffuse = 0.5, .specular = 0.5}};
     scene.planes = {{{0, 0, 1}, 0, 0}, {{0, 0, 1}, 1, 0}};
-    for (const std::uint32_t bounces : {0u, 8u, 31u}) {
+    for (const std::uint32_t bounces : {0u, kTestBounces, 31u}) {
         const RingResult result =
             render_scene(scene, {.width = 1, .height = 1, .pes = 1, .offset = 0, .bounces = bounces});
         const double series = 0.5 * (1 - std::pow(0.5, bounces + 1)) / 0.5;  // ambient 1, no lights

@@ -71,7 +71,7 @@ TEST_CASE("the trace of the machine ends at the modelled time and has the counte
     const double cycle_ns = 1e6 * compute_ms(machine_named("spa").clock, 1);
     const std::optional<MappingRule> mappings[] = {
         {}, column_mapping(), rows_mapping(), blocks_mapping(), grid_mapping(4, 6), tiles_mapping(4, 4)};
-    for (int i = 0; i < 24; ++i) {
+    for (int i = 0; i < static_cast<int>(quick_cases(9, 24)); ++i) {
         RingCase c{.width = 24, .height = 16, .pes = 24, .offset = random_below(random, 24), .machine = "spa"};
         c.mapping = mappings[random_below(random, std::size(mappings))];
         c.lanes = 4;

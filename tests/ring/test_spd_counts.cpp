@@ -15,10 +15,11 @@ namespace raya {
 namespace {
 
 EventCounts count_rays(const Scene& scene) {
-    return render_scene(
-               scene,
-               {.width = 513, .height = 513, .pes = 513, .offset = 16, .bounces = 4, .sampling = Sampling::kCorners})
-        .events;
+    Session session(choose_device(""));
+    RingSettings settings = settings_of(
+        {.width = 513, .height = 513, .pes = 513, .offset = 16, .bounces = 4, .sampling = Sampling::kCorners});
+    settings.accel.kind = AccelKind::kBvh;
+    return RingRenderer(session, scene, settings).render().events;
 }
 
 void check_between(std::uint64_t value, double low, double high) {
@@ -41,9 +42,6 @@ TEST_CASE("the scene balls gives the ray counts that SPD publishes", "[ring]") {
     check_between(e[RAYA_REFLECTED], 175000, 180500);
     CHECK(e[RAYA_REFRACTED] == 0);
     check_between(e[RAYA_SHADOW], 945000, 969000);
-    const std::uint64_t rays = e[RAYA_PRIMARY] + e[RAYA_REFLECTED] + e[RAYA_SHADOW];
-    CHECK(e[RAYA_SPHERE_TESTS] == 7381 * rays);
-    CHECK(e[RAYA_POLYGON_TESTS] == rays);
 }
 
 TEST_CASE("files written by the SPD programs, if present, give the ray counts that SPD publishes", "[.][long][ring]") {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "host/base/encoding.hpp"
 #include "host/scene/nff.hpp"
 #include "tests/paths.h"
 #include "tests/scene/spd_folder.hpp"
@@ -16,12 +17,6 @@ namespace {
 const std::string kPlainView = "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 0.5\nresolution 320 200\n";
 
 Scene scene_of(const std::string& entities) { return parse_nff(kPlainView + entities, "folder/t.nff"); }
-
-std::string replaced(std::string text, const std::string& old_text, const std::string& new_text) {
-    for (std::size_t at = 0; (at = text.find(old_text, at)) != std::string::npos; at += new_text.size())
-        text.replace(at, old_text.size(), new_text);
-    return text;
-}
 
 }  // namespace
 
@@ -117,6 +112,33 @@ TEST_CASE("polygons may be concave, small, distant and slightly non-planar", "[n
     CHECK_NOTHROW(scene_of("p 3 0 0 0 1e-6 0 0 0 1e-6 0\n"));
     CHECK_NOTHROW(scene_of("p 3 1e6 1e6 0 1000000.1 1e6 0 1e6 1000000.1 0\n"));
     CHECK_NOTHROW(scene_of("p 4 0 0 0 1 0 0.001 1 1 0 0 1 0.001\n"));
+}
+
+TEST_CASE("a checker before a polygon without area is skipped with it", "[nff]") {
+    std::vector<SceneRemark> remarks;
+    const Scene s =
+        parse_nff(kPlainView + "#raya checker 1 1 1 0 0 0 1\np 3\n0 0 0\n1 0 0\n2 0 0\np 3 0 0 0 1 0 0 0 1 0\n",
+                  "t.nff", &remarks);
+    REQUIRE(s.polygons.size() == 1);
+    CHECK_FALSE(s.surfaces[0].checker);
+}
+
+TEST_CASE("the triangles of a patch that is not flat keep its normals", "[nff]") {
+    std::vector<SceneRemark> remarks;
+    const Scene s =
+        parse_nff(kPlainView + "pp 4\n0 0 0 0 0 1\n1 0 0 1 0 0\n1 1 0.5 0 1 0\n0 1 0 0 0 1\n", "t.nff", &remarks);
+    REQUIRE(s.polygons.size() == 2);
+    for (const Polygon& triangle : s.polygons)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const bool second = triangle.vertices[i] == Vec3(1, 0, 0), third = triangle.vertices[i] == Vec3(1, 1, 0.5);
+            CHECK(triangle.normals[i] == (second ? Vec3(1, 0, 0) : third ? Vec3(0, 1, 0) : Vec3(0, 0, 1)));
+        }
+}
+
+TEST_CASE("write_nff() refuses a checker that NFF cannot express", "[nff]") {
+    Scene s = scene_of("s 0 0 0 1\n");
+    s.surfaces[0].checker = Checker{{1, 1, 1}, {0, 0, 0}, 1};
+    CHECK_THROWS_WITH(write_nff(s), "t.nff: NFF has no checkered spheres and cones; use a plane or polygon");
 }
 
 TEST_CASE("a scene is equal after writing and reading", "[nff]") {

@@ -33,11 +33,11 @@ if [[ -d $prefix/lib/python3 ]]; then  # the Python module, alone and in `raya s
     run_installed env PYTHONPATH="$prefix/lib/python3/dist-packages" /usr/bin/python3 -c \
         "import raya; r = raya.render('$prefix/share/raya/scenes/centre.nff'); print(r.hash, raya.program()); open('r.png', 'wb').write(r.png)"
     expect 0 "474a384374e81c5144a0e5405232a750 $prefix/bin/raya"
-    run_installed raya study fig8 --size 17 -q -o study
+    run_installed raya study fig8 "$prefix/share/raya/scenes/centre.nff" --size 17 -q -o study
     expect 0 ""
     [[ -s $scratch/home/study/index.html ]] || fail "there is no document: $out"
     chmod o+w "$prefix/lib/python3/dist-packages/raya"
-    run_installed raya study fig8 --size 17 -q -o study
+    run_installed raya study fig8 "$prefix/share/raya/scenes/centre.nff" --size 17 -q -o study
     expect 2 "refused to run '$prefix/lib/python3/dist-packages': other users may write"
     chmod o-w "$prefix/lib/python3/dist-packages/raya"
 fi

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Opens pages of raya in headless Chromium: no script fails, no text of a report becomes markup, parts of a damaged report are named, and the
-explorer's figures equal those of `raya render`.
+"""Opens pages of raya in headless Chromium: no script fails, no text of a report becomes markup, parts of a damaged report are named.
+The figures that the explorer computes: tests/python.
 
     tests/tools/test_pages.py RAYA     Exit code 77: no Chromium (tools/setup --browser)
 """
@@ -13,20 +13,17 @@ SMALL = ["--size", "48x36", "--machine", "grande", "--accel", "none", "--lanes",
 # Text that would mark the page's body if it became markup or code.
 HIT = "document.body.dataset.hit = 1"
 HOSTILE = f"</pre></script></template></title><script>{HIT}</script><img src=x onerror='{HIT}'>&lt;&#60;{{{{report}}}}<!--\u2028\0'\"`${{{HIT}}}`"
-# (--mapping, --pes, --fold) of the explorer's figures
-SETTINGS = [("cyclic:7", 48, "cyclic"), ("cyclic:5", 20, "block"), ("rows", 7, ""), ("grid:3x8", 24, ""), ("tiles:8x3", 9, ""), ("random:4000000000", 48, "")]
-FAULT = "(max - mean) / mean", "max / mean"
 
 
 def raya(*arguments):
     return subprocess.run([RAYA, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
 
 
-def opened(page, link=""):
+def opened(page):
     """Opens a page and waits for its scripts. Returns (its elements as HTML, messages of the console, which names failed scripts and requests)."""
     with tempfile.TemporaryDirectory() as profile:
         command = [BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", f"--user-data-dir={profile}",
-                   "--virtual-time-budget=5000", "--enable-logging=stderr", "--dump-dom", page.as_uri() + link]
+                   "--virtual-time-budget=5000", "--enable-logging=stderr", "--dump-dom", page.as_uri()]
         done = subprocess.run(command, check=True, capture_output=True, text=True, timeout=120)
     return done.stdout, re.findall(r".*:CONSOLE.*", done.stderr)
 
@@ -68,31 +65,14 @@ def faults_of_report(folder, name, expected, *command):
     yield from faults_of_page(broken, ["cannot be shown"])
 
 
-def wrong_figures(page, folder, settings):
-    """Yields differences between the explorer's figures and those of renders."""
-    for mapping, pes, fold in settings:
-        options = ["--mapping", mapping, "--pes", pes, *(["--fold", fold] if fold else [])]
-        printed = raya("render", SCENES / "spheres.nff", *SMALL, *options, "-o", folder / "x.ppm")
-        expected = re.search(r"^load +u = (.*?), speed-up (.*?), efficiency (.*? %)", printed, re.M).groups()
-        elements, messages = opened(page, f"#mapping={mapping}&pes={pes}" + (f"&fold={fold}" if fold else ""))
-        shown = tuple(html.unescape(re.search(rf'data-figure="{name}">(.*?)<', elements)[1]) for name in ("u", "speedup", "efficiency"))
-        if shown != expected or messages:
-            yield f"{mapping} on {pes} PEs: the explorer has {shown}, the render {expected}; {messages}"
-
-
 def main(folder):
     image = ["-o", folder / "x.ppm", "--quiet"]
     hash_and_u = [lambda report: report["image"]["hash"], lambda report: f"{report['load']['imbalance']:.3f}"]
     faults = [*faults_of_report(folder, "ring", hash_and_u, "render", SCENES / "spheres.nff", *SMALL, "--pes", 48, *image),
               *faults_of_report(folder, "torus", hash_and_u, "render", SCENES / "planes.nff", "--size", 16, "--lanes", 4, "--machine", "torus", *image),
               *faults_of_report(folder, "verify", [lambda report: report["devices"][0]["checks"][0]["name"]], "verify", "--only", "machine mapping")]
-    explorer = folder / "explorer.html"
-    raya("explore", SCENES / "spheres.nff", *SMALL, "-o", explorer)
-    faults += wrong_figures(explorer, folder, SETTINGS)
-    text = explorer.read_text()
-    explorer.write_text(text.replace(*FAULT))
-    if FAULT[0] not in text or not list(wrong_figures(explorer, folder, SETTINGS[:1])):
-        faults.append(f"{FAULT[1]} instead of {FAULT[0]} is not detected")
+    raya("explore", SCENES / "spheres.nff", *SMALL, "-o", folder / "explorer.html")
+    faults += faults_of_page(folder / "explorer.html", ["spheres.nff"])
     if (Path(RAYA).parent / "python").is_dir():
         raya("study", "fig8", "--size", 17, "-q", "-o", folder / "study")
         faults += faults_of_page(folder / "study/index.html", ["fig8"])

@@ -77,7 +77,8 @@ class Reports:
     def make_renders(self):
         # A scene for which raya warns, with a polygon without area and an unknown entity.
         odd = self.file("odd.nff", (SCENES / "planes.nff").read_text() + "p 3\n0 0 0\n0 0 0\n1 1 1\ntt 1\n")
-        quick_options = ["--size", "16", "--lanes", "4", "--format", "fp32", "--quiet", "--report", "r.json"]  # building kernels takes most of the time
+        # The kernels are those of other tests, because building them takes most of the time.
+        quick_options = ["--size", "16", "--lanes", "4", "--bounces", "4", "--format", "fp32", "--quiet", "--report", "r.json"]
         spheres, ring = SCENES / "spheres.nff", ["--pes", "8"]
 
         def render(scene, *options, output="x.ppm", launcher=()):
@@ -101,11 +102,16 @@ class Reports:
 
     def make_other_reports(self):
         scene = SCENES / "spheres.nff"
-        quick_options = ["--format", "fp32", "--size", "16", "--lanes", "4", "--samples", "1", "--report"]
+        quick_options = ["--format", "fp32", "--size", "16", "--lanes", "4", "--bounces", "4", "--samples", "1", "--report"]
         self.make("bench", "bench", scene, *quick_options, "base.json", file="base.json")
-        self.make("bench", "bench", scene, "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *quick_options, "r.json")
-        self.make("bench", "bench", scene, "--variants", "none", *quick_options, "r.json")
-        self.make("bench", "bench", scene, "--build", "--variants", "none", *quick_options, "r.json")
+        hashes = {row["hash"] for row in self.made[-1][2]["rows"]}
+        assert len(hashes) == 1, hashes  # all variants render the same image
+        self.make("bench", "bench", scene, "--variants", "none", "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *quick_options, "r.json")
+        # Exit code 4: a build took longer than --limit.
+        self.make("bench", "bench", scene, "--build", "--variants", "none", "--limit", "0.001", *quick_options, "r.json", code=4)
+        builds = self.made[-1][2]["builds"]
+        assert [build["kernel"] for build in builds] == ["ring/trace.cl", "ring/filter.cl", "ring/contrast.cl"], builds
+        assert all(build["build_s"] > 0 and build["first_launch_s"] > 0 for build in builds), builds
         self.run(self.raya, "tune", scene, "--seconds", 3, "--variants", "none", "--format", "fp32", "--size", "16", XDG_CACHE_HOME=self.folder / "cache")
         self.add_report("tuned", "the stored settings", next(self.folder.glob("cache/raya/tuned-*.json")).read_text())
         check = ["verify", "--brief", "--lanes", "4", "--only", "machine mapping: rows", "--report", "r.json"]

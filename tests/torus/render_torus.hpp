@@ -29,7 +29,7 @@ struct TorusCase {
     std::uint32_t queue = 0;                     // capacity in packets; 0: the default
     std::uint32_t lanes = default_test_lanes();  // 0: the device's default
     std::uint32_t group = 0;                     // work-items in a work-group; 0: the device's default
-    std::uint32_t bounces = 4;
+    std::uint32_t bounces = kTestBounces;
     std::string format = "fp32";
     PixelSubset pixels{};
     KernelSources sources{};

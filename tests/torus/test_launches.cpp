@@ -25,7 +25,7 @@ TEST_CASE("a launch whose loops the device cuts short is repeated with half the 
                         {"route", corrupt_moves},
                         {"accept", corrupt_moves}};
     const Scene scene = random_view_scene(kSceneSeeds[0]);
-    TorusCase c{.width = 6, .height = 5, .nodes = {2, 2, 1}, .lanes = 1, .group = 3, .bounces = 3};
+    TorusCase c{.width = 6, .height = 5, .nodes = {2, 2, 1}, .lanes = 1, .group = 3};
     for (const Row& row : rows) {
         CAPTURE(row.kernel);
         Session session(choose_device(""));
@@ -46,7 +46,7 @@ TEST_CASE("a launch whose loops the device cuts short is repeated with half the 
 TEST_CASE("compose is repeated with more work-groups if the device ends loops early", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kSceneSeeds[0]);
-    TorusCase c{.width = 16, .height = 15, .nodes = {2, 1, 1}, .lanes = 1, .group = 1, .bounces = 1};
+    TorusCase c{.width = 16, .height = 15, .nodes = {2, 1, 1}, .lanes = 1, .group = 3};
     const std::string expected = image_and_counts(render_torus(session, scene, c));
     c.sources.patches = {
         {"torus/compose.cl", "if (loops_were_cut(", "if (pixels > 4 * get_global_size(0) || loops_were_cut("}};
@@ -56,7 +56,7 @@ TEST_CASE("compose is repeated with more work-groups if the device ends loops ea
 TEST_CASE("a loop that the device ends early is detected in every kernel", "[torus]") {
     Session session(choose_device(""));
     const Scene scene = random_view_scene(kSceneSeeds[0]);
-    TorusCase c{.width = 6, .height = 5, .nodes = {2, 1, 1}, .lanes = 1, .group = 1, .bounces = 1};
+    TorusCase c{.width = 6, .height = 5, .nodes = {2, 1, 1}, .lanes = 1, .group = 3};
     std::vector<SourcePatch> patches;
     for (const char* kernel : {"inject", "trace_voxel", "route", "accept", "compose"})
         patches.push_back({fmt::format("torus/{}.cl", kernel), "if (loops_were_cut(", "if (!loops_were_cut("});

@@ -9,7 +9,7 @@ namespace {
 
 TEST_CASE("the torus reports progress per superstep, and 1 only after the last", "[torus]") {
     Session session(choose_device(""));
-    const TorusCase c{.width = 24, .height = 24, .nodes = {2, 2, 2}, .lanes = 4, .group = 1, .bounces = 8};
+    const TorusCase c{.width = 24, .height = 24, .nodes = {2, 2, 2}, .lanes = 4, .group = 1};
     for (const Injection inject : {Injection::kAll, Injection::kRoot}) {
         TorusCase settings = c;
         settings.inject = inject;

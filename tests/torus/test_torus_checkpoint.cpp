@@ -19,7 +19,7 @@ std::string stopped_render(Session& session, const Scene& scene, const TorusSett
     return checkpointing.saved();
 }
 
-TorusSettings small_torus() { return settings_of({.packets = {20, true}, .queue = 100, .group = 1, .bounces = 2}); }
+TorusSettings small_torus() { return settings_of({.packets = {20, true}, .queue = 300, .group = 1}); }
 
 }  // namespace
 
@@ -51,8 +51,8 @@ TEST_CASE("torus: a checkpoint of another render is refused with a message that 
         {"--inject all, not root", [](TorusSettings& s) { s.inject = Injection::kRoot; }},
         {"--returns rays, not terms", [](TorusSettings& s) { s.packets.one_return_per_ray = false; }},
         {"--packet-words 20, not 21", [](TorusSettings& s) { s.packets.ray_words = 21; }},
-        {"--queue 100, not 90", [](TorusSettings& s) { s.queue = 90; }},
-        {"--bounces 2, not 1", [](TorusSettings& s) { s.bounces = 1; }},
+        {"--queue 300, not 290", [](TorusSettings& s) { s.queue = 290; }},
+        {"--bounces 4, not 8", [](TorusSettings& s) { s.bounces = 8; }},
         {"--sampling centres, not corners", [](TorusSettings& s) { s.sampling = Sampling::kCorners; }},
         {"every Nth pixel, from 1, 0, not 2, 0", [](TorusSettings& s) { s.pixels.stride = 2; }}};
     for (const auto& [reason, change] : changes) {
