@@ -65,16 +65,20 @@ struct PlyElement {
     std::set<std::string> properties;
 };
 
-/// Reads the numbers of an element in ascii, the length of a list before its numbers.
+/// Reads the numbers of an element in ascii, a line each, the length of a list before its numbers.
 void check_numbers(std::istream& in, const PlyElement& element) {
-    const auto next_number = [&] {
-        std::string number;
-        if (!(in >> number)) throw Fault("PLY: numbers are missing; the file may be truncated");
-        return std::atof(number.c_str());
-    };
-    for (std::uint64_t i = 0; i < element.count; ++i)
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+        std::string line;
+        while (line.find_first_not_of(" \t\r") == line.npos && std::getline(in, line)) continue;
+        std::istringstream numbers(line);
+        const auto next_number = [&] {
+            std::string number;
+            if (!(numbers >> number)) throw Fault("PLY: numbers are missing; the file may be truncated");
+            return std::atof(number.c_str());
+        };
         for (const bool is_list : element.is_list)
             for (double left = next_number(); is_list && left >= 1; --left) next_number();
+    }
 }
 
 /// Refuses a header that is incomplete or has triangle strips, vertices without x, y or z, and ascii data that breaks
