@@ -194,11 +194,14 @@ std::string driver_cache_problem() {
     }
 }
 
-DeviceSearch::DeviceSearch()
-    : warning_(call_after(kLongSearch_s, [] {
-          warn(std::string("warning: the OpenCL drivers need long to list their devices; one may hang") + kLeaveOut);
-      })) {
+DeviceSearch::DeviceSearch() {
     is_searching = true;
+    try {
+        warning_ = call_after(kLongSearch_s, [] {
+            warn(std::string("warning: the OpenCL drivers need long to list their devices; one may hang") + kLeaveOut);
+        });
+    } catch (const std::system_error&) {  // the system allows no more threads
+    }
 }
 
 DeviceSearch::~DeviceSearch() { is_searching = false; }

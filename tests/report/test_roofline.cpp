@@ -87,7 +87,7 @@ TEST_CASE("roofline_table: contains the bound of each kernel and its percentage 
         {kernel("trace", 100), kernel("route", 100)});
     const std::string table = roofline_table(all);
     CAPTURE(table);
-    CHECK_THAT(table, Contains("compute    10.00") && Contains("bandwidth  50.00"));
+    CHECK_THAT(table, Contains("compute        10.00") && Contains("bandwidth      50.00"));
     CHECK(to_json(all.rows[0]).at("rays_per_s") == Approx(5e7));
     CHECK(to_json(all.rows[0]).at("operations_per_s") == Approx(1e10));
     CHECK(to_json(all.rows[1]).at("share_of_format").is_null());
