@@ -17,7 +17,7 @@ namespace {
 using Names = std::set<std::string>;
 
 std::vector<Check> run(const std::vector<SourcePatch>& faults, const std::string& only) {
-    return verify(choose_device(""), {.sources = {.patches = faults}, .lanes = 4, .only = only});
+    return verify(choose_device(""), {.sources = {.patches = faults}, .only = only, .lanes = 4});
 }
 
 // Returns the names of the failed checks.
