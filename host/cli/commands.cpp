@@ -26,7 +26,6 @@
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_command.hpp"
-#include "host/cli/verify.hpp"
 #include "host/error.hpp"
 #include "host/ranks/launch.hpp"
 #include "host/ranks/ranks.hpp"
@@ -100,7 +99,7 @@ int run_worker(const WorkerRequest& request) {
         if (request.task == kTrialTask)
             run_trial(request.pipe, request.settings);
         else
-            run_checks(request.pipe, request.settings, render_case);
+            run_checks(request.pipe, request.settings);
         return kExitOk;
     } catch (const UserError& error) {
         return send_error("user", error);

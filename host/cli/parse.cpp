@@ -19,10 +19,10 @@
 
 namespace raya {
 
-std::vector<std::uint32_t> parse_sizes(const std::string& text) {
+std::vector<std::uint32_t> parse_sizes(const std::string& text, char separator) {
     constexpr std::uint32_t kMaxSize = 1'000'000;  // so that the product of three sizes fits in 64 bits
     std::vector<std::uint32_t> sizes;
-    for (const std::string& part : split(text, 'x')) {
+    for (const std::string& part : split(text, separator)) {
         const auto size = parsed_number<std::uint32_t>(part);
         if (!size || *size < 1 || *size > kMaxSize) return {};
         sizes.push_back(*size);
@@ -42,15 +42,6 @@ std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const 
     const std::vector<std::uint32_t> sides = parse_sizes(text);
     if (sides.size() != 3) throw UserError(fmt::format("{} {}: must be XxYxZ, {}", option, text, legal_values));
     return {sides[0], sides[1], sides[2]};
-}
-
-Shard parse_shard(const std::string& text) {
-    const std::vector<std::string> parts = split(text, '/');
-    const auto part = [&](std::size_t i) { return parsed_number<std::uint32_t>(parts.at(i)).value_or(0); };
-    const Shard shard = parts.size() == 2 ? Shard{part(0), part(1)} : Shard{0, 0};
-    if (shard.number < 1 || shard.number > shard.count)
-        throw UserError(fmt::format("--shard {}: must be I/N with I 1..N, such as 2/4", text));
-    return shard;
 }
 
 Accel parse_accel(const std::string& text) {

@@ -231,24 +231,18 @@ void add_render_command_options(CLI::App& command, RenderCommand& options) {
     add_trace_options(command, options.trace);
 }
 
-CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<RenderCommand>& options) {
-    CLI::App* command = program.add_subcommand(
+void add_render_command(CLI::App& program, Ranks& ranks) {
+    const auto options = std::make_shared<RenderCommand>();
+    CLI::App* const command = program.add_subcommand(
         "render", "Render a scene (NFF, OBJ, PLY, glTF or STL) on a ring machine or the torus machine");
     add_examples(*command, {{"raya render scenes/centre.nff -o centre.png",
                              "Render on a ring of 256 PEs, in the scene's resolution"},
                             {"raya render scenes/glass.nff --machine torus --size 64 --report glass.json -o glass.png",
                              "Render a small image on a torus of 64 nodes, with a report"}});
-    command->callback([options] {});  // keeps the options
     const OptionGroup group(*command, kFiles);
     add_file(*command, FileUse::kRead, "SCENE SCENE", options->render.scene, kSceneHelp)->required();
     add_render_command_options(*command, *options);
     command->get_option("--output")->required();
-    return command;
-}
-
-void add_render_command(CLI::App& program, Ranks& ranks) {
-    const auto options = std::make_shared<RenderCommand>();
-    CLI::App* const command = declare_render_command(program, options);
     command->callback([command, options, &ranks] { render(*command, *options, ranks); });
 }
 

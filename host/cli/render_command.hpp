@@ -204,9 +204,6 @@ std::optional<Render> render_image(const RenderCommand& command, RenderRun& run)
 /// Adds all options of `raya render` except SCENE.
 void add_render_command_options(CLI::App& command, RenderCommand& options);
 
-/// Adds the command to the parser without running it: the parser sets `options`.
-CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<RenderCommand>& options);
-
 /// Throws UserError if options are incompatible or a file is not writable.
 void check_render(const RenderCommand& command);
 

@@ -235,15 +235,6 @@ void verify_numbers(Verification& v) {
                 [&](Session& session) { return check_chains(session, options, v.settings().sources); });
 }
 
-void verify_number_format(Verification& v, const NumberFormat& format, std::uint32_t lanes) {
-    const auto& all = known_answers();
-    const auto found = std::ranges::find(all, format, &FormatAnswers::format);
-    if (found != all.end()) return verify_format(v, *found, lanes, true);
-    const NumberBuild build{.format = format, .lanes = lanes};
-    v.check("number", build.name(),
-            [&](Session&) { return skipped(fmt::format("there are no stored results in {}", format_name(format))); });
-}
-
 std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
     constexpr std::uint32_t kOne = 0x3f800000;  // 1.0f
     std::vector<FormatAnswers> all;
