@@ -38,28 +38,6 @@
 
 namespace raya {
 
-void add_help_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("help", "Print the help of a command, or of raya itself");
-    add_examples(*command, {{"raya help render", "Print the help of render, as raya render --help does"},
-                            {"raya help generate balls", "Print the help of one generator"}});
-    const auto names = std::make_shared<std::vector<std::string>>();
-    add_value(*command, "COMMAND COMMAND", *names, "The command, such as generate balls; default: raya itself");
-    command->callback([names, &program] {
-        const CLI::App* described = &program;
-        std::string path = program.get_name();
-        for (const std::string& name : *names) {
-            const std::vector<std::string> known = command_names(*described);
-            if (std::ranges::find(known, name) == known.end())
-                throw UserError(
-                    fmt::format("help: no command {}{}; see {} --help", name, did_you_mean(name, known), path));
-            described = described->get_subcommand(name);
-            path += ' ' + name;
-        }
-        if (path == "raya study") start_study({"--help"});
-        fmt::print("{}", described->get_formatter()->make_help(described, path, CLI::AppFormatMode::Normal));
-    });
-}
-
 namespace {
 
 constexpr int kExitInternalError = 1;
@@ -222,7 +200,7 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     program.formatter(std::make_shared<HelpFormatter>());  // the commands inherit it
     add_examples(program, {{"raya render scenes/centre.nff -o centre.png",
                             "Render a scene on a ring of 256 PEs and print their load balance"},
-                           {"raya help render", "Print the help of render"}});
+                           {"raya render --help", "Print the help of render"}});
     program.require_subcommand(1);
     program
         .set_version_flag("--version", fmt::format("{} ({})", name_and_version(), build),
@@ -240,7 +218,6 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     add_page_command(program);
     add_verify_command(program);
     add_ping_command(program, ranks);
-    add_help_command(program);
     add_verbosity_options(program, ranks);
     // Runs before the command's callback. Only rank 0 checks files, because only rank 0 writes them.
     program.parse_complete_callback([&program, &ranks] {

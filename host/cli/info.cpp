@@ -147,9 +147,9 @@ struct InfoCommand {
 };
 
 // Options of raya render that raya info does not have, because they do not affect the memory needs of a PE.
-constexpr std::array kExecutionOptions = {"--device",    "--lanes",        "--group",   "--no-tuned", "--kernel-dir",
-                                          "--exchange",  "--sampling",     "--points",  "--inject",   "--returns",
-                                          "--threshold", "--packet-words", "--packets", "--async",    "--il"};
+constexpr std::array kExecutionOptions = {"--device",    "--lanes",        "--group",  "--no-tuned", "--kernel-dir",
+                                          "--exchange",  "--sampling",     "--points", "--inject",   "--returns",
+                                          "--threshold", "--packet-words", "--async",  "--il"};
 
 void add_options(CLI::App& command, InfoCommand& options) {
     add_file(command, FileUse::kRead, "SCENE SCENE", options.render.scene, kSceneHelp)->required();

@@ -8,7 +8,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <regex>
 #include <string_view>
 
 #include "host/base/encoding.hpp"
@@ -348,17 +347,6 @@ void check_arguments(const CLI::App& program, const std::vector<std::string>& ar
     }
 }
 
-/// Adds to a message such as "--fold blok: must be cyclic or block" the word of the message that is most similar to the
-/// value.
-std::string with_suggestion(const std::string& text) {
-    static const std::regex form("(--[a-z-]+ )([a-z][a-z0-9-]*)(: (?:must be|no such) .*)"), word("[a-z][a-z0-9-]*");
-    std::smatch parts;
-    if (!std::regex_match(text, parts, form)) return text;
-    const std::string value = parts[2], rest = parts[3];
-    const std::vector<std::string> words(std::sregex_token_iterator(rest.begin(), rest.end(), word), {});
-    return parts[1].str() + value + did_you_mean(value, words) + rest;
-}
-
 }  // namespace
 
 std::vector<std::string> command_names(const CLI::App& command) {
@@ -378,10 +366,6 @@ void parse_arguments(CLI::App& program, const std::vector<std::string>& argument
         throw UserError(fmt::format("{}{}{}; see raya{} --help", path.empty() ? "" : path.substr(1),
                                     path.empty() ? "" : ": ", failure_reason(program, command, error, arguments),
                                     path));
-    } catch (const UserError& error) {
-        const std::string text = with_suggestion(error.what());
-        if (text == error.what()) throw;
-        throw UserError(text);
     }
 }
 

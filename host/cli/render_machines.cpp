@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 
-#include "host/base/whole_file.hpp"
 #include "host/cli/render_command.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
@@ -80,13 +79,11 @@ namespace {
 // The optional outputs of a render, without the image.
 struct TorusOutputs {
     TorusOutputs(const RenderCommand& command, const RenderRecorder& recorder, const TorusSettings& settings) {
-        if (!command.torus.packets.empty()) packets.emplace();
         keep_packets = command.keep_packets;
         if (recorder.traces()) trace.emplace(settings.torus);
         if (settings.history) history.emplace(settings.torus, settings.packets);
     }
 
-    std::optional<PacketTrace> packets;
     bool keep_packets = false;  // store `records`, `cycles` and `link_words`
     std::vector<PacketRecord> records;
     std::vector<std::uint64_t> cycles, link_words;  // [superstep][node], [superstep][node][RAYA_LINKS]
@@ -104,13 +101,12 @@ TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progre
             outputs.cycles.insert(outputs.cycles.end(), step.cycles.begin(), step.cycles.end());
             outputs.link_words.insert(outputs.link_words.end(), step.link_words.begin(), step.link_words.end());
         };
-    if (outputs.packets || outputs.keep_packets || outputs.trace)
+    if (outputs.keep_packets || outputs.trace)
         observers.packets = [&](const PacketRecord& record) {
-            if (outputs.packets) outputs.packets->add(record);
             if (outputs.keep_packets) outputs.records.push_back(record);
             if (outputs.trace) outputs.trace->add_packet(record);
         };
-    if (!outputs.packets && !outputs.keep_packets) observers.packets_every = TorusTrace::kPacketsEvery;
+    if (!outputs.keep_packets) observers.packets_every = TorusTrace::kPacketsEvery;
     if (outputs.history) observers.work = [&](const NodeWork& work) { outputs.history->add(work); };
     progress.stage("rendering");
     return renderer.render(progress.callback(), observers, checkpointing);
@@ -140,10 +136,10 @@ void refuse_history_with_ranks(const TorusSettings& settings, const Ranks& ranks
 
 void refuse_checkpoint_with_records(const RenderCommand& command, const RenderRecorder& recorder,
                                     const TorusSettings& settings) {
-    if (!command.checkpoint.file.empty() && (!command.torus.packets.empty() || recorder.traces() || settings.history))
+    if (!command.checkpoint.file.empty() && (recorder.traces() || settings.history))
         throw UserError(
-            "--checkpoint with --machine torus: a checkpoint does not contain what --packets, --trace and --async "
-            "record; leave out one or the other");
+            "--checkpoint with --machine torus: a checkpoint does not contain what --trace and --async record; leave "
+            "out one or the other");
 }
 
 void describe(RenderReport& report, const TorusSettings& settings, const TorusResult& result) {
@@ -182,10 +178,7 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
                                describe(r, settings, result);
                                r.of_machine = torus_report(settings, result, asynchronous);
                            },
-                       .write_files =
-                           [&](const ImageAttributes&) {
-                               if (outputs.packets) write_whole_file(command.torus.packets, outputs.packets->finish());
-                           },
+                       .write_files = {},
                        .add_trace = [&](TraceFile& file) { outputs.trace->add_to(file, result, command.trace.pes); },
                        .work = torus_kernel_work(settings, result)});
     if (!report) return {};

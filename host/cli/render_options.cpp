@@ -284,10 +284,6 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
             "Maximum number of packets queued in a node; if queues deadlock, the render is repeated with twice the "
             "length, with a warning; default: as many as fit in memory, at most 8192"),
         1);
-    add_file(command, FileUse::kWritten, "--packets FILE.csv.gz", t.packets,
-             "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), "
-             "compressed; -: "
-             "stdout; see docs/architecture.md");
     command.add_flag("--async", t.async,
                      "Also simulate the machine without supersteps, whose nodes compute while links transfer: raya "
                      "reports this modelled time, the lower bound and the time with supersteps");

@@ -12,8 +12,6 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kCompressedBlock = 1 << 16;  // number of bytes of text that PacketTrace compresses at a time
-
 constexpr TraceTrack kSupersteps = {kTraceMachine, 1};
 constexpr std::uint32_t kFirstNodeTrack = 2;  // track of node 0
 
@@ -22,35 +20,6 @@ double link_ms(std::uint64_t words) { return t805_link_ms(words, words); }
 TraceTrack track_of(std::uint32_t node) { return {kTraceMachine, kFirstNodeTrack + node}; }
 
 }  // namespace
-
-PacketTrace::PacketTrace() : text_("superstep,source,destination,kind,bytes,ray,parent\n") {}
-
-std::uint64_t PacketTrace::number_of(const RayId& ray) {
-    const auto [number, is_new] = numbers_.try_emplace(ray, next_number_);
-    next_number_ += is_new;
-    return number->second;
-}
-
-void PacketTrace::add(const PacketRecord& record) {
-    const std::uint32_t kind = raya_state_kind(record.head.state);
-    const RayId ray = RayId::of(record.head.pixel, record.head.path, record.head.state);
-    // A return gets a new number that is not looked up again, because it is recorded once and has no children.
-    const std::uint64_t number = kind == RAYA_KIND_RETURN ? next_number_++ : number_of(ray);
-    auto to = std::back_inserter(text_);
-    fmt::format_to(to, "{},{},{},{},{},{},", record.superstep, record.source, record.destination, kPacketKinds.at(kind),
-                   sizeof(std::uint32_t) * record.words, number);
-    if (kind != RAYA_KIND_PRIMARY) fmt::format_to(to, "{}", number_of(kind == RAYA_KIND_RETURN ? ray : ray.parent()));
-    text_ += '\n';
-    ++rows_;
-    if (text_.size() < kCompressedBlock) return;
-    file_.append(text_);
-    text_.clear();
-}
-
-std::string PacketTrace::finish() {
-    file_.append(text_);
-    return file_.finish();
-}
 
 void TorusTrace::add_superstep(const SuperstepDetail& step) {
     std::vector<NodeStep> nodes(step.cycles.size());

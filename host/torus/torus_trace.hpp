@@ -1,43 +1,14 @@
-// Traces of the modelled torus: packets as CSV (docs/architecture.md), and a trace of the work of each node in each
-// superstep, in modelled time.
+// Trace of the modelled torus: the work of each node in each superstep, in modelled time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <string>
-#include <unordered_map>
 #include <vector>
 
-#include "host/base/encoding.hpp"
 #include "host/report/trace_file.hpp"
-#include "host/torus/history.hpp"
 #include "host/torus/torus_result.hpp"
 #include "kernels/shared/torus.h"
 
 namespace raya {
-
-/// Writes packet records as CSV, in the order in which add() receives them. Takes about 60 bytes of memory for each ray
-/// that was sent or whose child was sent.
-class PacketTrace {
-  public:
-    PacketTrace();
-
-    /// Adds a row. Throws std::out_of_range for an unknown kind of packet.
-    void add(const PacketRecord& record);
-
-    /// Returns the file, compressed with gzip. Must be called once, as the last call.
-    std::string finish();
-
-    std::uint64_t rows() const { return rows_; }
-
-  private:
-    std::uint64_t number_of(const RayId& ray);
-
-    GzipText file_;
-    std::string text_;  // rows that are not compressed yet
-    std::unordered_map<RayId, std::uint64_t, RayIdHash> numbers_;
-    std::uint64_t next_number_ = 0;  // rays and returns are numbered in the order of their first appearance
-    std::uint64_t rows_ = 0;
-};
 
 /// Records the supersteps of a render, in 16 bytes for each node and superstep, and the packets of every
 /// kPacketsEvery-th superstep, in 16 bytes each.

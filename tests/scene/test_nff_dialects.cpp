@@ -92,20 +92,6 @@ TEST_CASE("entities of other dialects are skipped with the numbers that follow t
     CHECK(parsed.scene.spheres.size() == 2);
 }
 
-TEST_CASE("a mail header before the scene is skipped, and line numbers include its lines", "[dialects]") {
-    const std::string header =
-        "From eye@world Thu Dec 10\nSubject: a teapot, at last: see below\nX-Mailer: none\n\tand more\n\n";
-    for (const std::string end : {"\n", "\r\n"}) {
-        std::string text = header + "# a comment\n" + kView + "s 0 0 0 0\n" + kSphere;
-        for (std::size_t at = 0; end.size() > 1 && (at = text.find('\n', at)) != text.npos; at += 2)
-            text.replace(at, 1, end);
-        CHECK(parse_lenient(text).remarks ==
-              Remarks{"t.nff:1: mail header before the scene, skipped", "t.nff:14: sphere of radius 0, left out"});
-    }
-    CHECK_THROWS_WITH(parse_lenient(header + kView), Contains("t.nff:13: no object"));
-    CHECK_THROWS_WITH(parse_nff(header + kView + kSphere, "t.nff"), Contains("t.nff:1: unknown entity 'From'"));
-}
-
 TEST_CASE("text that is not NFF is refused, and so are files without view or objects", "[dialects]") {
     for (const std::string line :
          {"This is a story of a teapot.", "hello world", "solid teapot", "outer loop", "<html>", "{ 1 2 }",

@@ -92,7 +92,7 @@ class Reports:
         for accel in ("grid", "bvh"):
             render(spheres, "--accel", accel, "--machine", "grande")
         torus = ["--machine", "torus", "--nodes", "2x2x2", "--returns", "rays"]
-        render(spheres, *torus, "--async", "--packets", "p.csv.gz")
+        render(spheres, *torus, "--async")
         if self.mpirun:
             launcher = [self.mpirun, "-n", "2"]
             render(spheres, *ring, launcher=launcher)
