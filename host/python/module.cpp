@@ -87,7 +87,6 @@ void add_generators(py::module_& module) {
         "cluster", [](std::uint64_t seed) { return generate_cluster(seed); }, py::arg("seed") = 1,
         "Seven random spheres above a floor. Averaged over many seeds, load and imbalance match those that Kohata & "
         "Ito (1993) report.");
-    generators.def("centre", generate_centre, "The scene of scenes/centre.nff.");
 }
 
 void add_scenes(py::module_& module) {

@@ -15,7 +15,7 @@
 namespace raya {
 namespace {
 
-constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // values of the parameter `parts` of rounded()
+constexpr double kMillionths = 1e6;  // for the parameter `parts` of rounded()
 
 /// `text`: describes the number in the message.
 void check_number(const std::string& text, int number, int lowest, int highest) {
@@ -123,39 +123,6 @@ Scene generate_random(int count, std::uint64_t seed) {
         const int surface = static_cast<int>(random.next() % kSurfaces);
         scene.spheres.push_back({rounded({x, y, z}, kMillionths), rounded(radius, kMillionths), surface});
     }
-    merge_equal_surfaces(scene);
-    return scene;
-}
-
-Scene generate_centre() {
-    Scene scene;
-    scene.name = "centre.nff";
-    scene.background = {0.3, 0.5, 0.85};
-    scene.view = {{0, -11, 4.4}, {0, 0, 1.35}, {0, 0, 1}, 28, 0, 256, 256};
-    scene.lights = {{{-7, -8, 11}, Colour(0.62, 0.6, 0.55)}, {{8, -5, 7}, Colour(0.22, 0.24, 0.3)}};
-    scene.surfaces = {
-        {{1, 1, 1}, 0.02, 0.12, 200, 0.85, 1.5, {}},     // glass
-        {{1, 1, 1}, 0.08, 0.85, 200, 0, 1, {}},          // mirror
-        {{0.9, 0.1, 0.08}, 0.75, 0.25, 60, 0, 1, {}},    // glossy red
-        {{0.95, 0.65, 0.08}, 0.75, 0.25, 60, 0, 1, {}},  // glossy yellow
-        {{0.1, 0.25, 0.85}, 0.75, 0.25, 60, 0, 1, {}},   // glossy blue
-        {{0.9, 0.9, 0.9}, 0.85, 0, 0, 0, 1, Checker{{0.9, 0.87, 0.8}, {0.2, 0.3, 0.34}, 2}},
-    };
-    scene.spheres.push_back({{0, 0, 1.3}, 1.3, 0});
-    scene.spheres.push_back({{0, 0, 3.05}, 0.45, 1});
-    // A ring of equal spheres around the z axis; `first_azimuth` in full turns. The surfaces are assigned cyclically.
-    const auto add_ring = [&](int count, double distance, double height, double radius, double first_azimuth,
-                              int first_surface, int surface_count) {
-        for (int i = 0; i < count; ++i) {
-            const double azimuth = 2 * std::numbers::pi * (first_azimuth + static_cast<double>(i) / count);
-            const Vec3 centre(rounded(distance * std::cos(azimuth), kTenThousandths),
-                              rounded(distance * std::sin(azimuth), kTenThousandths), height);
-            scene.spheres.push_back({centre, radius, first_surface + i % surface_count});
-        }
-    };
-    add_ring(12, 1.85, 0.4, 0.4, 0.02, 1, 4);
-    add_ring(8, 1.35, 2.45, 0.28, 0.04, 0, 2);
-    scene.planes.push_back({{0, 0, 1}, 0, 5});
     merge_equal_surfaces(scene);
     return scene;
 }

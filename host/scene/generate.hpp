@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <string_view>
 
 #include "host/scene/scene.hpp"
 
@@ -59,15 +57,6 @@ Scene generate_random(int count, std::uint64_t seed);
 /// cells have side 1, and each has two triangles; the last row of cells may be incomplete. The scene has one matt
 /// surface and one light. Throws UserError unless 1 <= triangles <= 20,000,000.
 Scene generate_terrain(int triangles, std::uint64_t seed);
-
-/// Returns a function that returns the terrain as binary PLY in pieces, for write_whole_file(). It needs memory for a
-/// row of cells only. The file has little-endian floats and no view, light or surface.
-std::function<std::string_view()> terrain_ply(int triangles, std::uint64_t seed);
-
-/// The project's main scene, an example of the worst case for a static distribution of pixels over PEs (Kohata & Ito,
-/// IPSJ Journal 1993): expensive glass and mirror spheres in the centre of the image, above a cheap checkered plane.
-/// 256 x 256 pixels.
-Scene generate_centre();
 
 /// A cluster of three glass, one mirroring and three matt spheres above a checkered floor, with one light. While a
 /// sphere touches another sphere, it gets a new random place and radius, at most 200 times. The means of load and
