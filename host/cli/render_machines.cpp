@@ -101,12 +101,8 @@ TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progre
             outputs.cycles.insert(outputs.cycles.end(), step.cycles.begin(), step.cycles.end());
             outputs.link_words.insert(outputs.link_words.end(), step.link_words.begin(), step.link_words.end());
         };
-    if (outputs.keep_packets || outputs.trace)
-        observers.packets = [&](const PacketRecord& record) {
-            if (outputs.keep_packets) outputs.records.push_back(record);
-            if (outputs.trace) outputs.trace->add_packet(record);
-        };
-    if (!outputs.keep_packets) observers.packets_every = TorusTrace::kPacketsEvery;
+    if (outputs.keep_packets)
+        observers.packets = [&](const PacketRecord& record) { outputs.records.push_back(record); };
     if (outputs.history) observers.work = [&](const NodeWork& work) { outputs.history->add(work); };
     progress.stage("rendering");
     return renderer.render(progress.callback(), observers, checkpointing);

@@ -155,7 +155,6 @@ void LinkExchange::visit_new_packets(const NodeStatus& status,
             const std::size_t box = std::size_t{link} * nodes_ + slot;
             const std::uint32_t first = sent_flags_[box] ? 0 : visited_[box];
             visited_[box] = packets;
-            if (!visit) continue;
             std::vector<std::uint32_t> words(std::size_t{packets - first} * class_.packet_words);
             session_.read("record", outboxes_, words, outbox_at(link, slot) + box_words(first));
             for (std::size_t i = 0; i < words.size(); i += class_.packet_words) visit(node, head_at(&words[i]));

@@ -329,10 +329,6 @@ double progress_of(const MachineState& state, std::size_t returns, std::uint64_t
 }
 
 void NodeArray::record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink) {
-    if (!sink) {
-        ray_links_.visit_new_packets(status, {});
-        return return_links_.visit_new_packets(status, {});
-    }
     std::vector<PacketRecord> own_records;
     const auto record_new = [&](std::uint32_t node, const raya_head& packet) {
         if (is_new_message(packet)) own_records.push_back(record_of(settings_, superstep, node, packet));

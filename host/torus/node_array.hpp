@@ -111,7 +111,7 @@ class NodeArray {
 
     /// In rank 0, passes the new messages in the outboxes of all ranks to `sink`: the charged packets
     /// (docs/glossary.md) that the outbox's node created or changed. All ranks must call record_packets() in every
-    /// superstep. An empty sink skips the superstep; it must be empty in all ranks or in none.
+    /// superstep.
     void record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
     /// Counts of the nodes of this rank, [slot][RAYA_EVENTS] or [slot][RAYA_KINDS].

@@ -187,9 +187,7 @@ NodeStatus TorusRenderer::route(TorusRun& run, const RenderObservers& observers)
     nodes_->route();
     const NodeStatus status = nodes_->read_status();
     nodes_->continue_gather(status, run.returns);
-    if (observers.packets)
-        nodes_->record_packets(status, run.superstep,
-                               run.superstep % observers.packets_every ? PacketSink{} : observers.packets);
+    if (observers.packets) nodes_->record_packets(status, run.superstep, observers.packets);
     return status;
 }
 

@@ -3,8 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <iterator>
-#include <random>
 
 #include "host/model/t805.hpp"
 #include "host/torus/topology.hpp"
@@ -34,12 +32,7 @@ void TorusTrace::add_superstep(const SuperstepDetail& step) {
     steps_.push_back(std::move(nodes));
 }
 
-void TorusTrace::add_packet(const PacketRecord& p) {
-    if (p.superstep % kPacketsEvery == 0)
-        packets_.push_back({p.superstep, p.source, p.destination, raya_state_kind(p.head.state)});
-}
-
-// Adds supersteps and flows to a trace. The supersteps follow one another, from time 0 on.
+// Adds supersteps to a trace. The supersteps follow one another, from time 0 on.
 class TorusTrace::Timeline {
   public:
     Timeline(const TorusTrace& machine_trace, TraceFile& trace, const TorusResult& result, std::size_t nodes)
@@ -52,9 +45,7 @@ class TorusTrace::Timeline {
     void add_supersteps() {
         for (std::size_t step = 0; step < machine_trace_.steps_.size(); ++step) {
             const Superstep& superstep = result_.supersteps[step];
-            begins_ms_.push_back(now_ms_);
             const double compute_end_ms = now_ms_ + t805_ms(superstep.max_node_cycles);
-            compute_ends_ms_.push_back(compute_end_ms);
             const double end_ms = compute_end_ms + link_ms(superstep.max_link_words);
             add_machine(step, end_ms);
             for (const TracedPe& n : nodes_) add_node(step, n.pe, compute_end_ms, end_ms);
@@ -62,29 +53,7 @@ class TorusTrace::Timeline {
         }
     }
 
-    // Adds the flows and returns their number.
-    std::size_t add_flows() {
-        std::vector<bool> is_traced(raya_nodes(machine_trace_.torus_));
-        for (const TracedPe& n : nodes_) is_traced[n.pe] = true;
-        std::vector<TracedPacket> shown;
-        for (const TracedPacket& p : machine_trace_.packets_)
-            if (arrival_of(p) < begins_ms_.size() && is_traced[p.source] && is_traced[p.destination])
-                shown.push_back(p);
-        std::vector<TracedPacket> sample;
-        std::ranges::sample(shown, std::back_inserter(sample), kMaxPackets, std::mt19937());
-        for (const TracedPacket& p : sample)
-            trace_.flow(kPacketKinds[p.kind], track_of(p.source), nanoseconds(compute_ends_ms_[p.superstep]),
-                        track_of(p.destination), nanoseconds(begins_ms_[arrival_of(p)]));
-        return sample.size();
-    }
-
   private:
-    // Returns the earliest superstep in which the packet can arrive. The routes of returns take the axes in another
-    // order than those of rays, but are equally long.
-    std::size_t arrival_of(const TracedPacket& p) const {
-        return p.superstep + raya_node_distance(machine_trace_.torus_, p.source, p.destination);
-    }
-
     void add_machine(std::size_t step, double end_ms) {
         const std::vector<NodeStep>& nodes = machine_trace_.steps_[step];
         const Superstep& superstep = result_.supersteps[step];
@@ -129,7 +98,6 @@ class TorusTrace::Timeline {
     TraceFile& trace_;
     const TorusResult& result_;
     std::vector<TracedPe> nodes_;
-    std::vector<double> begins_ms_, compute_ends_ms_;  // [superstep]: start, end of its computation, ms
     double now_ms_ = 0;
 };
 
@@ -140,16 +108,12 @@ void TorusTrace::add_to(TraceFile& trace, const TorusResult& result, std::size_t
     }
     Timeline timeline(*this, trace, result, nodes);
     timeline.add_supersteps();
-    const std::size_t flows = timeline.add_flows();
     trace.metadata()["machine"] = {
         {"name", "torus"},
         {"nodes", raya_nodes(torus_)},
-        {"packets_recorded", packets_.size()},
-        {"flows", flows},
         {"note",
          "modelled time, from time 0 of the trace; every superstep waits for its busiest node and link. The modelled "
-         "time is independent of the measured times above. Flows show packets of every 16th superstep; a flow ends at "
-         "the earliest superstep in which its packet can arrive"}};
+         "time is independent of the measured times above"}};
 }
 
 }  // namespace raya

@@ -10,30 +10,21 @@
 
 namespace raya {
 
-/// Records the supersteps of a render, in 16 bytes for each node and superstep, and the packets of every
-/// kPacketsEvery-th superstep, in 16 bytes each.
+/// Records the supersteps of a render, in 16 bytes for each node and superstep.
 class TorusTrace {
   public:
-    static constexpr std::size_t kMaxPackets = 20'000;  // in a trace
-    static constexpr std::uint32_t kPacketsEvery = 16;
-
     explicit TorusTrace(const raya_torus& torus) : torus_(torus) {}
 
     void add_superstep(const SuperstepDetail& step);
-    void add_packet(const PacketRecord& packet);  // ignores packets of other supersteps
 
     /// Adds a track for the supersteps and a track for each of `nodes` nodes to `trace`, from time 0 on, in the
     /// stepwise time of torus_time(): in each superstep a node computes and waits for the busiest node, then it sends
     /// and waits for the busiest link. Counters: live packets, load imbalance u of the superstep, words over the
-    /// busiest link and mean words over a link. Flows: a random sample of the packets whose source and destination have
-    /// a track. A flow ends at the earliest possible arrival: as many supersteps after its start as the packet's route
-    /// has links. `result` must be of the same render. If `nodes` is 0, adds only a remark to the metadata.
+    /// busiest link and mean words over a link. `result` must be of the same render. If `nodes` is 0, adds only a
+    /// remark to the metadata.
     void add_to(TraceFile& trace, const TorusResult& result, std::size_t nodes) const;
 
   private:
-    struct TracedPacket {
-        std::uint32_t superstep, source, destination, kind;
-    };
     struct NodeStep {
         std::uint64_t cycles = 0;
         std::uint32_t busiest_link_words = 0;  // number of words over the node's busiest link
@@ -43,7 +34,6 @@ class TorusTrace {
 
     raya_torus torus_;
     std::vector<std::vector<NodeStep>> steps_;  // [superstep][node]
-    std::vector<TracedPacket> packets_;
 };
 
 }  // namespace raya
