@@ -226,10 +226,7 @@ constexpr double kMinReach = 2;
 constexpr double kLargeSide = 0.75;
 constexpr std::size_t kMaxLarge = 16;  // maximum number of large objects; see large_objects()
 
-double longest_side(const Box& box) {
-    const Vec3 sides = box.max - box.min;
-    return std::max({sides.x, sides.y, sides.z});
-}
+double longest_side(const Box& box) { return box.size()[box.majorAxis()]; }
 
 std::uint32_t as_word(std::size_t number) { return static_cast<std::uint32_t>(number); }
 

@@ -110,13 +110,14 @@ struct BaselineOptions {
 // Throws UserError if the baseline has no row of this run.
 void check_comparable(const BaselineOptions& options, const BenchReport& baseline, const BenchReport& measured) {
     if (options.baseline.empty() || rows_in_common(baseline, measured) > 0) return;
-    const BenchMeasurement &old_row = baseline.rows.front(), &new_row = measured.rows.front();
+    const auto text_of = [](const BenchMeasurement& row) {
+        return fmt::format("{}, {}, {}, {}, {} lanes, group {}", row.scene, row.size, row.array, row.format, row.lanes,
+                           row.group_size);
+    };
     throw UserError(fmt::format(
-        "{}: contains no row of this run: its first row is {}, {}, {}, {}, {} lanes, group {}; the first row of this "
-        "run is {}, {}, {}, {}, {} lanes, group {}; remedy: use the scene and options of the baseline, or write a new "
-        "baseline (raya bench --report)",
-        options.baseline, old_row.scene, old_row.size, old_row.array, old_row.format, old_row.lanes, old_row.group_size,
-        new_row.scene, new_row.size, new_row.array, new_row.format, new_row.lanes, new_row.group_size));
+        "{}: contains no row of this run: its first row is {}; the first row of this run is {}; remedy: use the scene "
+        "and options of the baseline, or write a new baseline (raya bench --report)",
+        options.baseline, text_of(baseline.rows.front()), text_of(measured.rows.front())));
 }
 
 // Compares with the baseline, if there is one. Writes all files, and prints the comparison. Throws CheckFailure if a

@@ -77,7 +77,7 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
     session_.write("scatter", memories_, memories.words);
     session_.write("scatter", starts_, memories.starts);
     write_inbox_table();
-    set_pixels(settings.pixels);
+    write_run_constants();
 }
 
 void NodeArray::write_inbox_table() {
@@ -88,14 +88,14 @@ void NodeArray::write_inbox_table() {
     session_.write("scatter", inbox_of_link_, inboxes);
 }
 
-void NodeArray::set_pixels(const PixelSubset& pixels) {
+void NodeArray::write_run_constants() {
     const raya_run run{.nodes = nodes_,
                        .inboxes = distribution_.inboxes(),
                        .queue = buffers_.queue,
                        .box = buffers_.box,
                        .host = buffers_.queue,
-                       .stride = pixels.stride,
-                       .offset = pixels.first,
+                       .stride = settings_.pixels.stride,
+                       .offset = settings_.pixels.first,
                        .root_injects = settings_.inject == Injection::kRoot || raya_nodes(settings_.torus) == 1,
                        .one_return_per_ray = settings_.packets.one_return_per_ray};
     session_.write("scatter", run_, {&run, 1});

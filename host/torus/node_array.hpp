@@ -83,9 +83,6 @@ class NodeArray {
     /// Empties queues and mailboxes, sets counters to 0, and restarts the generation of primary rays.
     void clear();
 
-    /// Chooses the pixels that the following renders compute; the default is TorusSettings::pixels.
-    void set_pixels(const PixelSubset& pixels);
-
     void inject();
     void trace_voxel(Reserve reserve);
     void route();
@@ -134,6 +131,7 @@ class NodeArray {
   private:
     NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
               const NodeDistribution& distribution);
+    void write_run_constants();
     void write_inbox_table();
     /// Repeats `launch(work, resume)` until no node has work left.
     template <class Launch>

@@ -45,11 +45,6 @@ TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSe
     ranks.one_rank_per_host_first([this] { build(); });
 }
 
-void TorusRenderer::set_pixels(const PixelSubset& pixels) {
-    settings_.pixels = pixels;
-    nodes_->set_pixels(pixels);
-}
-
 void TorusRenderer::set_queue(std::uint32_t queue) {
     job_.buffers = buffers_for(queue);
     build();
