@@ -76,50 +76,42 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
 
 namespace {
 
-// The optional outputs of a render, without the image.
-struct TorusOutputs {
-    TorusOutputs(const RenderCommand& command, const RenderRecorder& recorder, const TorusSettings& settings) {
-        keep_packets = command.keep_packets;
-        if (recorder.traces()) trace.emplace(settings.torus);
-        if (settings.history) history.emplace(settings.torus, settings.packets);
-    }
-
-    bool keep_packets = false;  // store `records`, `cycles` and `link_words`
-    std::vector<PacketRecord> records;
+// The result of a render, and what its observers have recorded.
+struct TorusRecords {
+    TorusResult result;
+    std::vector<PacketRecord> packets;
     std::vector<std::uint64_t> cycles, link_words;  // [superstep][node], [superstep][node][RAYA_LINKS]
-    std::optional<TorusTrace> trace;
     std::optional<HistoryRecorder> history;
 };
 
-TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progress, TorusOutputs& outputs,
-                                 const Checkpointing* checkpointing) {
+TorusRecords render_recorded(const RenderCommand& command, const TorusSettings& settings, RenderRun& run,
+                             TorusRenderer& renderer, const Checkpointing* checkpointing) {
+    TorusRecords records;
     RenderObservers observers;
-    if (outputs.trace || outputs.keep_packets)
+    if (command.keep_packets || run.recorder.traces())
         observers.supersteps = [&](const SuperstepDetail& step) {
-            if (outputs.trace) outputs.trace->add_superstep(step);
-            if (!outputs.keep_packets) return;
-            outputs.cycles.insert(outputs.cycles.end(), step.cycles.begin(), step.cycles.end());
-            outputs.link_words.insert(outputs.link_words.end(), step.link_words.begin(), step.link_words.end());
+            records.cycles.insert(records.cycles.end(), step.cycles.begin(), step.cycles.end());
+            records.link_words.insert(records.link_words.end(), step.link_words.begin(), step.link_words.end());
         };
-    if (outputs.keep_packets)
-        observers.packets = [&](const PacketRecord& record) { outputs.records.push_back(record); };
-    if (outputs.history) observers.work = [&](const NodeWork& work) { outputs.history->add(work); };
-    progress.stage("rendering");
-    return renderer.render(progress.callback(), observers, checkpointing);
+    if (command.keep_packets) observers.packets = [&](const PacketRecord& p) { records.packets.push_back(p); };
+    if (settings.history) {
+        records.history.emplace(settings.torus, settings.packets);
+        observers.work = [&](const NodeWork& work) { records.history->add(work); };
+    }
+    run.progress.stage("rendering");
+    records.result = renderer.render(run.progress.callback(), observers, checkpointing);
+    return records;
 }
 
 // Renders the image. After a deadlock, repeats the render with queues of twice the length.
-TorusResult render_without_deadlock(const RenderCommand& command, const TorusSettings& settings, RenderRun& run,
-                                    TorusRenderer& renderer, TorusOutputs& outputs,
-                                    const Checkpointing* checkpointing) {
+TorusRecords render_without_deadlock(const RenderCommand& command, const TorusSettings& settings, RenderRun& run,
+                                     TorusRenderer& renderer, const Checkpointing* checkpointing) {
     for (;;) try {
-            return render_with_progress(renderer, run.progress, outputs, checkpointing);
+            return render_recorded(command, settings, run, renderer, checkpointing);
         } catch (const TorusDeadlock& deadlock) {
             if (checkpointing != nullptr) throw;  // a checkpoint belongs to one length
             const std::uint32_t queue = 2 * deadlock.queue;
             renderer.set_queue(queue);
-            std::destroy_at(&outputs);
-            std::construct_at(&outputs, command, run.recorder, settings);
             if (run.ranks.is_first())
                 run.input.warnings.add(fmt::format("{}; repeated with queues of {} packets", deadlock.what(), queue));
         }
@@ -157,35 +149,39 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
     refuse_checkpoint_with_records(command, recorder, settings);
     TorusRenderer renderer(run.session(), input.scene, settings, run.ranks, [&] { drop_objects(input.scene); });
     if (run.ranks.is_first()) warn_of_lost_objects(input.scene, renderer.scale(), settings.format, input.warnings);
-    TorusOutputs outputs(command, recorder, settings);
     const CheckpointFile checkpoint(command.checkpoint);
-    TorusResult result = render_without_deadlock(command, settings, run, renderer, outputs, checkpoint.checkpointing());
+    TorusRecords records = render_without_deadlock(command, settings, run, renderer, checkpoint.checkpointing());
+    TorusResult& result = records.result;
     std::optional<History> history;
     std::optional<AsynchronousTime> asynchronous;
-    if (outputs.history && run.ranks.is_first()) {
+    if (records.history && run.ranks.is_first()) {
         run.progress.stage("simulating");
-        history = outputs.history->finish();
+        history = records.history->finish();
         asynchronous = recorder.spans().during("simulate", [&] { return simulate(settings.torus, *history).time(); });
     }
-    auto report =
-        finish_render(command, run, settings, result,
-                      {.describe =
-                           [&](RenderReport& r) {
-                               describe(r, settings, result);
-                               r.of_machine = torus_report(settings, result, asynchronous);
-                           },
-                       .write_files = {},
-                       .add_trace = [&](TraceFile& file) { outputs.trace->add_to(file, result, command.trace.pes); },
-                       .work = torus_kernel_work(settings, result)});
+    auto report = finish_render(command, run, settings, result,
+                                {.describe =
+                                     [&](RenderReport& r) {
+                                         describe(r, settings, result);
+                                         r.of_machine = torus_report(settings, result, asynchronous);
+                                     },
+                                 .write_files = {},
+                                 .add_trace =
+                                     [&](TraceFile& file) {
+                                         add_torus_machine(file, settings.torus, result, records.cycles,
+                                                           records.link_words, command.trace.pes);
+                                     },
+                                 .work = torus_kernel_work(settings, result)});
     if (!report) return {};
+    if (!command.keep_packets) records.cycles = records.link_words = {};  // of the trace
     return Render{.report = std::move(*report),
                   .torus = std::move(result),
-                  .packets = std::move(outputs.records),
+                  .packets = std::move(records.packets),
                   .torus_settings = settings,
                   .lights = static_cast<std::uint32_t>(input.scene.lights.size()),
                   .history = std::move(history),
-                  .cycles = std::move(outputs.cycles),
-                  .link_words = std::move(outputs.link_words)};
+                  .cycles = std::move(records.cycles),
+                  .link_words = std::move(records.link_words)};
 }
 
 }  // namespace raya

@@ -10,30 +10,13 @@
 
 namespace raya {
 
-/// Records the supersteps of a render, in 16 bytes for each node and superstep.
-class TorusTrace {
-  public:
-    explicit TorusTrace(const raya_torus& torus) : torus_(torus) {}
-
-    void add_superstep(const SuperstepDetail& step);
-
-    /// Adds a track for the supersteps and a track for each of `nodes` nodes to `trace`, from time 0 on, in the
-    /// stepwise time of torus_time(): in each superstep a node computes and waits for the busiest node, then it sends
-    /// and waits for the busiest link. Counters: live packets, load imbalance u of the superstep, words over the
-    /// busiest link and mean words over a link. `result` must be of the same render. If `nodes` is 0, adds only a
-    /// remark to the metadata.
-    void add_to(TraceFile& trace, const TorusResult& result, std::size_t nodes) const;
-
-  private:
-    struct NodeStep {
-        std::uint64_t cycles = 0;
-        std::uint32_t busiest_link_words = 0;  // number of words over the node's busiest link
-        std::uint32_t words = 0;               // number of words over all links of the node
-    };
-    class Timeline;
-
-    raya_torus torus_;
-    std::vector<std::vector<NodeStep>> steps_;  // [superstep][node]
-};
+/// Adds a track for the supersteps and a track for each of `nodes` nodes to `trace`, from time 0 on, in the stepwise
+/// time of torus_time(): in each superstep a node computes and waits for the busiest node, then it sends and waits for
+/// the busiest link. Counters: live packets, load imbalance u of the superstep, words over the busiest link and mean
+/// words over a link. `cycles`, [superstep][node], and `link_words`, [superstep][node][RAYA_LINKS], are those of the
+/// same render (SuperstepDetail). If `nodes` is 0, adds only a remark to the metadata.
+void add_torus_machine(TraceFile& trace, const raya_torus& torus, const TorusResult& result,
+                       const std::vector<std::uint64_t>& cycles, const std::vector<std::uint64_t>& link_words,
+                       std::size_t nodes);
 
 }  // namespace raya

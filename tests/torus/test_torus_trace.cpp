@@ -23,12 +23,14 @@ struct TracedRender {
 TracedRender render(const Scene& scene, const TorusCase& c, std::size_t nodes) {
     Session session(choose_device(""));
     TracedRender t{settings_of(c), {}, {}};
-    TorusTrace torus_trace(t.settings.torus);
-    t.result = TorusRenderer(session, scene, t.settings).render({}, {.supersteps = [&](const SuperstepDetail& step) {
-                                                                    torus_trace.add_superstep(step);
-                                                                }});
+    std::vector<std::uint64_t> cycles, words;
+    const auto record = [&](const SuperstepDetail& step) {
+        cycles.insert(cycles.end(), step.cycles.begin(), step.cycles.end());
+        words.insert(words.end(), step.link_words.begin(), step.link_words.end());
+    };
+    t.result = TorusRenderer(session, scene, t.settings).render({}, {.supersteps = record});
     TraceFile trace(10'000'000);
-    torus_trace.add_to(trace, t.result, nodes);
+    add_torus_machine(trace, t.settings.torus, t.result, cycles, words, nodes);
     t.trace = Document::parse(trace.finish(false));
     return t;
 }
