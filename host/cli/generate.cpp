@@ -19,7 +19,7 @@ namespace {
 
 struct GenerateOptions {
     std::string output;
-    int level = 4, sphere_count = 0, triangles = 100'000;
+    int level = 4, sphere_count = 0;
     int cylinders = 12, wheels = 4;  // number of each along an edge of the cube
     std::string voxels = "4x4x4";
     std::uint64_t seed = 1;
@@ -120,15 +120,6 @@ void add_generate_command(CLI::App& program) {
                                       [](const GenerateOptions& o) { return generate_random(o.sphere_count, o.seed); });
     generators.add_count(random);
     generators.add_seed(random);
-
-    CLI::App& terrain =
-        generators.add("terrain", "A height field of N triangles, for large scenes",
-                       {{"raya generate terrain -o terrain.nff", "100,000 triangles"},
-                        {"raya generate terrain --triangles 10000000 -o large.nff", "Ten million triangles"}},
-                       [](const GenerateOptions& o) { return generate_terrain(o.triangles, o.seed); });
-    add_value(terrain, "--triangles N", generators.options().triangles, "Number N of triangles, 1..20000000")
-        ->capture_default_str();
-    generators.add_seed(terrain);
 
     CLI::App& cluster =
         generators.add("cluster", "Seven spheres above a floor, as in Kohata & Ito's scene of high and uneven cost",

@@ -12,7 +12,7 @@ namespace raya {
 inline constexpr int kMaxBallsLevel = 6;    // `level` of generate_balls(); makes 597,871 spheres
 inline constexpr int kMaxLatticeSize = 64;  // `size` of generate_lattice(); makes 274,625 spheres and 811,200 cylinders
 inline constexpr int kMaxGearsSize = 16;    // `size` of generate_gears(); makes 598,017 polygons
-// `count` of generate_uniform() and generate_random(), `triangles` of generate_terrain()
+// `count` of generate_uniform() and generate_random()
 inline constexpr int kMaxObjects = 20'000'000;
 inline constexpr int kMaxVoxelsPerAxis = 256;  // each element of `voxels` of generate_uniform()
 inline constexpr int kMaxVoxels = 1'048'576;   // product of `voxels` of generate_uniform()
@@ -51,12 +51,6 @@ Scene generate_uniform(int count, std::array<int, 3> voxels);
 /// r is the radius with which `count` equal spheres have a twentieth of the cube's volume. Spheres may overlap. Their
 /// twelve surfaces are matt, glossy or mirroring. Throws UserError unless 1 <= count <= 20,000,000.
 Scene generate_random(int count, std::uint64_t seed);
-
-/// A height field of `triangles` triangles above a square: octaves of value noise (D. S. Ebert et al., "Texturing and
-/// Modeling: A Procedural Approach", 1994), computed in integers so that it is equal on all platforms. The square's
-/// cells have side 1, and each has two triangles; the last row of cells may be incomplete. The scene has one matt
-/// surface and one light. Throws UserError unless 1 <= triangles <= 20,000,000.
-Scene generate_terrain(int triangles, std::uint64_t seed);
 
 /// A cluster of three glass, one mirroring and three matt spheres above a checkered floor, with one light. While a
 /// sphere touches another sphere, it gets a new random place and radius, at most 200 times. The means of load and

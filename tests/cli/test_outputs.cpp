@@ -41,8 +41,7 @@ std::vector<OutputRow> rows_of_outputs(const ScratchFolder& inputs, const Scratc
                                                    {"verify", {"--only", "machine bus", "--lanes", "4"}},
                                                    {"balls", {"--level", "1"}},
                                                    {"lattice", {"--size", "1"}},
-                                                   {"gears", {"--size", "1"}},
-                                                   {"terrain", {"--triangles", "9"}}};
+                                                   {"gears", {"--size", "1"}}};
     const std::map<std::string, Arguments> needed = {
         // by options
         {"--mask", {"--antialias", "supersample"}},
