@@ -49,7 +49,7 @@ std::string remark_text(const std::string& file, const SceneRemark& remark);
 /// If `remarks` is not null, parse_nff() tolerates the following deviations and adds a remark for each: it leaves out
 /// objects without size and polygons without area, cuts polygons that are not flat into triangles, converts patches
 /// with a normal of 0 into polygons, and skips entities of other NFF dialects (la, lf, tt, ...).
-/// Prose, a missing view and a file without objects remain errors.
+/// Other text, a missing view and a file without objects remain errors.
 Scene parse_nff(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks = nullptr);
 
 /// Reads and parses a file; "-" reads from stdin, which is named "stdin" in messages. Throws UserError as parse_nff()

@@ -62,39 +62,15 @@ ParsedNumber parsed_number(std::string_view text) {
 /// Returns true if a token starts with a number; more characters may follow it.
 bool reads_as_number(std::string_view text) { return parsed_number(text).error != std::errc::invalid_argument; }
 
-constexpr std::string_view kBlanks = " \t\v\f";
-
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
+/// Returns true if a token may be the keyword of an NFF dialect (`la`, `tt`, `Q`): at most eight letters, digits and
+/// underscores.
 bool reads_as_keyword(std::string_view token) {
     constexpr std::size_t kMaxLength = 8;
     return !token.empty() && token.size() <= kMaxLength && is_letter(token[0]) &&
            std::all_of(token.begin(), token.end(),
                        [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
-}
-
-/// Returns true if a dot or slash occurs before the last character, as in `wood.ppm`. A token that ends with a dot may
-/// be the last word of a sentence.
-bool reads_as_file(std::string_view token) {
-    return token.substr(0, token.size() - 1).find_first_of("./") != token.npos;
-}
-
-/// Returns true if a line looks like an entity of an NFF dialect (`la 0.2 0.2 0.2`, `tt wood.ppm 0 0 1`, `Q`) and not
-/// like prose: a keyword of at most eight letters, digits and underscores, then any number of numbers and file names.
-/// A line with numbers may also contain up to two names that are not file names. `rest`: the line after the keyword.
-bool reads_as_entity(std::string_view keyword, std::string_view rest) {
-    constexpr int kMaxNames = 2;
-    int numbers = 0, names = 0;
-    rest = rest.substr(0, rest.find('#'));
-    for (std::size_t at = 0; (at = rest.find_first_not_of(kBlanks, at)) != rest.npos;) {
-        const std::string_view token = rest.substr(at, rest.find_first_of(kBlanks, at) - at);
-        if (reads_as_number(token))
-            ++numbers;
-        else if (!reads_as_file(token))
-            ++names;
-        at += token.size();
-    }
-    return reads_as_keyword(keyword) && names <= (numbers > 0 ? kMaxNames : 0);
 }
 
 /// A run of characters without white space. At the end of the file `text` is empty.
@@ -171,14 +147,9 @@ class NffTokens {
         return static_cast<int>(value);
     }
 
-    /// Skips an unknown entity: the rest of its line and all following lines that begin with a number. Returns false
-    /// and skips nothing if the line does not look like an entity (reads_as_entity()).
-    bool skip_unknown() {
-        const std::size_t at = position_ - next_.text.size();
-        const std::string_view line = text_.substr(at, text_.find_first_of("\r\n", at) - at);
-        if (!reads_as_entity(entity_, next_.first_on_line ? std::string_view() : line)) return false;
+    /// Skips the rest of an entity's line and all following lines that begin with a number.
+    void skip_entity() {
         while (!next_.text.empty() && (!next_.first_on_line || number_follows())) advance();
-        return true;
     }
 
     /// Returns true if the next token starts with a number; more characters may follow it.
@@ -337,9 +308,11 @@ class NffReader {
             if (entity.keyword == keyword) return (this->*entity.read)();
         if (is_number)
             refuse(in_quotes(keyword) + " instead of an entity: does the previous one have too many numbers?");
-        if (remarks_ && tokens_.skip_unknown())
+        if (remarks_ && reads_as_keyword(keyword)) {
+            tokens_.skip_entity();
             return add_remark(*remarks_, {.what = "entity " + in_quotes(keyword) + " of another dialect, skipped",
                                           .line = tokens_.entity_line()});
+        }
         refuse("unknown entity " + in_quotes(keyword) +
                "; NFF has v b l f s p pp c; the names of meshes end in .obj, .ply, .gltf, .glb or .stl");
     }

@@ -93,9 +93,7 @@ TEST_CASE("entities of other dialects are skipped with the numbers that follow t
 }
 
 TEST_CASE("text that is not NFF is refused, and so are files without view or objects", "[dialects]") {
-    for (const std::string line :
-         {"This is a story of a teapot.", "hello world", "solid teapot", "outer loop", "<html>", "{ 1 2 }",
-          "verylongword 1 2 3", "a b c d 1", "int main() { return 0; }"}) {
+    for (const std::string line : {"<html>", "{ 1 2 }", "verylongword 1 2 3", "main() { return 0; }", "a/b 1"}) {
         CAPTURE(line);
         CHECK_THROWS_WITH(parse_lenient(kView + line + "\n" + kSphere), Contains("t.nff:8: unknown entity"));
     }
