@@ -99,8 +99,8 @@ class Voxels {
 };
 
 [[noreturn]] void refuse_entries(const Divisions& d) {
-    throw TooManyEntries(fmt::format("the lists of {}x{}x{} voxels have more than {} entries; use fewer voxels", d[0],
-                                     d[1], d[2], kMaxEntries));
+    throw UserError(fmt::format("the lists of {}x{}x{} voxels have more than {} entries; use fewer voxels", d[0], d[1],
+                                d[2], kMaxEntries));
 }
 
 // Counts the objects of each voxel, then fills the lists (counting sort).

@@ -119,12 +119,6 @@ std::uint32_t parse_parameter(const MappingText& mapping, std::string_view text)
 
 }  // namespace
 
-const std::vector<std::string>& mapping_forms() {
-    static const std::vector<std::string> forms = {"cyclic", "cyclic:p", "column",    "rows",
-                                                   "blocks", "grid:AxB", "tiles:WxH", "random:seed"};
-    return forms;
-}
-
 MappingText parse_mapping(const std::string& text) {
     struct KnownMapping {
         const char* name;
@@ -142,8 +136,10 @@ MappingText parse_mapping(const std::string& text) {
     const auto* const found = std::find_if(std::begin(known_mappings), std::end(known_mappings),
                                            [&](const KnownMapping& n) { return n.name == text.substr(0, colon); });
     if (found == std::end(known_mappings))
-        throw UserError(fmt::format("--mapping {}: no such mapping; mappings: {}, dynamic:CHUNK, hybrid:CHUNK", text,
-                                    fmt::join(mapping_forms(), ", ")));
+        throw UserError(fmt::format(
+            "--mapping {}: no such mapping; mappings: cyclic, cyclic:p, column, rows, blocks, grid:AxB, tiles:WxH, "
+            "random:seed, dynamic:CHUNK, hybrid:CHUNK",
+            text));
     MappingText mapping{text, found->rule, found->takes_offset_option};
     if (colon == std::string::npos && !found->needs_parameter) return mapping;
     mapping.rule.parameter = parse_parameter(mapping, colon == std::string::npos ? "" : text.substr(colon + 1));

@@ -62,9 +62,6 @@ struct MappingText {
     std::string name() const { return text.substr(0, text.find(':')); }
 };
 
-/// Returns the forms of mappings listed above, for messages.
-const std::vector<std::string>& mapping_forms();
-
 /// Parses a static mapping. Throws UserError with the option and its legal forms.
 MappingText parse_mapping(const std::string& text);
 

@@ -27,29 +27,21 @@ constexpr std::chrono::duration<double> kDefaultTimeout = 10 * kBuildBudget;
 constexpr double kMaxTimeS = 1e6;
 
 struct VerifyCommand {
-    std::string device, report, page, junit, expect, reproduce, kernel_dir, only, skip, shard;
-    std::uint32_t lanes = 0, repeat = 1;
-    double timeout_s = kDefaultTimeout.count();
+    VerifySettings checks{.timeout_s = kDefaultTimeout.count()};
+    std::string device, report, page, junit, expect, reproduce, kernel_dir, shard;
     bool brief = false, quick = false, full = false, list = false;
-
-    Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
 };
 
 VerifySettings settings_of(const VerifyCommand& command) {
-    VerifySettings settings{.depth = command.depth(),
-                            .sources = {command.kernel_dir},
-                            .only = command.only,
-                            .skip = command.skip,
-                            .repeat = command.repeat,
-                            .timeout_s = command.timeout_s,
-                            .lanes = command.lanes};
-    if (!command.shard.empty()) {
-        const std::vector<std::uint32_t> shard = parse_sizes(command.shard, '/');
-        if (shard.size() != 2 || shard[0] > shard[1])
-            throw UserError(fmt::format("--shard {}: must be I/N with I 1..N, such as 2/4", command.shard));
-        settings.shard = shard[0], settings.shards = shard[1];
-    }
+    VerifySettings settings = command.checks;
+    settings.depth = command.full ? Depth::kFull : command.brief ? Depth::kBrief : Depth::kQuick;
+    settings.sources.folder = command.kernel_dir;
     settings.expected_failures = read_expected_failures(command.expect);
+    if (command.shard.empty()) return settings;
+    const std::vector<std::uint32_t> shard = parse_sizes(command.shard, '/');
+    if (shard.size() != 2 || shard[0] > shard[1])
+        throw UserError(fmt::format("--shard {}: must be I/N with I 1..N, such as 2/4", command.shard));
+    settings.shard = shard[0], settings.shards = shard[1];
     return settings;
 }
 
@@ -172,22 +164,22 @@ void add_verify_command(CLI::App& program) {
         "All formats, lanes and group sizes: about five minutes with PoCL on an idle CPU, longer if the compiler is "
         "slow on wide vectors");
     add_value(
-        *command, "--lanes V", options->lanes,
+        *command, "--lanes V", options->checks.lanes,
         "Check only this number of lanes, for compilers that are slow on wide vectors; if not given: the device's "
         "default number of lanes, or with --full, every number of lanes")
         ->check(CLI::IsMember({1, 4, 8, 16}));
-    add_value(*command, "--only TEXT", options->only,
+    add_value(*command, "--only TEXT", options->checks.only,
               "Run only checks whose printed \"LAYER NAME\" contains this text: number, \"image glass\", spa22, ...; * "
               "stands for any text");
-    add_value(*command, "--skip TEXT", options->skip,
+    add_value(*command, "--skip TEXT", options->checks.skip,
               "Run no check whose \"LAYER NAME\" contains this text, as for --only");
     command->add_flag("--list", options->list, "Print the names of the selected checks, and run none");
-    in_range(add_value(*command, "--repeat N", options->repeat,
+    in_range(add_value(*command, "--repeat N", options->checks.repeat,
                        "Number of runs of each check; it fails if one of them fails"),
              1, 1e6);
     add_value(*command, "--shard I/N", options->shard,
               "Run the I-th of N parts of the selected checks, to divide them over N jobs");
-    in_range(add_value(*command, "--timeout S", options->timeout_s,
+    in_range(add_value(*command, "--timeout S", options->checks.timeout_s,
                        "Seconds after which a check counts as failed and its process is ended, builds included; 0: "
                        "never"),
              0, kMaxTimeS, "seconds")

@@ -37,8 +37,6 @@ double linear_from_srgb(double encoded) {
 
 }  // namespace
 
-float srgb_light(std::uint8_t code) { return static_cast<float>(linear_from_srgb(code / 255.0)); }
-
 std::uint8_t srgb_code(double linear) {
     // borders[k]: the linear value at which the nearest code changes from k to k + 1
     static const std::array<double, 255> borders = [] {
@@ -133,23 +131,22 @@ std::size_t first_pixel(int part, int parts, int pixels) {
 
 }  // namespace
 
-int preview_side(int image_side, int longer_side, int max_side) {
-    if (longer_side <= max_side) return image_side;
-    return std::max(1, static_cast<int>((std::int64_t{image_side} * max_side + longer_side / 2) / longer_side));
-}
-
 Image as_displayed(const Image& image, double exposure) {
     Image displayed{image.width, image.height, {}};
     displayed.rgb.reserve(image.rgb.size());
-    for (const std::uint8_t code : srgb_codes(image.rgb, exposure)) displayed.rgb.push_back(srgb_light(code));
+    for (const std::uint8_t code : srgb_codes(image.rgb, exposure))
+        displayed.rgb.push_back(static_cast<float>(linear_from_srgb(code / 255.0)));
     return displayed;
 }
 
 Image preview_of(const Image& image, int max_side) {
     if (image.width < 1 || image.height < 1 || max_side < 1) throw std::logic_error("preview_of: no pixels");
     const int longer_side = std::max(image.width, image.height);
-    Image preview{
-        preview_side(image.width, longer_side, max_side), preview_side(image.height, longer_side, max_side), {}};
+    const auto reduced = [&](std::int64_t side) {  // both sides by the same factor, to at least 1 pixel
+        if (longer_side <= max_side) return static_cast<int>(side);
+        return std::max(1, static_cast<int>((side * max_side + longer_side / 2) / longer_side));
+    };
+    Image preview{reduced(image.width), reduced(image.height), {}};
     const auto width = static_cast<std::size_t>(image.width);
     for (int y = 0; y < preview.height; ++y)
         for (int x = 0; x < preview.width; ++x) {

@@ -76,8 +76,7 @@ Scene generate_uniform(int count, std::array<int, 3> voxels) {
         check_number(fmt::format("uniform: {} voxels along an axis", axis_voxels), axis_voxels, 1, kMaxVoxelsPerAxis);
         voxel_count *= axis_voxels;
     }
-    if (voxel_count > kMaxVoxels)
-        throw UserError(fmt::format("uniform: {} voxels: at most {}", voxel_count, kMaxVoxels));
+    if (voxel_count > 1 << 20) throw UserError(fmt::format("uniform: {} voxels: at most {}", voxel_count, kMaxVoxels));
 
     Scene scene;
     scene.name = fmt::format("uniform{}_{}x{}x{}.nff", count, voxels[0], voxels[1], voxels[2]);
@@ -168,15 +167,14 @@ Scene scattered(const Scene& scene, std::uint64_t seed) {
 }
 
 Scene moved_into_voxels(const Scene& scene) {
-    constexpr double kVoxel = 2.0 / kVoxelsPerCubeSide;  // side of a voxel
+    constexpr double kVoxels = 4, kVoxel = 2 / kVoxels;  // number of voxels along an axis; side of a voxel
     // Upper bound of the distance by which a hit region (host/accel) exceeds its sphere.
     constexpr double kGap = kVoxel / 16;
     Scene moved = scene;
     for (Sphere& sphere : moved.spheres)
         for (int axis = 0; axis < 3; ++axis) {
             double& coordinate = sphere.centre[axis];
-            const double voxel_low =
-                -1 + kVoxel * std::clamp(std::floor((coordinate + 1) / kVoxel), 0.0, kVoxelsPerCubeSide - 1.0);
+            const double voxel_low = -1 + kVoxel * std::clamp(std::floor((coordinate + 1) / kVoxel), 0.0, kVoxels - 1);
             const double margin = std::min(sphere.radius + kGap, kVoxel / 2);
             coordinate = std::clamp(coordinate, voxel_low + margin, voxel_low + kVoxel - margin);
         }
@@ -309,7 +307,7 @@ void add_sphere_and_cylinders(Scene& scene, int size, const std::array<int, 3>& 
 }  // namespace
 
 Scene generate_balls(int level) {
-    check_number(fmt::format("balls: level {}", level), level, 0, kMaxBallsLevel);
+    check_number(fmt::format("balls: level {}", level), level, 0, 6);
     Scene scene;
     scene.name = fmt::format("balls{}.nff", level);
     scene.background = {0.078, 0.361, 0.753};
@@ -323,7 +321,7 @@ Scene generate_balls(int level) {
 }
 
 Scene generate_gears(int size) {
-    check_number(fmt::format("gears: size {}", size), size, 1, kMaxGearsSize);
+    check_number(fmt::format("gears: size {}", size), size, 1, 16);
     Scene scene;
     scene.name = fmt::format("gears{}.nff", size);
     scene.background = {0.078, 0.361, 0.753};
@@ -349,7 +347,7 @@ Scene generate_gears(int size) {
 }
 
 Scene generate_lattice(int size) {
-    check_number(fmt::format("lattice: size {}", size), size, 1, kMaxLatticeSize);
+    check_number(fmt::format("lattice: size {}", size), size, 1, 64);
     Scene scene;
     scene.name = fmt::format("lattice{}.nff", size);
     scene.background = {0.078, 0.361, 0.753};

@@ -9,13 +9,9 @@
 
 namespace raya {
 
-inline constexpr int kMaxBallsLevel = 6;    // `level` of generate_balls(); makes 597,871 spheres
-inline constexpr int kMaxLatticeSize = 64;  // `size` of generate_lattice(); makes 274,625 spheres and 811,200 cylinders
-inline constexpr int kMaxGearsSize = 16;    // `size` of generate_gears(); makes 598,017 polygons
 // `count` of generate_uniform() and generate_random()
 inline constexpr int kMaxObjects = 20'000'000;
 inline constexpr int kMaxVoxelsPerAxis = 256;  // each element of `voxels` of generate_uniform()
-inline constexpr int kMaxVoxels = 1'048'576;   // product of `voxels` of generate_uniform()
 
 /// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six decimals). Rounding keeps
 /// files short, and makes them equal on all platforms although the last bits of sines and cosines differ.
@@ -56,9 +52,6 @@ Scene generate_random(int count, std::uint64_t seed);
 /// sphere touches another sphere, it gets a new random place and radius, at most 200 times. The means of load and
 /// imbalance over many seeds match Kohata & Ito's figures. 256 x 256 pixels.
 Scene generate_cluster(std::uint64_t seed);
-
-/// Number of voxels along each axis of the cube in moved_into_voxels().
-inline constexpr std::uint32_t kVoxelsPerCubeSide = 4;
 
 /// Returns a copy of `scene`, which lies in the cube [-1, 1]^3, in which each sphere has a random centre, clamped so
 /// that the sphere stays inside the cube. Radii and surfaces do not change.

@@ -89,16 +89,11 @@ Scene scene_of(const ReferenceImage& image) {
     return parse_nff(embedded_files().at(file), file);
 }
 
-RingSettings simplest_settings(const ImageSize& size) {
+RingSettings reference_settings(const ReferenceImage& image) {
     RingSettings settings;
     settings.machine = machine_named("grande");
-    settings.mapping = make_mapping(column_mapping(), size, 1);
+    settings.mapping = make_mapping(column_mapping(), image.size, 1);
     settings.kernels = {.lanes = 1, .group_size = 1, .filter = false};
-    return settings;
-}
-
-RingSettings reference_settings(const ReferenceImage& image) {
-    RingSettings settings = simplest_settings(image.size);
     settings.bounces = kReferenceBounces;
     settings.format = parse_format(image.format);
     settings.sampling = image.sampling;

@@ -201,15 +201,6 @@ std::vector<Check> verify(const cl::Device& device, const VerifySettings& settin
     return verification.take_checks();
 }
 
-VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name) {
-    settings.only = full_name;
-    settings.is_whole_name = true;
-    settings.skip.clear();
-    settings.shard = settings.shards = settings.repeat = 1;
-    settings.done = 0;
-    return settings;
-}
-
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings) {
     Verification verification(device, settings, {}, false);
     visit_layers(verification);

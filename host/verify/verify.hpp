@@ -91,9 +91,6 @@ struct CheckSink {
 /// sources does not apply.
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink = {});
 
-/// Returns the settings to run only the check of this name, "LAYER NAME", once.
-VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name);
-
 /// Returns "LAYER NAME" of every check that verify() would run, in the same order.
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings);
 
