@@ -76,7 +76,9 @@ Scene generate_uniform(int count, std::array<int, 3> voxels) {
         check_number(fmt::format("uniform: {} voxels along an axis", axis_voxels), axis_voxels, 1, kMaxVoxelsPerAxis);
         voxel_count *= axis_voxels;
     }
-    if (voxel_count > 1 << 20) throw UserError(fmt::format("uniform: {} voxels: at most {}", voxel_count, kMaxVoxels));
+    constexpr std::int64_t kMaxVoxels = 1 << 20;
+    if (voxel_count > kMaxVoxels)
+        throw UserError(fmt::format("uniform: {} voxels: at most {}", voxel_count, kMaxVoxels));
 
     Scene scene;
     scene.name = fmt::format("uniform{}_{}x{}x{}.nff", count, voxels[0], voxels[1], voxels[2]);
