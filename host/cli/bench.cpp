@@ -102,13 +102,20 @@ void print_builds(const std::vector<BenchBuild>& builds) {
     fmt::print("total: {:.2f} s of builds, {:.2f} s of first launches\n", build_s, launch_s);
 }
 
-struct BaselineOptions {
-    std::string baseline;  // file of --compare
+struct BenchCommand {
+    RenderOptions render;
+    std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
+    std::vector<std::string> variants;
+    std::uint32_t samples = 7;  // number of time samples of each row
+    ReportFiles files;          // of --report and --page
+    std::string baseline;       // file of --compare
     double tolerance_percent = 10;
+    bool build = false;
+    std::optional<double> limit_s;  // maximum seconds to compile a kernel
 };
 
 // Throws UserError if the baseline has no row of this run.
-void check_comparable(const BaselineOptions& options, const BenchReport& baseline, const BenchReport& measured) {
+void check_comparable(const BenchCommand& options, const BenchReport& baseline, const BenchReport& measured) {
     if (options.baseline.empty() || rows_in_common(baseline, measured) > 0) return;
     const auto text_of = [](const BenchMeasurement& row) {
         return fmt::format("{}, {}, {}, {}, {} lanes, group {}", row.scene, row.size, row.array, row.format, row.lanes,
@@ -122,13 +129,12 @@ void check_comparable(const BaselineOptions& options, const BenchReport& baselin
 
 // Compares with the baseline, if there is one. Writes all files, and prints the comparison. Throws CheckFailure if a
 // row is slower or has a different image.
-void write_and_compare(const BaselineOptions& options, const ReportFiles& files, const BenchReport& baseline,
-                       BenchReport measured) {
-    if (options.baseline.empty()) return write_report_and_page(files, to_json(measured));
+void write_and_compare(const BenchCommand& options, const BenchReport& baseline, BenchReport measured) {
+    if (options.baseline.empty()) return write_report_and_page(options.files, to_json(measured));
     BenchComparison comparison = compare_bench(baseline, measured, options.tolerance_percent);
     comparison.baseline = options.baseline;
     measured.compared = comparison;
-    write_report_and_page(files, to_json(measured));
+    write_report_and_page(options.files, to_json(measured));
     fmt::print("\ncompared with {}, tolerance {} % of its rates:\n{}", printable(options.baseline),
                options.tolerance_percent, comparison.text);
     std::fflush(stdout);
@@ -139,33 +145,6 @@ void write_and_compare(const BaselineOptions& options, const ReportFiles& files,
     fmt::print("{} compared, none slower by more than {} %, all images equal\n", counted(comparison.compared, "row"),
                options.tolerance_percent);
 }
-
-// Adds --compare, which excludes the option `build`, and --tolerance, which needs --compare.
-void add_baseline_options(CLI::App& command, BaselineOptions& options, CLI::Option* build) {
-    CLI::Option* compare =
-        add_file(command, FileUse::kRead, "--compare FILE.json", options.baseline,
-                 "Compare the rows with those of an earlier --report: exit code 4 if a row is slower or its image "
-                 "differs",
-                 "Compare with an earlier report: exit code 4 if slower")
-            ->excludes(build);
-    in_range(add_value(command, "--tolerance PERCENT", options.tolerance_percent,
-                       "With --compare: tolerance in percent, 0..100; a row is slower if both its best and its median "
-                       "rate fall by more than the tolerance"),
-             0, 100, "percent")
-        ->capture_default_str()
-        ->needs(compare);
-}
-
-struct BenchCommand {
-    RenderOptions render;
-    std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
-    std::vector<std::string> variants;
-    std::uint32_t samples = 7;  // number of time samples of each row
-    ReportFiles files;          // of --report and --page
-    BaselineOptions compare;
-    bool build = false;
-    std::optional<double> limit_s;  // maximum seconds to compile a kernel
-};
 
 void write_and_check_builds(const BenchCommand& command, const BenchReport& report) {
     fmt::print("compiled for {} {} {}\n", report.device.platform, report.device.name, report.device.driver);
@@ -234,7 +213,7 @@ void bench(const CLI::App& parser, BenchCommand command) {
     if (!variants.empty() && std::ranges::count(variants, "torus") == std::ssize(variants))
         refuse_options_of_other_machines(parser, machine_named("torus"));
     if (!command.files.page.empty()) check_page_name("--page", command.files.page);
-    const std::string& old_report = command.compare.baseline;  // read first, because the measurements take long
+    const std::string& old_report = command.baseline;  // read first, because the measurements take long
     const BenchReport baseline = old_report.empty() ? BenchReport{} : read_bench_report(old_report);
     const std::vector<NumberFormat> formats =
         parse_formats(command.render.format.empty() ? "fp32,spa22" : command.render.format);
@@ -252,7 +231,7 @@ void bench(const CLI::App& parser, BenchCommand command) {
     }
     session.announce_compiling();
     std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
-    check_comparable(command.compare, baseline, bench_report(rows, session.device()));
+    check_comparable(command, baseline, bench_report(rows, session.device()));
     bar->stage("taking samples");
     take_samples(rows, command.samples);
     bar.reset();
@@ -266,7 +245,7 @@ void bench(const CLI::App& parser, BenchCommand command) {
         const ProgressBar measuring(true, "measuring the device's peak");
         add_rooflines(measured, rows, device);
     }
-    write_and_compare(command.compare, command.files, baseline, std::move(measured));
+    write_and_compare(command, baseline, std::move(measured));
 }
 
 }  // namespace
@@ -316,7 +295,18 @@ void add_bench_command(CLI::App& program) {
         "the device's peak for each pair of a format and a number of lanes; each pair takes some seconds",
         "Write rates, comparison and roofline as an HTML page")
         ->excludes(build);
-    add_baseline_options(*command, options->compare, build);
+    CLI::Option* compare =
+        add_file(*command, FileUse::kRead, "--compare FILE.json", options->baseline,
+                 "Compare the rows with those of an earlier --report: exit code 4 if a row is slower or its image "
+                 "differs",
+                 "Compare with an earlier report: exit code 4 if slower")
+            ->excludes(build);
+    in_range(add_value(*command, "--tolerance PERCENT", options->tolerance_percent,
+                       "With --compare: tolerance in percent, 0..100; a row is slower if both its best and its median "
+                       "rate fall by more than the tolerance"),
+             0, 100, "percent")
+        ->capture_default_str()
+        ->needs(compare);
     command->get_option("--format")
         ->description("Formats to compare, comma-separated: fp32, spa22 (e6m15), eXmY[t]; default: fp32,spa22");
     command->callback([command, options] { bench(*command, *options); });

@@ -325,13 +325,6 @@ RenderReport common_report(const RenderCommand& command, const SceneInput& input
     return report;
 }
 
-void write_main_image(const RenderCommand& command, const Image& image, ImageAttributes attributes) {
-    if (command.image.empty()) return;
-    const double exposure = command.exposure.value_or(0);
-    if (exposure != 0) attributes.emplace_back("exposure", fmt::format("{}", exposure));
-    write_image(command.image, image, attributes, exposure);
-}
-
 void write_report(const RenderCommand& command, const RenderReport& report) {
     if (command.needs_report()) write_report_and_page({command.report, command.page}, to_json(report));
     if (!is_quiet() && command.prints) fmt::print("{}", printable(summary_text(report)));
@@ -423,15 +416,9 @@ std::optional<RenderReport> finish_render(const RenderCommand& command, RenderRu
         run.progress.stage("writing");
         report = common_report(command, run.input, run.session().device(), settings, result);
         outputs.describe(report);
-        ImageAttributes attributes = {{"scene", run.input.scene.name},
-                                      {"machine", report.machine.name},
-                                      {"mapping", report.machine.mapping},
-                                      {"format", report.machine.format},
-                                      {"u", fmt::format("{:.6f}", report.load.imbalance)}};
-        if (report.machine.offset) attributes.emplace_back("offset", std::to_string(*report.machine.offset));
         const SpanLog::Span span(&spans, "write images");
-        write_main_image(command, result.image, attributes);
-        if (outputs.write_files) outputs.write_files(attributes);
+        if (!command.image.empty()) write_image(command.image, result.image, command.exposure.value_or(0));
+        if (outputs.write_files) outputs.write_files();
     }
     add_measured(report, command, run, settings.format, result, outputs.work);
     if (!run.ranks.is_first()) return {};

@@ -201,10 +201,10 @@ void add_preview(RenderReport& report, const RenderCommand& command, const Image
 
 /// What a machine contributes to the end of a render.
 struct MachineOutputs {
-    std::function<void(RenderReport&)> describe;              // sets the machine's part of the report
-    std::function<void(const ImageAttributes&)> write_files;  // writes the machine's own files; empty: none
-    std::function<void(TraceFile&)> add_trace;                // adds the modelled machine to the trace
-    std::vector<KernelWork> work;                             // of the kernels, for the roofline
+    std::function<void(RenderReport&)> describe;  // sets the machine's part of the report
+    std::function<void()> write_files;            // writes the machine's own files; empty: none
+    std::function<void(TraceFile&)> add_trace;    // adds the modelled machine to the trace
+    std::vector<KernelWork> work;                 // of the kernels, for the roofline
 };
 
 /// Collective: writes the image, the machine's files, report and trace, prints the summary, and removes the checkpoint.

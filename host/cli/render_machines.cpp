@@ -64,9 +64,9 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
         command, run, settings, result,
         {.describe = [&](RenderReport& r) { describe(r, command, settings, result); },
          .write_files =
-             [&](const ImageAttributes& attributes) {
-                 if (!command.cost.empty()) write_image(command.cost, grey_image(result.cost()), attributes);
-                 if (!command.mask.empty()) write_image(command.mask, result.mask, attributes);
+             [&] {
+                 if (!command.cost.empty()) write_image(command.cost, grey_image(result.cost()));
+                 if (!command.mask.empty()) write_image(command.mask, result.mask);
              },
          .add_trace = [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); },
          .work = ring_kernel_work(settings, result)});

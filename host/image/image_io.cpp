@@ -215,10 +215,9 @@ EncodePicture* encoder(const fs::path& path) {
     }
 }
 
-std::string encode(const fs::path& path, const char* format, const Pixels& pixels, const void* values,
-                   const ImageAttributes& attributes) {
+std::string encode(const fs::path& path, const char* format, const Pixels& pixels, const void* values) {
     std::string result;
-    if (!encoder(path)({format, pixels.width, pixels.height, pixels.channels, values, attributes}, result))
+    if (!encoder(path)({format, pixels.width, pixels.height, pixels.channels, values}, result))
         refuse_to_encode(path, result);
     return result;
 }
@@ -245,7 +244,7 @@ std::string pfm_bytes(const Pixels& pixels) {
 
 // Writes the pixels in the format of the extension. `exposure` applies only to formats with 8-bit codes.
 void write_pixels(const fs::path& path, const Pixels& pixels, std::span<const std::string_view> extensions,
-                  const ImageAttributes& attributes, double exposure) {
+                  double exposure) {
     const bool positive = pixels.width > 0 && pixels.height > 0;
     if (!positive || pixels.values.size() != static_cast<std::size_t>(pixels.width) *
                                                  static_cast<std::size_t>(pixels.height * pixels.channels))
@@ -255,11 +254,9 @@ void write_pixels(const fs::path& path, const Pixels& pixels, std::span<const st
     const std::string extension = lower_case_extension(path, extensions);
     const char* const format = encoded_format(extension);
     if (extension == ".pfm") return write_whole_file(path, pfm_bytes(pixels));
-    if (extension == ".exr")
-        return write_whole_file(path, encode(path, format, pixels, pixels.values.data(), attributes));
+    if (extension == ".exr") return write_whole_file(path, encode(path, format, pixels, pixels.values.data()));
     const std::vector<std::uint8_t> codes = srgb_codes(pixels.values, exposure);
-    write_whole_file(
-        path, format == nullptr ? ppm_bytes(pixels, codes) : encode(path, format, pixels, codes.data(), attributes));
+    write_whole_file(path, format == nullptr ? ppm_bytes(pixels, codes) : encode(path, format, pixels, codes.data()));
 }
 
 }  // namespace
@@ -280,12 +277,12 @@ void load_encoder(const fs::path& path) {
     if (encoded_format(lower_case_extension(path, kImageExtensions)) != nullptr) encoder(path);
 }
 
-void write_image(const fs::path& path, const Image& image, const ImageAttributes& attributes, double exposure) {
-    write_pixels(path, {image.width, image.height, 3, image.rgb}, kImageExtensions, attributes, exposure);
+void write_image(const fs::path& path, const Image& image, double exposure) {
+    write_pixels(path, {image.width, image.height, 3, image.rgb}, kImageExtensions, exposure);
 }
 
-void write_image(const fs::path& path, const GreyImage& image, const ImageAttributes& attributes) {
-    write_pixels(path, {image.width, image.height, 1, image.values}, kGreyImageExtensions, attributes, 0);
+void write_image(const fs::path& path, const GreyImage& image) {
+    write_pixels(path, {image.width, image.height, 1, image.values}, kGreyImageExtensions, 0);
 }
 
 }  // namespace raya

@@ -49,7 +49,7 @@ std::vector<std::uint8_t> srgb_codes(std::span<const float> values, double expos
 
 // A PNG encoder that does not need OpenImageIO, for images in HTML pages and reports.
 
-/// Returns the bytes of a PNG file (ISO/IEC 15948) without attributes. It stores the 8-bit sRGB code nearest to each
+/// Returns the bytes of a PNG file (ISO/IEC 15948). It stores the 8-bit sRGB code nearest to each
 /// value clamped to 0..1, as write_image() does by default. Throws std::logic_error if `image` has no pixels
 /// or does not have 3 floats per pixel.
 std::string plain_png(const Image& image);
@@ -83,11 +83,10 @@ void load_encoder(const std::filesystem::path& path);
 /// JPEG (kJpegQuality, 4:4:4) and PPM store the nearest 8-bit code of each value; EXR (channels R, G, B,
 /// zip) and PFM store the floats. Throws UserError with file, reason and remedy; std::logic_error if `image` does not
 /// have 3 floats per pixel.
-void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes,
-                 double exposure = 0);
+void write_image(const std::filesystem::path& path, const Image& image, double exposure = 0);
 
 /// Writes an image of one number per pixel as EXR (channel Y, zip) or PFM. Throws UserError with file, reason
 /// and remedy; std::logic_error if `image` does not have one float per pixel.
-void write_image(const std::filesystem::path& path, const GreyImage& image, const ImageAttributes& attributes);
+void write_image(const std::filesystem::path& path, const GreyImage& image);
 
 }  // namespace raya

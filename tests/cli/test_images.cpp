@@ -1,5 +1,4 @@
-// The image files of a render: attributes, reproducible bytes, scales.
-#include <OpenImageIO/imageio.h>
+// The image files of a render: reproducible bytes, scales.
 #include <unistd.h>
 
 #include <array>
@@ -13,7 +12,7 @@
 namespace raya {
 namespace {
 
-TEST_CASE("render: equal renders write equal bytes, without date, host or program, and with the settings", "[cli]") {
+TEST_CASE("render: equal renders write equal bytes, without date, host or program", "[cli]") {
     std::array<char, 256> host{};
     REQUIRE(::gethostname(host.data(), host.size() - 1) == 0);
     const std::string name = host.data();
@@ -29,30 +28,15 @@ TEST_CASE("render: equal renders write equal bytes, without date, host or progra
             for (const std::string key : {"DateTime", "tIME", "HostComputer", "Software", "owner"})
                 CHECK_FALSE(contains(bytes, key));
             if (name.size() >= 6) CHECK_FALSE(contains(bytes, name));  // pixels may contain a shorter name by chance
-            if (!path.ends_with(".png") && !path.ends_with(".exr")) continue;
-            const auto image = OIIO::ImageInput::open(path);
-            REQUIRE(image);
-            const auto attribute = [&](const char* key) {
-                return std::string(image->spec().get_string_attribute(key));
-            };
-            CHECK((attribute("raya:scene") == "centre.nff" && attribute("raya:machine") == "spa"));
-            CHECK((attribute("raya:mapping") == "cyclic" && attribute("raya:offset") == "3"));
-            CHECK(attribute("raya:format") == "e6m15");
-            const double u = first.report()["load"]["imbalance"];
-            CHECK(std::stod(attribute("raya:u")) == Approx(u).margin(0.5e-6));  // printed with six decimal places
         }
     }
 }
 
-TEST_CASE("render --exposure: changes the 8-bit values, not the hash; report and image contain it", "[cli]") {
-    const RenderFiles usual("planes", {}, ".ppm"), toned("planes", {"--exposure", "-1.5"}, ".ppm"),
-        png("planes", {"--exposure", "-1.5"}, ".png");
+TEST_CASE("render --exposure: changes the 8-bit values, not the hash; the report contains it", "[cli]") {
+    const RenderFiles usual("planes", {}, ".ppm"), toned("planes", {"--exposure", "-1.5"}, ".ppm");
     CHECK((usual.report()["image"]["exposure"] == 0.0 && toned.report()["image"]["exposure"] == -1.5));
     CHECK(toned.report()["image"]["hash"] == usual.report()["image"]["hash"]);
     CHECK(file_contents(toned.image()) != file_contents(usual.image()));
-    const auto image = OIIO::ImageInput::open(png.image());
-    REQUIRE(image);
-    CHECK(image->spec().get_string_attribute("raya:exposure") == "-1.5");
 }
 
 TEST_CASE("render --machine grande: without a report the image is the same", "[cli]") {
