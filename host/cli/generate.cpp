@@ -51,7 +51,7 @@ class Generators {
             ProgressBar bar(true, "generating");
             const Scene scene = make(*options);
             bar.stage("writing");
-            write_whole_file(options->output, nff_pieces(scene));
+            write_whole_file(options->output, write_nff(scene));
         });
         return generator;
     }

@@ -18,7 +18,6 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,8 +63,5 @@ std::string in_quotes(std::string_view text);
 /// returns an equal scene if equal surfaces of `scene` are merged (merge_equal_surfaces()). Throws UserError for a
 /// checker on a sphere or cone, which NFF cannot express.
 std::string write_nff(const Scene& scene);
-
-/// Returns a function that returns the text of write_nff() in pieces, for write_whole_file(). `scene` must outlive it.
-std::function<std::string_view()> nff_pieces(const Scene& scene);
 
 }  // namespace raya
