@@ -209,25 +209,14 @@ Light light_of(const std::string& text) {
     return light;
 }
 
-/// Returns the camera options that were given: "--from 0,0,0 --angle 10".
-std::string viewpoint_text(const ViewOptions& v) {
-    std::string text;
-    for (const auto& [option, value] : v.given_options())
-        if (option != "--background" && option != "--light")
-            text += fmt::format("{}{} {}", text.empty() ? "" : " ", option, value.substr(0, kMaxShownBytes));
-    return text;
-}
-
 /// Applies the camera options to `view`. Throws UserError with the options' names for an invalid camera.
 void change_viewpoint(const ViewOptions& v, View& view) {
     if (!v.from.empty()) view.from = vector_of("--from", v.from, kPoint);
     if (!v.at.empty()) view.at = vector_of("--at", v.at, kPoint);
     if (!v.up.empty()) view.up = vector_of("--up", v.up, kPoint);
     if (v.angle) view.angle_degrees = *v.angle;
-    const std::string given_text = viewpoint_text(v);
-    if (given_text.empty()) return;
     const std::string error = view_error(view);
-    if (!error.empty()) throw UserError(fmt::format("{}: {}", given_text, error));
+    if (!error.empty()) throw UserError("--from, --at, --up, --angle: " + error);
 }
 
 }  // namespace

@@ -69,16 +69,6 @@ void print(const std::string& lines) {
     std::fflush(stdout);
 }
 
-void print_device_totals(const std::vector<DeviceChecks>& device_checks) {
-    std::vector<Check> checks;
-    double seconds = 0;
-    for (const DeviceChecks& device : device_checks) {
-        checks.insert(checks.end(), device.checks.begin(), device.checks.end());
-        seconds += device.seconds;
-    }
-    fmt::print("{}: {}\n", counted(device_checks.size(), "device"), closing_text(checks, seconds));
-}
-
 // Verifies device number `index` of those that --device selects, and prints each check. Sets `devices` to the number of
 // selected devices.
 DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, const VerifySettings& settings,
@@ -135,7 +125,6 @@ void run_verify(const VerifyCommand& command) {
     std::vector<DeviceChecks> device_checks;
     for (std::size_t devices = 1; device_checks.size() < devices;)
         device_checks.push_back(verify_device(command, device_checks.size(), settings, devices));
-    if (device_checks.size() > 1) print_device_totals(device_checks);
     for (const std::string& text : unmatched_patterns(settings.expected_failures, device_checks))
         warn(text + "; raya verify --full --list prints the names of all checks");
     write_report_and_page({command.report, command.page}, to_json(VerifyReport{settings.depth, device_checks}));

@@ -159,21 +159,20 @@ TEST_CASE("invalid spheres and cones are refused", "[nff]") {
 }
 
 TEST_CASE("invalid polygons are refused", "[nff]") {
-    check_entities(
-        {{"p 2 0 0 0 1 0 0", "9: the number of vertices of 'p' is 2: must be a whole number from 3"},
-         {"p -3", "9: the number of vertices of 'p' is -3"},
-         {"p 3.5", "9: the number of vertices of 'p' is 3.5"},
-         {"p 4294967299 0 0 0", "9: the number of vertices of 'p' is 4294967299: must be a whole number "},
-         {"p 1000000000\n0 0 0\n", "9: the file is too short for a polygon of 1000000000 vertices"},
-         {"pp 1000\n0 0 0 0 0 1\n", "9: the file is too short for a polygon of 1000 vertices"},
-         {"p 4 0 0 0 1 0 0 1 0 0 0 0 0", "9: the polygon has fewer than three different vertices"},
-         {"p 3 1 1 1 1 1 1 1 1 1", "9: the polygon has fewer than three different vertices"},
-         {"p 3 0 0 0 0.1 0.1 0.1 0.3 0.3 0.3", "9: the polygon has no area"},
-         {"p 4 0 0 0 1 1 0 1 0 0 0 1 0", "9: the polygon crosses or retraces itself, so that its signed area is 0"},
-         {"p 3 0 0 0 1e-31 0 0 0 1e-31 0", "9: the polygon is smaller than 1e-30"},
-         {"p 4 0 0 0 1 0 0 1 1 0.1 0 1 0", "9: the polygon is not flat: a vertex lies 0.02"},
-         {"pp 4 0 0 0 0 0 1 1 0 0 0 0 1 1 1 0.1 0 0 1 0 1 0 0 0 1", "9: the polygon is not flat"},
-         {"pp 3 0 0 0 0 0 1 1 0 0 0 0 0 0 1 0 0 0 1", "9: a normal of the patch is zero"}});
+    check_entities({{"p 2 0 0 0 1 0 0", "9: the number of vertices of 'p' is 2: must be a whole number from 3"},
+                    {"p -3", "9: the number of vertices of 'p' is -3"},
+                    {"p 3.5", "9: the number of vertices of 'p' is 3.5"},
+                    {"p 4294967299 0 0 0", "9: the number of vertices of 'p' is 4294967299: must be a whole number "},
+                    {"p 1000000000\n0 0 0\n", "9: the file is too short for a polygon of 1000000000 vertices"},
+                    {"pp 1000\n0 0 0 0 0 1\n", "9: the file is too short for a polygon of 1000 vertices"},
+                    {"p 4 0 0 0 1 0 0 1 0 0 0 0 0", "9: the polygon has fewer than three different vertices"},
+                    {"p 3 1 1 1 1 1 1 1 1 1", "9: the polygon has fewer than three different vertices"},
+                    {"p 3 0 0 0 0.1 0.1 0.1 0.3 0.3 0.3", "9: the polygon has no area"},
+                    {"p 4 0 0 0 1 1 0 1 0 0 0 1 0", "9: the polygon has no area"},
+                    {"p 3 0 0 0 1e-31 0 0 0 1e-31 0", "9: the polygon is smaller than 1e-30"},
+                    {"p 4 0 0 0 1 0 0 1 1 0.1 0 1 0", "9: the polygon is not flat: a vertex lies 0.02"},
+                    {"pp 4 0 0 0 0 0 1 1 0 0 0 0 1 1 1 0.1 0 0 1 0 1 0 0 0 1", "9: the polygon is not flat"},
+                    {"pp 3 0 0 0 0 0 1 1 0 0 0 0 0 0 1 0 0 0 1", "9: a normal of the patch is zero"}});
 }
 
 TEST_CASE("invalid #raya extensions are refused", "[nff]") {
