@@ -31,26 +31,22 @@
 namespace raya {
 namespace {
 
-// Returns the first row with the kernel and lanes of `row`. Its time is the base of the slow-down of `row`.
-const BenchRow& first_row_of_kernel_and_lanes(const std::vector<BenchRow>& rows, const BenchRow& row) {
-    return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) {
-        return r.result.kernel == row.result.kernel && r.result.lanes == row.result.lanes;
-    });
-}
-
 // Prints the rays per second, times, speed-up and slow-down of each row.
 void print_rows(const std::vector<BenchRow>& rows) {
     std::vector<std::vector<std::string>> table = {{"kernel", "format", "lanes", "group", "Mrays/s best", "median",
                                                     "ms best", "median", "speed-up", "slow-down", "build s", "pixels"}};
     for (const BenchRow& row : rows) {
-        table.push_back(
-            {row.result.kernel, row.result.format, std::to_string(row.result.lanes),
-             std::to_string(row.result.group_size), fmt::format("{:.1f}", row.result.best_rate()),
-             fmt::format("{:.1f}", row.result.median_rate()), fmt::format("{:.2f}", 1e3 * row.result.best_s),
-             fmt::format("{:.2f}", 1e3 * row.result.median_s),
-             fmt::format("{:.2f}", first_row_of_format(rows, row).result.median_s / row.result.median_s),
-             fmt::format("{:.2f}", row.result.median_s / first_row_of_kernel_and_lanes(rows, row).result.median_s),
-             fmt::format("{:.2f}", row.build_s), row.result.hash.substr(0, 8)});
+        const auto in_first_format = std::ranges::find_if(rows, [&](const BenchRow& r) {
+            return r.result.kernel == row.result.kernel && r.result.lanes == row.result.lanes;
+        });
+        table.push_back({row.result.kernel, row.result.format, std::to_string(row.result.lanes),
+                         std::to_string(row.result.group_size), fmt::format("{:.1f}", row.result.best_rate()),
+                         fmt::format("{:.1f}", row.result.median_rate()),
+                         fmt::format("{:.2f}", 1e3 * row.result.best_s),
+                         fmt::format("{:.2f}", 1e3 * row.result.median_s),
+                         fmt::format("{:.2f}", first_row_of_format(rows, row).result.median_s / row.result.median_s),
+                         fmt::format("{:.2f}", row.result.median_s / in_first_format->result.median_s),
+                         fmt::format("{:.2f}", row.build_s), row.result.hash.substr(0, 8)});
     }
     fmt::print("{}", text_table(table));
     fmt::print(

@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
@@ -14,7 +13,6 @@
 #include <string_view>
 #include <system_error>
 #include <typeinfo>
-#include <vector>
 
 #include "host/base/child_process.hpp"
 #include "host/base/encoding.hpp"
@@ -122,12 +120,6 @@ int flush_stdout(Ranks& ranks, int code) {
     return code == kExitOk ? kExitUserError : code;
 }
 
-// Lets only rank 0 report a signal. Called before MPI starts, because a signal may arrive while MPI starts.
-void silence_signals_of_other_ranks() {
-    const std::optional<Launch> launch = find_launch();
-    if (launch && launch->rank != 0) suppress_interrupt_message();
-}
-
 // Refuses several ranks for all commands except render and ping, because the other commands would run once in
 // every process.
 void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
@@ -231,7 +223,8 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
 int run_program(int argc, char** argv, const std::string& build) {
     open_standard_files();
     install_interrupt_handlers();
-    silence_signals_of_other_ranks();
+    // Only rank 0 reports a signal. Before MPI starts, because a signal may arrive while it starts.
+    if (const std::optional<Launch> launch = find_launch(); launch && launch->rank != 0) suppress_interrupt_message();
     if (argc == 3 && argv[1] == std::string_view("__schema")) return print_schema(argv[2]);
     try {
         const auto request = worker_request(argc, argv);
@@ -251,17 +244,6 @@ int run_program(int argc, char** argv, const std::string& build) {
     }
 }
 
-namespace {
-
-void run_ping(Ranks& ranks) {
-    if (!ranks.has_several())
-        throw UserError("ping needs two ranks or more and there is one; start it as mpirun -n 2 raya ping");
-    const PingReport report = ping(ranks);
-    if (ranks.is_first()) fmt::print("{}\n", to_json(report).dump(2));
-}
-
-}  // namespace
-
 void add_ping_command(CLI::App& program, Ranks& ranks) {
     CLI::App* command = program.add_subcommand("ping",
                                                "Under mpirun: measure messages of 1 B to 4 MB between ranks and print "
@@ -269,7 +251,12 @@ void add_ping_command(CLI::App& program, Ranks& ranks) {
     add_examples(*command, {{"mpirun -n 2 raya ping", "Measure between two ranks of this machine"},
                             {"mpirun -n 2 --host one,other raya ping >network.json",
                              "Measure between two machines; raya study ranks --network takes alpha and beta"}});
-    command->callback([&ranks] { run_ping(ranks); });
+    command->callback([&ranks] {
+        if (!ranks.has_several())
+            throw UserError("ping needs two ranks or more and there is one; start it as mpirun -n 2 raya ping");
+        const PingReport report = ping(ranks);
+        if (ranks.is_first()) fmt::print("{}\n", to_json(report).dump(2));
+    });
 }
 
 }  // namespace raya

@@ -5,7 +5,6 @@
 #include <array>
 #include <map>
 #include <memory>
-#include <optional>
 
 #include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"

@@ -5,13 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string_view>
 
 #include "host/base/encoding.hpp"
-#include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/scene/polygon.hpp"

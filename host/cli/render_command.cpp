@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "host/base/json.hpp"
 #include "host/base/whole_file.hpp"

@@ -1,7 +1,6 @@
 // raya render on a ring machine, whose PEs divide the pixels among them.
 #include <fmt/core.h>
 
-#include <memory>
 #include <optional>
 
 #include "host/cli/render_command.hpp"
@@ -117,14 +116,10 @@ TorusRecords render_without_deadlock(const RenderCommand& command, const TorusSe
         }
 }
 
-void refuse_history_with_ranks(const TorusSettings& settings, const Ranks& ranks) {
-    if (settings.history && ranks.has_several())
+void check_records(const RenderCommand& command, const RenderRun& run, const TorusSettings& settings) {
+    if (settings.history && run.ranks.has_several())
         throw UserError("--async records every packet in one process; start raya without mpirun");
-}
-
-void refuse_checkpoint_with_records(const RenderCommand& command, const RenderRecorder& recorder,
-                                    const TorusSettings& settings) {
-    if (!command.checkpoint.file.empty() && (recorder.traces() || settings.history))
+    if (!command.checkpoint.file.empty() && (run.recorder.traces() || settings.history))
         throw UserError(
             "--checkpoint with --machine torus: a checkpoint does not contain what --trace and --async record; leave "
             "out one or the other");
@@ -145,8 +140,7 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
     SceneInput& input = run.input;
     TorusSettings settings = torus_settings(run.options, command.torus, input.scene);
     settings.pixels = command.pixels;
-    refuse_history_with_ranks(settings, run.ranks);
-    refuse_checkpoint_with_records(command, recorder, settings);
+    check_records(command, run, settings);
     TorusRenderer renderer(run.session(), input.scene, settings, run.ranks, [&] { drop_objects(input.scene); });
     if (run.ranks.is_first()) warn_of_lost_objects(input.scene, renderer.scale(), settings.format, input.warnings);
     const CheckpointFile checkpoint(command.checkpoint);

@@ -23,14 +23,6 @@ NodeBuffers buffers_of(const Scene& scene, const NodeSizes& sizes, const TorusSe
                         raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces));
 }
 
-// Writes windows of all nodes into the headers of `nodes`.
-void set_windows(NodeMemories& memories, const std::vector<PixelWindow>& windows,
-                 const std::vector<std::uint32_t>& nodes) {
-    for (std::size_t slot = 0; slot < nodes.size(); ++slot)
-        put_record(memories.words, memories.starts[slot] + offsetof(raya_node, window) / sizeof(std::uint32_t),
-                   windows[nodes[slot]]);
-}
-
 TorusJob receive_job(const NodeDistribution& distribution) {
     TorusJob job;
     distribution.ranks().broadcast<TorusJobHeader>(job);
@@ -130,7 +122,9 @@ TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusS
     const auto memories_of = [&](std::uint32_t rank) {
         const std::vector<std::uint32_t>& nodes = distribution.pes_of(rank);
         NodeMemories memories = pack_nodes(job, partition, s.torus, nodes);
-        set_windows(memories, windows, nodes);
+        for (std::size_t slot = 0; slot < nodes.size(); ++slot)
+            put_record(memories.words, memories.starts[slot] + offsetof(raya_node, window) / sizeof(std::uint32_t),
+                       windows[nodes[slot]]);
         return memories;
     };
     TorusJobHeader header{

@@ -257,11 +257,6 @@ bool comes_before(const raya_head& a, const raya_head& b) {
     return raya_comes_before(a.path, a.state, b.path, b.state);
 }
 
-void append_contribution(std::vector<float>& colours, const raya_head& packet) {
-    colours.insert(colours.end(), std::begin(packet.carries.colour), std::end(packet.carries.colour));
-    colours.push_back(packet.weight);
-}
-
 }  // namespace
 
 Contributions sort_contributions(const std::vector<raya_head>& returns, std::uint32_t pixels) {
@@ -286,7 +281,10 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
         for (auto i = first; i != last; ++i) {
             if (i != first && !comes_before(returns[i[-1]], returns[*i]))
                 throw std::logic_error(fmt::format("pixel {}: two contributions of the same ray", pixel));
-            append_contribution(sorted.colours, returns[*i]);
+            const raya_head& packet = returns[*i];
+            sorted.colours.insert(sorted.colours.end(), std::begin(packet.carries.colour),
+                                  std::end(packet.carries.colour));
+            sorted.colours.push_back(packet.weight);
         }
     }
     return sorted;

@@ -15,13 +15,6 @@
 namespace raya {
 namespace {
 
-// Parses a text such as "3f8/3f8/0".
-std::vector<float> colour_of(const std::string& text) {
-    std::vector<float> rgb;
-    for (const std::string& digits : split(text, '/')) rgb.push_back(std::bit_cast<float>(word_of(digits)));
-    return rgb;
-}
-
 void read_row(const std::string& line, const Image& previous, Image& image) {
     std::istringstream in(line);
     for (std::string pixel; in >> pixel;) {
@@ -32,7 +25,7 @@ void read_row(const std::string& line, const Image& previous, Image& image) {
         else if (pixel == "=" && at + 3 <= previous.rgb.size())
             rgb = {previous.rgb[at], previous.rgb[at + 1], previous.rgb[at + 2]};
         else
-            rgb = colour_of(pixel);
+            for (const std::string& digits : split(pixel, '/')) rgb.push_back(std::bit_cast<float>(word_of(digits)));
         image.rgb.insert(image.rgb.end(), rgb.begin(), rgb.end());
     }
     image.height += 1;
