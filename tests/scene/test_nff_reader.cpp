@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "host/base/encoding.hpp"
 #include "host/scene/nff.hpp"
 #include "tests/paths.h"
 #include "tests/scene/spd_folder.hpp"
@@ -16,12 +17,6 @@ namespace {
 const std::string kPlainView = "v\nfrom 0 -5 1\nat 0 0 1\nup 0 0 1\nangle 40\nhither 0.5\nresolution 320 200\n";
 
 Scene scene_of(const std::string& entities) { return parse_nff(kPlainView + entities, "folder/t.nff"); }
-
-std::string replaced(std::string text, const std::string& old_text, const std::string& new_text) {
-    for (std::size_t at = 0; (at = text.find(old_text, at)) != std::string::npos; at += new_text.size())
-        text.replace(at, old_text.size(), new_text);
-    return text;
-}
 
 }  // namespace
 
