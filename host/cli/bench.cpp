@@ -193,15 +193,6 @@ BenchReport time_builds(const BenchCommand& command, Session& session, const Sce
     return report;
 }
 
-void print_tables(const BenchCommand& command, Session& session, const std::vector<BenchRow>& rows,
-                  const std::vector<NumberFormat>& formats) {
-    print_rows(rows);
-    print_tuned(rows);
-    if (command.variants.empty())
-        print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
-                         command.samples);
-}
-
 void bench(const CLI::App& parser, BenchCommand command) {
     Warnings warnings;
     warn_of_build_options(warnings);
@@ -235,7 +226,11 @@ void bench(const CLI::App& parser, BenchCommand command) {
                session.device().name, settings.mapping.width, settings.mapping.height,
                counted(settings.mapping.pes, "PE"), counted(settings.bounces, "bounce"),
                counted(rows.front().result.rays, "ray"), counted(command.samples, "sample"));
-    print_tables(command, session, rows, formats);
+    print_rows(rows);
+    print_tuned(rows);
+    if (variants.empty())
+        print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
+                         command.samples);
     BenchReport measured = bench_report(rows, session.device());
     if (!command.files.page.empty()) {
         const ProgressBar measuring(true, "measuring the device's peak");

@@ -59,9 +59,6 @@ void check_kind(const Json& report) {
     const std::string name = kind != nullptr && kind->is_string() ? json_text(*kind) : "";
     for (const char* known : {kRenderReportKind, kBenchReportKind, kVerifyReportKind, "raya gpu_day"})
         if (name == known) return;
-    if (kind == nullptr && (find_member(report, "measured") != nullptr || find_member(report, "devices") != nullptr))
-        throw UserError(
-            "a report of an older raya, which does not state the command that wrote it; write the report again");
     throw UserError("valid JSON, but not a report of raya render, bench, verify or gpu_day");
 }
 

@@ -73,10 +73,6 @@ void print_tunings(const std::vector<Tuning>& tunings) {
                        trial.error);
 }
 
-TunedEntry entry_of(const Tuning& tuning, const std::string& scene) {
-    return {tuning.workload.key(), tuning.best, 1 / tuning.ratio, scene};
-}
-
 void tune_device(const CLI::App& parser, TuneCommand& command) {
     Warnings warnings;
     warn_of_build_options(warnings);
@@ -103,7 +99,8 @@ void tune_device(const CLI::App& parser, TuneCommand& command) {
             tune(device, workload, settings, progress_printer(workload, space_of(device, workload.key()))));
         remaining_s = std::max(0.0, remaining_s - tunings.back().seconds);
         const std::string scene = render.scene.empty() ? "own" : render.scene;
-        save_tuned(device, {date, {entry_of(tunings.back(), scene)}});
+        const Tuning& t = tunings.back();
+        save_tuned(device, {date, {{t.workload.key(), t.best, 1 / t.ratio, scene}}});
     }
     clear_status();
     print_tunings(tunings);

@@ -24,7 +24,6 @@ namespace {
 // A check that takes longer counts as hung: ten build budgets. A check builds at most six programs (test_verify.cpp),
 // each within the budget; the rest is for its launches.
 constexpr std::chrono::duration<double> kDefaultTimeout = 10 * kBuildBudget;
-constexpr double kMaxTimeS = 1e6;
 
 struct VerifyCommand {
     VerifySettings checks{.timeout_s = kDefaultTimeout.count()};
@@ -171,7 +170,7 @@ void add_verify_command(CLI::App& program) {
     in_range(add_value(*command, "--timeout S", options->checks.timeout_s,
                        "Seconds after which a check counts as failed and its process is ended, builds included; 0: "
                        "never"),
-             0, kMaxTimeS, "seconds")
+             0, 1e6, "seconds")
         ->capture_default_str();
     add_file(
         *command, FileUse::kRead, "--expect FILE", options->expect,
