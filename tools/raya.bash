@@ -8,7 +8,7 @@ _raya() {
     [[ ${COMP_WORDS[at]} != -* ]] || option=${COMP_WORDS[at]}
     for name in "" "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do  # the help of the last command in the line
         [[ -z $name || " $commands " == *" $name "* ]] || continue
-        [[ -z $name || $name == help ]] || names+=("$name")
+        [[ -z $name ]] || names+=("$name")
         help=$(COLUMNS=120 "$raya" "${names[@]}" --help-all 2>/dev/null) || return
         commands=$(sed -n '/^\(Commands\|Studies\):/,/^$/s/^  \([a-z][a-z0-9-]*\).*/\1/p' <<<"$help" | tr '\n' ' ')
     done

@@ -99,8 +99,8 @@ class Voxels {
 };
 
 [[noreturn]] void refuse_entries(const Divisions& d) {
-    throw TooManyEntries(fmt::format("the lists of {}x{}x{} voxels have more than {} entries; use fewer voxels", d[0],
-                                     d[1], d[2], kMaxEntries));
+    throw UserError(fmt::format("the lists of {}x{}x{} voxels have more than {} entries; use fewer voxels", d[0], d[1],
+                                d[2], kMaxEntries));
 }
 
 // Counts the objects of each voxel, then fills the lists (counting sort).
@@ -226,10 +226,7 @@ constexpr double kMinReach = 2;
 constexpr double kLargeSide = 0.75;
 constexpr std::size_t kMaxLarge = 16;  // maximum number of large objects; see large_objects()
 
-double longest_side(const Box& box) {
-    const Vec3 sides = box.max - box.min;
-    return std::max({sides.x, sides.y, sides.z});
-}
+double longest_side(const Box& box) { return box.size()[box.majorAxis()]; }
 
 std::uint32_t as_word(std::size_t number) { return static_cast<std::uint32_t>(number); }
 

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/error.hpp"
 #include "host/model/machine.hpp"
 #include "host/model/number_format.hpp"
 #include "host/scene/packer.hpp"
@@ -13,11 +12,6 @@
 namespace raya {
 
 inline constexpr std::uint64_t kMaxPartitionVoxels = std::uint64_t{1} << 24;
-
-/// Thrown if the voxels' lists would have more than 2^30 entries in total (4 GB).
-struct TooManyEntries : UserError {
-    using UserError::UserError;
-};
 
 /// A uniform grid of voxels, each with a list of object numbers (the numbers of kernels/shared/job.h). Infinite planes
 /// are in no list, because every ray is tested against them.
@@ -43,8 +37,8 @@ struct Partition {
 /// of lengths that overflow the format, or cones too steep for the format), every object is in every list, the box
 /// contains all points within RAYA_FAR, and the reach is RAYA_FAR.
 ///
-/// Throws UserError if a division is 0 or there are more than kMaxPartitionVoxels voxels, and TooManyEntries if the
-/// lists are too long.
+/// Throws UserError if a division is 0, there are more than kMaxPartitionVoxels voxels, or the lists would have more
+/// than 2^30 entries in total (4 GB).
 Partition partition(const PackedJob& job, const NumberFormat& format, const Divisions& divisions,
                     const std::vector<std::uint32_t>& separate = {});
 

@@ -31,26 +31,22 @@
 namespace raya {
 namespace {
 
-// Returns the first row with the kernel and lanes of `row`. Its time is the base of the slow-down of `row`.
-const BenchRow& first_row_of_kernel_and_lanes(const std::vector<BenchRow>& rows, const BenchRow& row) {
-    return *std::find_if(rows.begin(), rows.end(), [&](const BenchRow& r) {
-        return r.result.kernel == row.result.kernel && r.result.lanes == row.result.lanes;
-    });
-}
-
 // Prints the rays per second, times, speed-up and slow-down of each row.
 void print_rows(const std::vector<BenchRow>& rows) {
     std::vector<std::vector<std::string>> table = {{"kernel", "format", "lanes", "group", "Mrays/s best", "median",
                                                     "ms best", "median", "speed-up", "slow-down", "build s", "pixels"}};
     for (const BenchRow& row : rows) {
-        table.push_back(
-            {row.result.kernel, row.result.format, std::to_string(row.result.lanes),
-             std::to_string(row.result.group_size), fmt::format("{:.1f}", row.result.best_rate()),
-             fmt::format("{:.1f}", row.result.median_rate()), fmt::format("{:.2f}", 1e3 * row.result.best_s),
-             fmt::format("{:.2f}", 1e3 * row.result.median_s),
-             fmt::format("{:.2f}", first_row_of_format(rows, row).result.median_s / row.result.median_s),
-             fmt::format("{:.2f}", row.result.median_s / first_row_of_kernel_and_lanes(rows, row).result.median_s),
-             fmt::format("{:.2f}", row.build_s), row.result.hash.substr(0, 8)});
+        const auto in_first_format = std::ranges::find_if(rows, [&](const BenchRow& r) {
+            return r.result.kernel == row.result.kernel && r.result.lanes == row.result.lanes;
+        });
+        table.push_back({row.result.kernel, row.result.format, std::to_string(row.result.lanes),
+                         std::to_string(row.result.group_size), fmt::format("{:.1f}", row.result.best_rate()),
+                         fmt::format("{:.1f}", row.result.median_rate()),
+                         fmt::format("{:.2f}", 1e3 * row.result.best_s),
+                         fmt::format("{:.2f}", 1e3 * row.result.median_s),
+                         fmt::format("{:.2f}", first_row_of_format(rows, row).result.median_s / row.result.median_s),
+                         fmt::format("{:.2f}", row.result.median_s / in_first_format->result.median_s),
+                         fmt::format("{:.2f}", row.build_s), row.result.hash.substr(0, 8)});
     }
     fmt::print("{}", text_table(table));
     fmt::print(
@@ -102,32 +98,39 @@ void print_builds(const std::vector<BenchBuild>& builds) {
     fmt::print("total: {:.2f} s of builds, {:.2f} s of first launches\n", build_s, launch_s);
 }
 
-struct BaselineOptions {
-    std::string baseline;  // file of --compare
+struct BenchCommand {
+    RenderOptions render;
+    std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
+    std::vector<std::string> variants;
+    std::uint32_t samples = 7;  // number of time samples of each row
+    ReportFiles files;          // of --report and --page
+    std::string baseline;       // file of --compare
     double tolerance_percent = 10;
+    bool build = false;
+    std::optional<double> limit_s;  // maximum seconds to compile a kernel
 };
 
 // Throws UserError if the baseline has no row of this run.
-void check_comparable(const BaselineOptions& options, const BenchReport& baseline, const BenchReport& measured) {
+void check_comparable(const BenchCommand& options, const BenchReport& baseline, const BenchReport& measured) {
     if (options.baseline.empty() || rows_in_common(baseline, measured) > 0) return;
-    const BenchMeasurement &old_row = baseline.rows.front(), &new_row = measured.rows.front();
+    const auto text_of = [](const BenchMeasurement& row) {
+        return fmt::format("{}, {}, {}, {}, {} lanes, group {}", row.scene, row.size, row.array, row.format, row.lanes,
+                           row.group_size);
+    };
     throw UserError(fmt::format(
-        "{}: contains no row of this run: its first row is {}, {}, {}, {}, {} lanes, group {}; the first row of this "
-        "run is {}, {}, {}, {}, {} lanes, group {}; remedy: use the scene and options of the baseline, or write a new "
-        "baseline (raya bench --report)",
-        options.baseline, old_row.scene, old_row.size, old_row.array, old_row.format, old_row.lanes, old_row.group_size,
-        new_row.scene, new_row.size, new_row.array, new_row.format, new_row.lanes, new_row.group_size));
+        "{}: contains no row of this run: its first row is {}; the first row of this run is {}; remedy: use the scene "
+        "and options of the baseline, or write a new baseline (raya bench --report)",
+        options.baseline, text_of(baseline.rows.front()), text_of(measured.rows.front())));
 }
 
 // Compares with the baseline, if there is one. Writes all files, and prints the comparison. Throws CheckFailure if a
 // row is slower or has a different image.
-void write_and_compare(const BaselineOptions& options, const ReportFiles& files, const BenchReport& baseline,
-                       BenchReport measured) {
-    if (options.baseline.empty()) return write_report_and_page(files, to_json(measured));
+void write_and_compare(const BenchCommand& options, const BenchReport& baseline, BenchReport measured) {
+    if (options.baseline.empty()) return write_report_and_page(options.files, to_json(measured));
     BenchComparison comparison = compare_bench(baseline, measured, options.tolerance_percent);
     comparison.baseline = options.baseline;
     measured.compared = comparison;
-    write_report_and_page(files, to_json(measured));
+    write_report_and_page(options.files, to_json(measured));
     fmt::print("\ncompared with {}, tolerance {} % of its rates:\n{}", printable(options.baseline),
                options.tolerance_percent, comparison.text);
     std::fflush(stdout);
@@ -138,33 +141,6 @@ void write_and_compare(const BaselineOptions& options, const ReportFiles& files,
     fmt::print("{} compared, none slower by more than {} %, all images equal\n", counted(comparison.compared, "row"),
                options.tolerance_percent);
 }
-
-// Adds --compare, which excludes the option `build`, and --tolerance, which needs --compare.
-void add_baseline_options(CLI::App& command, BaselineOptions& options, CLI::Option* build) {
-    CLI::Option* compare =
-        add_file(command, FileUse::kRead, "--compare FILE.json", options.baseline,
-                 "Compare the rows with those of an earlier --report: exit code 4 if a row is slower or its image "
-                 "differs",
-                 "Compare with an earlier report: exit code 4 if slower")
-            ->excludes(build);
-    in_range(add_value(command, "--tolerance PERCENT", options.tolerance_percent,
-                       "With --compare: tolerance in percent, 0..100; a row is slower if both its best and its median "
-                       "rate fall by more than the tolerance"),
-             0, 100, "percent")
-        ->capture_default_str()
-        ->needs(compare);
-}
-
-struct BenchCommand {
-    RenderOptions render;
-    std::vector<std::uint32_t> lanes = {1, 4, 8, 16};
-    std::vector<std::string> variants;
-    std::uint32_t samples = 7;  // number of time samples of each row
-    ReportFiles files;          // of --report and --page
-    BaselineOptions compare;
-    bool build = false;
-    std::optional<double> limit_s;  // maximum seconds to compile a kernel
-};
 
 void write_and_check_builds(const BenchCommand& command, const BenchReport& report) {
     fmt::print("compiled for {} {} {}\n", report.device.platform, report.device.name, report.device.driver);
@@ -217,15 +193,6 @@ BenchReport time_builds(const BenchCommand& command, Session& session, const Sce
     return report;
 }
 
-void print_tables(const BenchCommand& command, Session& session, const std::vector<BenchRow>& rows,
-                  const std::vector<NumberFormat>& formats) {
-    print_rows(rows);
-    print_tuned(rows);
-    if (command.variants.empty())
-        print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
-                         command.samples);
-}
-
 void bench(const CLI::App& parser, BenchCommand command) {
     Warnings warnings;
     warn_of_build_options(warnings);
@@ -233,7 +200,7 @@ void bench(const CLI::App& parser, BenchCommand command) {
     if (!variants.empty() && std::ranges::count(variants, "torus") == std::ssize(variants))
         refuse_options_of_other_machines(parser, machine_named("torus"));
     if (!command.files.page.empty()) check_page_name("--page", command.files.page);
-    const std::string& old_report = command.compare.baseline;  // read first, because the measurements take long
+    const std::string& old_report = command.baseline;  // read first, because the measurements take long
     const BenchReport baseline = old_report.empty() ? BenchReport{} : read_bench_report(old_report);
     const std::vector<NumberFormat> formats =
         parse_formats(command.render.format.empty() ? "fp32,spa22" : command.render.format);
@@ -251,7 +218,7 @@ void bench(const CLI::App& parser, BenchCommand command) {
     }
     session.announce_compiling();
     std::vector<BenchRow> rows = prepare_rows(command, session, scene, settings, formats);
-    check_comparable(command.compare, baseline, bench_report(rows, session.device()));
+    check_comparable(command, baseline, bench_report(rows, session.device()));
     bar->stage("taking samples");
     take_samples(rows, command.samples);
     bar.reset();
@@ -259,13 +226,17 @@ void bench(const CLI::App& parser, BenchCommand command) {
                session.device().name, settings.mapping.width, settings.mapping.height,
                counted(settings.mapping.pes, "PE"), counted(settings.bounces, "bounce"),
                counted(rows.front().result.rays, "ray"), counted(command.samples, "sample"));
-    print_tables(command, session, rows, formats);
+    print_rows(rows);
+    print_tuned(rows);
+    if (variants.empty())
+        print_operations(session, formats, command.render.lanes.value_or(default_lanes(session.device())),
+                         command.samples);
     BenchReport measured = bench_report(rows, session.device());
     if (!command.files.page.empty()) {
         const ProgressBar measuring(true, "measuring the device's peak");
         add_rooflines(measured, rows, device);
     }
-    write_and_compare(command.compare, command.files, baseline, std::move(measured));
+    write_and_compare(command, baseline, std::move(measured));
 }
 
 }  // namespace
@@ -315,7 +286,18 @@ void add_bench_command(CLI::App& program) {
         "the device's peak for each pair of a format and a number of lanes; each pair takes some seconds",
         "Write rates, comparison and roofline as an HTML page")
         ->excludes(build);
-    add_baseline_options(*command, options->compare, build);
+    CLI::Option* compare =
+        add_file(*command, FileUse::kRead, "--compare FILE.json", options->baseline,
+                 "Compare the rows with those of an earlier --report: exit code 4 if a row is slower or its image "
+                 "differs",
+                 "Compare with an earlier report: exit code 4 if slower")
+            ->excludes(build);
+    in_range(add_value(*command, "--tolerance PERCENT", options->tolerance_percent,
+                       "With --compare: tolerance in percent, 0..100; a row is slower if both its best and its median "
+                       "rate fall by more than the tolerance"),
+             0, 100, "percent")
+        ->capture_default_str()
+        ->needs(compare);
     command->get_option("--format")
         ->description("Formats to compare, comma-separated: fp32, spa22 (e6m15), eXmY[t]; default: fp32,spa22");
     command->callback([command, options] { bench(*command, *options); });

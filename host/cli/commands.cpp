@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
@@ -14,7 +13,6 @@
 #include <string_view>
 #include <system_error>
 #include <typeinfo>
-#include <vector>
 
 #include "host/base/child_process.hpp"
 #include "host/base/encoding.hpp"
@@ -26,7 +24,6 @@
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/cli/render_command.hpp"
-#include "host/cli/verify.hpp"
 #include "host/error.hpp"
 #include "host/ranks/launch.hpp"
 #include "host/ranks/ranks.hpp"
@@ -38,28 +35,6 @@
 #include "host/version.hpp"
 
 namespace raya {
-
-void add_help_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("help", "Print the help of a command, or of raya itself");
-    add_examples(*command, {{"raya help render", "Print the help of render, as raya render --help does"},
-                            {"raya help generate balls", "Print the help of one generator"}});
-    const auto names = std::make_shared<std::vector<std::string>>();
-    add_value(*command, "COMMAND COMMAND", *names, "The command, such as generate balls; default: raya itself");
-    command->callback([names, &program] {
-        const CLI::App* described = &program;
-        std::string path = program.get_name();
-        for (const std::string& name : *names) {
-            const std::vector<std::string> known = command_names(*described);
-            if (std::ranges::find(known, name) == known.end())
-                throw UserError(
-                    fmt::format("help: no command {}{}; see {} --help", name, did_you_mean(name, known), path));
-            described = described->get_subcommand(name);
-            path += ' ' + name;
-        }
-        if (path == "raya study") start_study({"--help"});
-        fmt::print("{}", described->get_formatter()->make_help(described, path, CLI::AppFormatMode::Normal));
-    });
-}
 
 namespace {
 
@@ -100,7 +75,7 @@ int run_worker(const WorkerRequest& request) {
         if (request.task == kTrialTask)
             run_trial(request.pipe, request.settings);
         else
-            run_checks(request.pipe, request.settings, render_case);
+            run_checks(request.pipe, request.settings);
         return kExitOk;
     } catch (const UserError& error) {
         return send_error("user", error);
@@ -141,12 +116,6 @@ int flush_stdout(Ranks& ranks, int code) {
     ranks.fail(fmt::format("cannot write to stdout{}; redirect it to a file system with free space", reason),
                kExitUserError);
     return code == kExitOk ? kExitUserError : code;
-}
-
-// Lets only rank 0 report a signal. Called before MPI starts, because a signal may arrive while MPI starts.
-void silence_signals_of_other_ranks() {
-    const std::optional<Launch> launch = find_launch();
-    if (launch && launch->rank != 0) suppress_interrupt_message();
 }
 
 // Refuses several ranks for all commands except render and ping, because the other commands would run once in
@@ -221,7 +190,7 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     program.formatter(std::make_shared<HelpFormatter>());  // the commands inherit it
     add_examples(program, {{"raya render scenes/centre.nff -o centre.png",
                             "Render a scene on a ring of 256 PEs and print their load balance"},
-                           {"raya help render", "Print the help of render"}});
+                           {"raya render --help", "Print the help of render"}});
     program.require_subcommand(1);
     program
         .set_version_flag("--version", fmt::format("{} ({})", name_and_version(), build),
@@ -239,7 +208,6 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     add_page_command(program);
     add_verify_command(program);
     add_ping_command(program, ranks);
-    add_help_command(program);
     add_verbosity_options(program, ranks);
     // Runs before the command's callback. Only rank 0 checks files, because only rank 0 writes them.
     program.parse_complete_callback([&program, &ranks] {
@@ -253,7 +221,8 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
 int run_program(int argc, char** argv, const std::string& build) {
     open_standard_files();
     install_interrupt_handlers();
-    silence_signals_of_other_ranks();
+    // Only rank 0 reports a signal. Before MPI starts, because a signal may arrive while it starts.
+    if (const std::optional<Launch> launch = find_launch(); launch && launch->rank != 0) suppress_interrupt_message();
     if (argc == 3 && argv[1] == std::string_view("__schema")) return print_schema(argv[2]);
     try {
         const auto request = worker_request(argc, argv);
@@ -271,17 +240,6 @@ int run_program(int argc, char** argv, const std::string& build) {
     }
 }
 
-namespace {
-
-void run_ping(Ranks& ranks) {
-    if (!ranks.has_several())
-        throw UserError("ping needs two ranks or more and there is one; start it as mpirun -n 2 raya ping");
-    const PingReport report = ping(ranks);
-    if (ranks.is_first()) fmt::print("{}\n", to_json(report).dump(2));
-}
-
-}  // namespace
-
 void add_ping_command(CLI::App& program, Ranks& ranks) {
     CLI::App* command = program.add_subcommand("ping",
                                                "Under mpirun: measure messages of 1 B to 4 MB between ranks and print "
@@ -289,7 +247,12 @@ void add_ping_command(CLI::App& program, Ranks& ranks) {
     add_examples(*command, {{"mpirun -n 2 raya ping", "Measure between two ranks of this machine"},
                             {"mpirun -n 2 --host one,other raya ping >network.json",
                              "Measure between two machines; raya study ranks --network takes alpha and beta"}});
-    command->callback([&ranks] { run_ping(ranks); });
+    command->callback([&ranks] {
+        if (!ranks.has_several())
+            throw UserError("ping needs two ranks or more and there is one; start it as mpirun -n 2 raya ping");
+        const PingReport report = ping(ranks);
+        if (ranks.is_first()) fmt::print("{}\n", to_json(report).dump(2));
+    });
 }
 
 }  // namespace raya

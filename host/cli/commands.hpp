@@ -2,7 +2,6 @@
 #pragma once
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace CLI {
 class App;
@@ -33,11 +32,8 @@ void add_info_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
 void add_tune_command(CLI::App& program);
 void add_study_command(CLI::App& program);
-/// Replaces the process with Python, which runs the module raya.lab with these arguments. Throws UserError on failure.
-[[noreturn]] void start_study(std::vector<std::string> arguments);
 void add_page_command(CLI::App& program);
 void add_verify_command(CLI::App& program);
 void add_ping_command(CLI::App& program, Ranks& ranks);
-void add_help_command(CLI::App& program);
 
 }  // namespace raya

@@ -5,7 +5,6 @@
 #include <array>
 #include <map>
 #include <memory>
-#include <optional>
 
 #include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
@@ -147,9 +146,9 @@ struct InfoCommand {
 };
 
 // Options of raya render that raya info does not have, because they do not affect the memory needs of a PE.
-constexpr std::array kExecutionOptions = {"--device",    "--lanes",        "--group",   "--no-tuned", "--kernel-dir",
-                                          "--exchange",  "--sampling",     "--points",  "--inject",   "--returns",
-                                          "--threshold", "--packet-words", "--packets", "--async",    "--il"};
+constexpr std::array kExecutionOptions = {"--device",    "--lanes",        "--group",  "--no-tuned", "--kernel-dir",
+                                          "--exchange",  "--sampling",     "--points", "--inject",   "--returns",
+                                          "--threshold", "--packet-words", "--async",  "--il"};
 
 void add_options(CLI::App& command, InfoCommand& options) {
     add_file(command, FileUse::kRead, "SCENE SCENE", options.render.scene, kSceneHelp)->required();
@@ -228,15 +227,13 @@ void add_info_command(CLI::App& program) {
 
 namespace {
 
-void print_machine(const Machine& machine) {
-    std::vector<std::vector<std::string>> rows = {{"number", "value", "source"}};
-    for (const Fact& fact : machine.facts) rows.push_back({fact.what, fact.value, fact.source});
-    fmt::print("{}: {}, {}\n{}\n", machine.name, machine.title, machine.topology, text_table(rows));
-}
-
 void list_machines(const std::string& name) {
-    if (!name.empty()) return print_machine(machine_named(name));
-    for (const Machine& machine : machines()) print_machine(machine);
+    for (const Machine& machine : name.empty() ? machines() : std::vector<Machine>{machine_named(name)}) {
+        std::vector<std::vector<std::string>> rows = {{"number", "value", "source"}};
+        for (const Fact& fact : machine.facts) rows.push_back({fact.what, fact.value, fact.source});
+        fmt::print("{}: {}, {}\n{}\n", machine.name, machine.title, machine.topology, text_table(rows));
+    }
+    if (!name.empty()) return;
     fmt::print(
         "\n[P] printed in the machine's paper, [D] derived from printed figures, [T] data sheet of the T805, "
         "[?] assumed.\n");

@@ -4,10 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <set>
 #include <sstream>
 

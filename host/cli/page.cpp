@@ -59,9 +59,6 @@ void check_kind(const Json& report) {
     const std::string name = kind != nullptr && kind->is_string() ? json_text(*kind) : "";
     for (const char* known : {kRenderReportKind, kBenchReportKind, kVerifyReportKind, "raya gpu_day"})
         if (name == known) return;
-    if (kind == nullptr && (find_member(report, "measured") != nullptr || find_member(report, "devices") != nullptr))
-        throw UserError(
-            "a report of an older raya, which does not state the command that wrote it; write the report again");
     throw UserError("valid JSON, but not a report of raya render, bench, verify or gpu_day");
 }
 
@@ -231,20 +228,16 @@ Json explore_schema() {
 
 namespace {
 
-// Refuses an image that is too large for a page. Called before the render.
-void check_pixels(const ImageSize& size) {
-    constexpr std::uint64_t kMaxPixels = 2'000'000;  // their page has about 2 MB
-    if (std::uint64_t{size.width} * size.height <= kMaxPixels) return;
-    throw UserError(fmt::format("--size {}x{}: too many pixels for a page, maximum {}; remedy: a smaller --size",
-                                size.width, size.height, kMaxPixels));
-}
-
 void explore(const ExploreCommand& command) {
     check_page_name("-o", command.page);
     std::optional<ProgressBar> bar(std::in_place, true, "reading the scene");
     SceneInput input = read_scene(command.render.scene, command.render.strict);
     change_view(command.render.view, input.scene);
-    check_pixels(image_size(command.render, input.scene));
+    constexpr std::uint64_t kMaxPixels = 2'000'000;  // their page has about 2 MB
+    if (const ImageSize size = image_size(command.render, input.scene);
+        std::uint64_t{size.width} * size.height > kMaxPixels)
+        throw UserError(fmt::format("--size {}x{}: too many pixels for a page, maximum {}; remedy: a smaller --size",
+                                    size.width, size.height, kMaxPixels));
     const RingSettings settings = settings_of(command, input.scene);
     warn_of_slow_search(input.scene, settings.accel.kind != AccelKind::kNone, input.warnings);
     bar->stage("preparing");

@@ -5,24 +5,21 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
-#include <regex>
 #include <string_view>
 
 #include "host/base/encoding.hpp"
-#include "host/cli/help.hpp"
 #include "host/cli/options.hpp"
 #include "host/error.hpp"
 #include "host/scene/polygon.hpp"
 
 namespace raya {
 
-std::vector<std::uint32_t> parse_sizes(const std::string& text) {
+std::vector<std::uint32_t> parse_sizes(const std::string& text, char separator) {
     constexpr std::uint32_t kMaxSize = 1'000'000;  // so that the product of three sizes fits in 64 bits
     std::vector<std::uint32_t> sizes;
-    for (const std::string& part : split(text, 'x')) {
+    for (const std::string& part : split(text, separator)) {
         const auto size = parsed_number<std::uint32_t>(part);
         if (!size || *size < 1 || *size > kMaxSize) return {};
         sizes.push_back(*size);
@@ -42,15 +39,6 @@ std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const 
     const std::vector<std::uint32_t> sides = parse_sizes(text);
     if (sides.size() != 3) throw UserError(fmt::format("{} {}: must be XxYxZ, {}", option, text, legal_values));
     return {sides[0], sides[1], sides[2]};
-}
-
-Shard parse_shard(const std::string& text) {
-    const std::vector<std::string> parts = split(text, '/');
-    const auto part = [&](std::size_t i) { return parsed_number<std::uint32_t>(parts.at(i)).value_or(0); };
-    const Shard shard = parts.size() == 2 ? Shard{part(0), part(1)} : Shard{0, 0};
-    if (shard.number < 1 || shard.number > shard.count)
-        throw UserError(fmt::format("--shard {}: must be I/N with I 1..N, such as 2/4", text));
-    return shard;
 }
 
 Accel parse_accel(const std::string& text) {
@@ -129,12 +117,6 @@ std::uint32_t parse_parameter(const MappingText& mapping, std::string_view text)
 
 }  // namespace
 
-const std::vector<std::string>& mapping_forms() {
-    static const std::vector<std::string> forms = {"cyclic", "cyclic:p", "column",    "rows",
-                                                   "blocks", "grid:AxB", "tiles:WxH", "random:seed"};
-    return forms;
-}
-
 MappingText parse_mapping(const std::string& text) {
     struct KnownMapping {
         const char* name;
@@ -152,8 +134,10 @@ MappingText parse_mapping(const std::string& text) {
     const auto* const found = std::find_if(std::begin(known_mappings), std::end(known_mappings),
                                            [&](const KnownMapping& n) { return n.name == text.substr(0, colon); });
     if (found == std::end(known_mappings))
-        throw UserError(fmt::format("--mapping {}: no such mapping; mappings: {}, dynamic:CHUNK, hybrid:CHUNK", text,
-                                    fmt::join(mapping_forms(), ", ")));
+        throw UserError(fmt::format(
+            "--mapping {}: no such mapping; mappings: cyclic, cyclic:p, column, rows, blocks, grid:AxB, tiles:WxH, "
+            "random:seed, dynamic:CHUNK, hybrid:CHUNK",
+            text));
     MappingText mapping{text, found->rule, found->takes_offset_option};
     if (colon == std::string::npos && !found->needs_parameter) return mapping;
     mapping.rule.parameter = parse_parameter(mapping, colon == std::string::npos ? "" : text.substr(colon + 1));
@@ -223,25 +207,14 @@ Light light_of(const std::string& text) {
     return light;
 }
 
-/// Returns the camera options that were given: "--from 0,0,0 --angle 10".
-std::string viewpoint_text(const ViewOptions& v) {
-    std::string text;
-    for (const auto& [option, value] : v.given_options())
-        if (option != "--background" && option != "--light")
-            text += fmt::format("{}{} {}", text.empty() ? "" : " ", option, value.substr(0, kMaxShownBytes));
-    return text;
-}
-
 /// Applies the camera options to `view`. Throws UserError with the options' names for an invalid camera.
 void change_viewpoint(const ViewOptions& v, View& view) {
     if (!v.from.empty()) view.from = vector_of("--from", v.from, kPoint);
     if (!v.at.empty()) view.at = vector_of("--at", v.at, kPoint);
     if (!v.up.empty()) view.up = vector_of("--up", v.up, kPoint);
     if (v.angle) view.angle_degrees = *v.angle;
-    const std::string given_text = viewpoint_text(v);
-    if (given_text.empty()) return;
     const std::string error = view_error(view);
-    if (!error.empty()) throw UserError(fmt::format("{}: {}", given_text, error));
+    if (!error.empty()) throw UserError("--from, --at, --up, --angle: " + error);
 }
 
 }  // namespace
@@ -357,17 +330,6 @@ void check_arguments(const CLI::App& program, const std::vector<std::string>& ar
     }
 }
 
-/// Adds to a message such as "--fold blok: must be cyclic or block" the word of the message that is most similar to the
-/// value.
-std::string with_suggestion(const std::string& text) {
-    static const std::regex form("(--[a-z-]+ )([a-z][a-z0-9-]*)(: (?:must be|no such) .*)"), word("[a-z][a-z0-9-]*");
-    std::smatch parts;
-    if (!std::regex_match(text, parts, form)) return text;
-    const std::string value = parts[2], rest = parts[3];
-    const std::vector<std::string> words(std::sregex_token_iterator(rest.begin(), rest.end(), word), {});
-    return parts[1].str() + value + did_you_mean(value, words) + rest;
-}
-
 }  // namespace
 
 std::vector<std::string> command_names(const CLI::App& command) {
@@ -387,10 +349,6 @@ void parse_arguments(CLI::App& program, const std::vector<std::string>& argument
         throw UserError(fmt::format("{}{}{}; see raya{} --help", path.empty() ? "" : path.substr(1),
                                     path.empty() ? "" : ": ", failure_reason(program, command, error, arguments),
                                     path));
-    } catch (const UserError& error) {
-        const std::string text = with_suggestion(error.what());
-        if (text == error.what()) throw;
-        throw UserError(text);
     }
 }
 

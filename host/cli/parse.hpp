@@ -15,8 +15,8 @@
 
 namespace raya {
 
-/// Parses integers from 1 to 10^6 separated by x: {512, 256} for "512x256". Returns an empty vector for other texts.
-std::vector<std::uint32_t> parse_sizes(const std::string& text);
+/// Parses integers from 1 to 10^6 with separators: {512, 256} for "512x256". Returns an empty vector for other texts.
+std::vector<std::uint32_t> parse_sizes(const std::string& text, char separator = 'x');
 
 /// Parses an image size: "512" (square) or "512x256". Throws UserError with the legal values. image_size()
 /// checks that no side exceeds kMaxSide.
@@ -26,14 +26,6 @@ ImageSize parse_image_size(const std::string& text);
 /// "1..256 each".
 std::array<std::uint32_t, 3> parse_three_sides(const std::string& option, const std::string& text,
                                                const std::string& legal_values);
-
-/// A part of a command's work: the I-th of N shards.
-struct Shard {
-    std::uint32_t number = 1, count = 1;
-};
-
-/// Parses --shard: "I/N" with I 1..N. Throws UserError.
-Shard parse_shard(const std::string& text);
 
 /// Parses --accel: "none", "bvh", "grid" or "grid:AxBxC". Throws UserError with the option and its legal values.
 Accel parse_accel(const std::string& text);
@@ -69,9 +61,6 @@ struct MappingText {
     /// Returns the part of `text` before the colon.
     std::string name() const { return text.substr(0, text.find(':')); }
 };
-
-/// Returns the forms of mappings listed above, for messages.
-const std::vector<std::string>& mapping_forms();
 
 /// Parses a static mapping. Throws UserError with the option and its legal forms.
 MappingText parse_mapping(const std::string& text);

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "host/base/json.hpp"
 #include "host/base/whole_file.hpp"
@@ -22,6 +21,10 @@
 #include "host/version.hpp"
 
 namespace raya {
+namespace {
+
+// Prefix of the names of the spans in which Session builds programs.
+constexpr std::string_view kBuildPrefix = "build ";
 
 void add_checkpoint_options(CLI::App& command, CheckpointOptions& options) {
     const OptionGroup group(command, kFiles);
@@ -41,13 +44,6 @@ void add_checkpoint_options(CLI::App& command, CheckpointOptions& options) {
         ->capture_default_str()
         ->needs(file);
 }
-
-namespace {
-
-// Prefix of the names of the spans in which Session builds programs.
-constexpr std::string_view kBuildPrefix = "build ";
-
-}  // namespace
 
 void add_trace_options(CLI::App& command, TraceOptions& trace) {
     const OptionGroup group(command, kDiagnostics);
@@ -75,6 +71,26 @@ void check_trace(const TraceOptions& trace) {
         throw UserError(
             fmt::format("--trace {}: choose a name that ends in .json, or in .json.gz for compression", trace.file));
 }
+
+// Rank 0 reads the scene and applies the view options. Other ranks get the scene's name and resolution, without
+// objects. With several ranks and a ring machine, sets `options.accel` on all ranks to rank 0's choice.
+SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks) {
+    SceneInput input;
+    if (ranks.is_first()) {
+        input = recorder.spans().during("read scene", [&] { return read_scene(options.scene, options.strict); });
+        change_view(options.view, input.scene);
+    }
+    if (!ranks.has_several()) return input;
+    const bool ring = machine_named(options.machine).kind == MachineKind::kRing;
+    if (ranks.is_first() && ring) options.accel = accel_text(ring_settings(options, input.scene).accel);
+    ranks.broadcast(input.scene.name);
+    ranks.broadcast(input.scene.view.width);
+    ranks.broadcast(input.scene.view.height);
+    ranks.broadcast(options.accel);
+    return input;
+}
+
+}  // namespace
 
 void RenderRecorder::observe(Session& session, Ranks& ranks) {
     if (!traces() && !profile_) return;
@@ -231,24 +247,18 @@ void add_render_command_options(CLI::App& command, RenderCommand& options) {
     add_trace_options(command, options.trace);
 }
 
-CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<RenderCommand>& options) {
-    CLI::App* command = program.add_subcommand(
+void add_render_command(CLI::App& program, Ranks& ranks) {
+    const auto options = std::make_shared<RenderCommand>();
+    CLI::App* const command = program.add_subcommand(
         "render", "Render a scene (NFF, OBJ, PLY, glTF or STL) on a ring machine or the torus machine");
     add_examples(*command, {{"raya render scenes/centre.nff -o centre.png",
                              "Render on a ring of 256 PEs, in the scene's resolution"},
                             {"raya render scenes/glass.nff --machine torus --size 64 --report glass.json -o glass.png",
                              "Render a small image on a torus of 64 nodes, with a report"}});
-    command->callback([options] {});  // keeps the options
     const OptionGroup group(*command, kFiles);
     add_file(*command, FileUse::kRead, "SCENE SCENE", options->render.scene, kSceneHelp)->required();
     add_render_command_options(*command, *options);
     command->get_option("--output")->required();
-    return command;
-}
-
-void add_render_command(CLI::App& program, Ranks& ranks) {
-    const auto options = std::make_shared<RenderCommand>();
-    CLI::App* const command = declare_render_command(program, options);
     command->callback([command, options, &ranks] { render(*command, *options, ranks); });
 }
 
@@ -262,20 +272,11 @@ void check_exposure(const RenderCommand& command) {
                         command.image));
 }
 
-void check_packets_name(const std::string& file) {
-    if (!file.ends_with(".gz") && !file.starts_with("/dev/") && !is_standard_stream(file))
-        throw UserError(
-            fmt::format("--packets {}: raya compresses this file with gzip; choose a name that ends in .csv.gz", file));
-}
-
 // Throws UserError for an unsupported name of an output file, and for options that do not apply to the output files.
 void check_output_files(const RenderCommand& command) {
-    const std::string& packets = command.torus.packets;
     if (!find_launch())  // under mpirun, stdout may be a pseudoterminal although the output goes to a file
-        for (const std::string& file : {command.image, command.cost, command.mask, packets})
-            refuse_bytes_on_terminal(file);
+        for (const std::string& file : {command.image, command.cost, command.mask}) refuse_bytes_on_terminal(file);
     check_exposure(command);
-    if (!packets.empty()) check_packets_name(packets);
     if (!command.page.empty()) check_page_name("--page", command.page);
     if (!command.image.empty()) check_image_name(command.image, kImageExtensions);
     if (!command.cost.empty()) check_image_name(command.cost, kGreyImageExtensions);
@@ -290,22 +291,6 @@ void check_render(const RenderCommand& command) {
     check_trace(command.trace);
     check_checkpoint_options(command.checkpoint);
     check_output_files(command);
-}
-
-SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks) {
-    SceneInput input;
-    if (ranks.is_first()) {
-        input = recorder.spans().during("read scene", [&] { return read_scene(options.scene, options.strict); });
-        change_view(options.view, input.scene);
-    }
-    if (!ranks.has_several()) return input;
-    const bool ring = machine_named(options.machine).kind == MachineKind::kRing;
-    if (ranks.is_first() && ring) options.accel = accel_text(ring_settings(options, input.scene).accel);
-    ranks.broadcast(input.scene.name);
-    ranks.broadcast(input.scene.view.width);
-    ranks.broadcast(input.scene.view.height);
-    ranks.broadcast(options.accel);
-    return input;
 }
 
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image) {
@@ -337,13 +322,6 @@ RenderReport common_report(const RenderCommand& command, const SceneInput& input
     report.load = result.load;
     report.measured = {result.build_s, result.render_s, result.commands, {}, {}};
     return report;
-}
-
-void write_main_image(const RenderCommand& command, const Image& image, ImageAttributes attributes) {
-    if (command.image.empty()) return;
-    const double exposure = command.exposure.value_or(0);
-    if (exposure != 0) attributes.emplace_back("exposure", fmt::format("{}", exposure));
-    write_image(command.image, image, attributes, exposure);
 }
 
 void write_report(const RenderCommand& command, const RenderReport& report) {
@@ -436,15 +414,9 @@ std::optional<RenderReport> finish_render(const RenderCommand& command, RenderRu
         run.progress.stage("writing");
         report = common_report(command, run.input, run.session().device(), settings, result);
         outputs.describe(report);
-        ImageAttributes attributes = {{"scene", run.input.scene.name},
-                                      {"machine", report.machine.name},
-                                      {"mapping", report.machine.mapping},
-                                      {"format", report.machine.format},
-                                      {"u", fmt::format("{:.6f}", report.load.imbalance)}};
-        if (report.machine.offset) attributes.emplace_back("offset", std::to_string(*report.machine.offset));
         const SpanLog::Span span(&spans, "write images");
-        write_main_image(command, result.image, attributes);
-        outputs.write_files(attributes);
+        if (!command.image.empty()) write_image(command.image, result.image, command.exposure.value_or(0));
+        if (outputs.write_files) outputs.write_files();
     }
     add_measured(report, command, run, settings.format, result, outputs.work);
     if (!run.ranks.is_first()) return {};

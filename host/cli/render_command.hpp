@@ -25,12 +25,6 @@
 
 namespace raya {
 
-// State that all images of one command share: the scene, the device, the progress bar and the recorder.
-
-void add_checkpoint_options(CLI::App& command, CheckpointOptions& options);
-
-// Records the host's spans and clock offsets of a render for --profile and --trace, and writes the trace.
-
 /// The options as given on the command line. An empty `file` means no trace.
 struct TraceOptions {
     std::string file;
@@ -38,12 +32,7 @@ struct TraceOptions {
     std::size_t pes = 16;            // number of PEs or nodes that get a track
 };
 
-/// Adds --trace, --trace-events and --trace-pes.
-void add_trace_options(CLI::App& command, TraceOptions& trace);
-
-/// Throws UserError if the file's name does not end in .json or .json.gz.
-void check_trace(const TraceOptions& trace);
-
+/// Records the host's spans and clock offsets of a render for --profile and --trace, and writes the trace.
 class RenderRecorder {
   public:
     /// `profile`: records the time of each build. Without trace and profile, the recorder has only the spans that its
@@ -201,25 +190,18 @@ std::optional<Render> render_image(const RenderCommand& command, RenderRun& run)
 /// Adds all options of `raya render` except SCENE.
 void add_render_command_options(CLI::App& command, RenderCommand& options);
 
-/// Adds the command to the parser without running it: the parser sets `options`.
-CLI::App* declare_render_command(CLI::App& program, const std::shared_ptr<RenderCommand>& options);
-
 /// Throws UserError if options are incompatible or a file is not writable.
 void check_render(const RenderCommand& command);
-
-/// Rank 0 reads the scene and applies the view options. Other ranks get the scene's name and resolution, without
-/// objects. With several ranks and a ring machine, sets `options.accel` on all ranks to rank 0's choice.
-SceneInput read_scene_on_rank_0(RenderRecorder& recorder, RenderOptions& options, Ranks& ranks);
 
 /// Adds a small copy of `image` to the report, with the command's exposure.
 void add_preview(RenderReport& report, const RenderCommand& command, const Image& image);
 
 /// What a machine contributes to the end of a render.
 struct MachineOutputs {
-    std::function<void(RenderReport&)> describe;              // sets the machine's part of the report
-    std::function<void(const ImageAttributes&)> write_files;  // writes the machine's own files
-    std::function<void(TraceFile&)> add_trace;                // adds the modelled machine to the trace
-    std::vector<KernelWork> work;                             // of the kernels, for the roofline
+    std::function<void(RenderReport&)> describe;  // sets the machine's part of the report
+    std::function<void()> write_files;            // writes the machine's own files; empty: none
+    std::function<void(TraceFile&)> add_trace;    // adds the modelled machine to the trace
+    std::vector<KernelWork> work;                 // of the kernels, for the roofline
 };
 
 /// Collective: writes the image, the machine's files, report and trace, prints the summary, and removes the checkpoint.

@@ -1,10 +1,8 @@
 // raya render on a ring machine, whose PEs divide the pixels among them.
 #include <fmt/core.h>
 
-#include <memory>
 #include <optional>
 
-#include "host/base/whole_file.hpp"
 #include "host/cli/render_command.hpp"
 #include "host/ring/mapping.hpp"
 #include "host/ring/ring_renderer.hpp"
@@ -65,9 +63,9 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
         command, run, settings, result,
         {.describe = [&](RenderReport& r) { describe(r, command, settings, result); },
          .write_files =
-             [&](const ImageAttributes& attributes) {
-                 if (!command.cost.empty()) write_image(command.cost, grey_image(result.cost()), attributes);
-                 if (!command.mask.empty()) write_image(command.mask, result.mask, attributes);
+             [&] {
+                 if (!command.cost.empty()) write_image(command.cost, grey_image(result.cost()));
+                 if (!command.mask.empty()) write_image(command.mask, result.mask);
              },
          .add_trace = [&](TraceFile& trace) { add_ring_machine(trace, settings, result, command.trace.pes); },
          .work = ring_kernel_work(settings, result)});
@@ -77,73 +75,54 @@ std::optional<Render> render_on_ring(const RenderCommand& command, RenderRun& ru
 
 namespace {
 
-// The optional outputs of a render, without the image.
-struct TorusOutputs {
-    TorusOutputs(const RenderCommand& command, const RenderRecorder& recorder, const TorusSettings& settings) {
-        if (!command.torus.packets.empty()) packets.emplace();
-        keep_packets = command.keep_packets;
-        if (recorder.traces()) trace.emplace(settings.torus);
-        if (settings.history) history.emplace(settings.torus, settings.packets);
-    }
-
-    std::optional<PacketTrace> packets;
-    bool keep_packets = false;  // store `records`, `cycles` and `link_words`
-    std::vector<PacketRecord> records;
+// The result of a render, and what its observers have recorded.
+struct TorusRecords {
+    TorusResult result;
+    std::vector<PacketRecord> packets;
     std::vector<std::uint64_t> cycles, link_words;  // [superstep][node], [superstep][node][RAYA_LINKS]
-    std::optional<TorusTrace> trace;
     std::optional<HistoryRecorder> history;
 };
 
-TorusResult render_with_progress(TorusRenderer& renderer, RenderProgress& progress, TorusOutputs& outputs,
-                                 const Checkpointing* checkpointing) {
+TorusRecords render_recorded(const RenderCommand& command, const TorusSettings& settings, RenderRun& run,
+                             TorusRenderer& renderer, const Checkpointing* checkpointing) {
+    TorusRecords records;
     RenderObservers observers;
-    if (outputs.trace || outputs.keep_packets)
+    if (command.keep_packets || run.recorder.traces())
         observers.supersteps = [&](const SuperstepDetail& step) {
-            if (outputs.trace) outputs.trace->add_superstep(step);
-            if (!outputs.keep_packets) return;
-            outputs.cycles.insert(outputs.cycles.end(), step.cycles.begin(), step.cycles.end());
-            outputs.link_words.insert(outputs.link_words.end(), step.link_words.begin(), step.link_words.end());
+            records.cycles.insert(records.cycles.end(), step.cycles.begin(), step.cycles.end());
+            records.link_words.insert(records.link_words.end(), step.link_words.begin(), step.link_words.end());
         };
-    if (outputs.packets || outputs.keep_packets || outputs.trace)
-        observers.packets = [&](const PacketRecord& record) {
-            if (outputs.packets) outputs.packets->add(record);
-            if (outputs.keep_packets) outputs.records.push_back(record);
-            if (outputs.trace) outputs.trace->add_packet(record);
-        };
-    if (!outputs.packets && !outputs.keep_packets) observers.packets_every = TorusTrace::kPacketsEvery;
-    if (outputs.history) observers.work = [&](const NodeWork& work) { outputs.history->add(work); };
-    progress.stage("rendering");
-    return renderer.render(progress.callback(), observers, checkpointing);
+    if (command.keep_packets) observers.packets = [&](const PacketRecord& p) { records.packets.push_back(p); };
+    if (settings.history) {
+        records.history.emplace(settings.torus, settings.packets);
+        observers.work = [&](const NodeWork& work) { records.history->add(work); };
+    }
+    run.progress.stage("rendering");
+    records.result = renderer.render(run.progress.callback(), observers, checkpointing);
+    return records;
 }
 
 // Renders the image. After a deadlock, repeats the render with queues of twice the length.
-TorusResult render_without_deadlock(const RenderCommand& command, const TorusSettings& settings, RenderRun& run,
-                                    TorusRenderer& renderer, TorusOutputs& outputs,
-                                    const Checkpointing* checkpointing) {
+TorusRecords render_without_deadlock(const RenderCommand& command, const TorusSettings& settings, RenderRun& run,
+                                     TorusRenderer& renderer, const Checkpointing* checkpointing) {
     for (;;) try {
-            return render_with_progress(renderer, run.progress, outputs, checkpointing);
+            return render_recorded(command, settings, run, renderer, checkpointing);
         } catch (const TorusDeadlock& deadlock) {
             if (checkpointing != nullptr) throw;  // a checkpoint belongs to one length
             const std::uint32_t queue = 2 * deadlock.queue;
             renderer.set_queue(queue);
-            std::destroy_at(&outputs);
-            std::construct_at(&outputs, command, run.recorder, settings);
             if (run.ranks.is_first())
                 run.input.warnings.add(fmt::format("{}; repeated with queues of {} packets", deadlock.what(), queue));
         }
 }
 
-void refuse_history_with_ranks(const TorusSettings& settings, const Ranks& ranks) {
-    if (settings.history && ranks.has_several())
+void check_records(const RenderCommand& command, const RenderRun& run, const TorusSettings& settings) {
+    if (settings.history && run.ranks.has_several())
         throw UserError("--async records every packet in one process; start raya without mpirun");
-}
-
-void refuse_checkpoint_with_records(const RenderCommand& command, const RenderRecorder& recorder,
-                                    const TorusSettings& settings) {
-    if (!command.checkpoint.file.empty() && (!command.torus.packets.empty() || recorder.traces() || settings.history))
+    if (!command.checkpoint.file.empty() && (run.recorder.traces() || settings.history))
         throw UserError(
-            "--checkpoint with --machine torus: a checkpoint does not contain what --packets, --trace and --async "
-            "record; leave out one or the other");
+            "--checkpoint with --machine torus: a checkpoint does not contain what --trace and --async record; leave "
+            "out one or the other");
 }
 
 void describe(RenderReport& report, const TorusSettings& settings, const TorusResult& result) {
@@ -161,42 +140,42 @@ std::optional<Render> render_on_torus(const RenderCommand& command, RenderRun& r
     SceneInput& input = run.input;
     TorusSettings settings = torus_settings(run.options, command.torus, input.scene);
     settings.pixels = command.pixels;
-    refuse_history_with_ranks(settings, run.ranks);
-    refuse_checkpoint_with_records(command, recorder, settings);
+    check_records(command, run, settings);
     TorusRenderer renderer(run.session(), input.scene, settings, run.ranks, [&] { drop_objects(input.scene); });
     if (run.ranks.is_first()) warn_of_lost_objects(input.scene, renderer.scale(), settings.format, input.warnings);
-    TorusOutputs outputs(command, recorder, settings);
     const auto checkpointing = checkpointing_of(command.checkpoint);
-    TorusResult result = render_without_deadlock(command, settings, run, renderer, outputs, checkpointing.get());
+    TorusRecords records = render_without_deadlock(command, settings, run, renderer, checkpointing.get());
+    TorusResult& result = records.result;
     std::optional<History> history;
     std::optional<AsynchronousTime> asynchronous;
-    if (outputs.history && run.ranks.is_first()) {
+    if (records.history && run.ranks.is_first()) {
         run.progress.stage("simulating");
-        history = outputs.history->finish();
+        history = records.history->finish();
         asynchronous = recorder.spans().during("simulate", [&] { return simulate(settings.torus, *history).time(); });
     }
-    auto report =
-        finish_render(command, run, settings, result,
-                      {.describe =
-                           [&](RenderReport& r) {
-                               describe(r, settings, result);
-                               r.of_machine = torus_report(settings, result, asynchronous);
-                           },
-                       .write_files =
-                           [&](const ImageAttributes&) {
-                               if (outputs.packets) write_whole_file(command.torus.packets, outputs.packets->finish());
-                           },
-                       .add_trace = [&](TraceFile& file) { outputs.trace->add_to(file, result, command.trace.pes); },
-                       .work = torus_kernel_work(settings, result)});
+    auto report = finish_render(command, run, settings, result,
+                                {.describe =
+                                     [&](RenderReport& r) {
+                                         describe(r, settings, result);
+                                         r.of_machine = torus_report(settings, result, asynchronous);
+                                     },
+                                 .write_files = {},
+                                 .add_trace =
+                                     [&](TraceFile& file) {
+                                         add_torus_machine(file, settings.torus, result, records.cycles,
+                                                           records.link_words, command.trace.pes);
+                                     },
+                                 .work = torus_kernel_work(settings, result)});
     if (!report) return {};
+    if (!command.keep_packets) records.cycles = records.link_words = {};  // of the trace
     return Render{.report = std::move(*report),
                   .torus = std::move(result),
-                  .packets = std::move(outputs.records),
+                  .packets = std::move(records.packets),
                   .torus_settings = settings,
                   .lights = static_cast<std::uint32_t>(input.scene.lights.size()),
                   .history = std::move(history),
-                  .cycles = std::move(outputs.cycles),
-                  .link_words = std::move(outputs.link_words)};
+                  .cycles = std::move(records.cycles),
+                  .link_words = std::move(records.link_words)};
 }
 
 }  // namespace raya

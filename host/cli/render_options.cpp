@@ -152,15 +152,6 @@ void check_slot_options(const RenderOptions& o, const MappingText& mapping, cons
             fmt::format("--offset {}: must be 0..{}, less than the image's width", *o.offset, image.width - 1));
 }
 
-// Returns --mapping or, if it is not given, the machine's mapping. Returns the cyclic mapping for a dynamic or hybrid
-// mapping: the host only simulates a dynamic or hybrid mapping, while the device traces with the cyclic mapping. A
-// hybrid mapping assigns its static part cyclically, too.
-MappingText requested_mapping(const RenderOptions& o, const Machine& machine) {
-    if (!o.mapping.empty()) return parse_mapping(is_dynamic(o.mapping) ? "cyclic" : o.mapping);
-    if (machine.mapping.has_slots()) return parse_mapping("cyclic");
-    return {mapping_text(machine.mapping), machine.mapping, false};
-}
-
 // Returns the mapping's rule with offset and fold. For "cyclic" without p, the offset is --offset or, if it is not
 // given, the machine's offset modulo the image's width.
 MappingRule rule_of(const MappingText& mapping, const RenderOptions& o, const Machine& machine, std::uint32_t width) {
@@ -178,18 +169,16 @@ void set_mapping(RingSettings& settings, const RenderOptions& o, const ImageSize
         settings.dynamic = machine.dynamic;
     else if (is_dynamic(o.mapping))
         settings.dynamic = parse_dynamic(o.mapping, machine.dynamic.value_or(DynamicPlan{}));
-    const MappingText mapping = requested_mapping(o, machine);
+    // The host only simulates a dynamic or hybrid mapping, while the device traces with the cyclic mapping. A hybrid
+    // mapping assigns its static part cyclically, too.
+    MappingText mapping{mapping_text(machine.mapping), machine.mapping, false};
+    if (o.mapping.empty() ? machine.mapping.has_slots() : is_dynamic(o.mapping))
+        mapping = parse_mapping("cyclic");
+    else if (!o.mapping.empty())
+        mapping = parse_mapping(o.mapping);
     check_slot_options(o, mapping, image);
     const std::uint32_t pes = o.pes.value_or(mapping.rule.pes().value_or(machine.pes.value_or(image.width)));
     settings.mapping = make_mapping(rule_of(mapping, o, machine, image.width), image, pes);
-}
-
-// Returns --accel or, if it is not given, the machine's accelerator. Returns no accelerator if the machine's
-// accelerator is a BVH and the scene has so few objects that a BVH costs more time than it saves.
-Accel accel_of(const RenderOptions& o, const RingSettings& settings, const Scene& scene) {
-    if (!o.accel.empty()) return parse_accel(o.accel);
-    const bool use_default = settings.machine.accel.kind != AccelKind::kBvh || bvh_pays(scene, settings.format);
-    return use_default ? settings.machine.accel : Accel{};
 }
 
 /// Returns --format, by default the machine's format.
@@ -235,17 +224,13 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     set_mapping(settings, o, image_size(o, scene));
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
     settings.antialias = antialias_settings(o);
-    settings.accel = accel_of(o, settings, scene);
+    // A machine's BVH is left out if the scene has so few objects that it costs more time than it saves.
+    const bool pays = settings.machine.accel.kind != AccelKind::kBvh || bvh_pays(scene, settings.format);
+    settings.accel = !o.accel.empty() ? parse_accel(o.accel) : pays ? settings.machine.accel : Accel{};
     settings.machine.pe_memory_bytes = pe_memory_of(o, settings.machine);
     settings.kernels = kernel_choice(o);
     return settings;
 }
-
-namespace {
-
-using Sides = std::array<std::uint32_t, 3>;
-
-}  // namespace
 
 void add_torus_options(CLI::App& command, TorusOptions& t) {
     const OptionGroup group(command, kTorusMachine);
@@ -284,10 +269,6 @@ void add_torus_options(CLI::App& command, TorusOptions& t) {
             "Maximum number of packets queued in a node; if queues deadlock, the render is repeated with twice the "
             "length, with a warning; default: as many as fit in memory, at most 8192"),
         1);
-    add_file(command, FileUse::kWritten, "--packets FILE.csv.gz", t.packets,
-             "Write every packet between nodes (superstep, source, destination, kind, bytes, ray, parent), "
-             "compressed; -: "
-             "stdout; see docs/architecture.md");
     command.add_flag("--async", t.async,
                      "Also simulate the machine without supersteps, whose nodes compute while links transfer: raya "
                      "reports this modelled time, the lower bound and the time with supersteps");
@@ -304,30 +285,21 @@ void refuse_options_of_other_machines(const CLI::App& command, const Machine& ma
     }
 }
 
-namespace {
-
-Sides voxels_of(const TorusOptions& t, const Sides& nodes) {
-    if (t.voxels.empty()) return nodes;
-    const Sides voxels = parse_three_sides("--voxels", t.voxels, "at most 2^24 in total");
-    // Each side is at most 10^6, so the 64-bit product does not overflow.
-    if (std::uint64_t{voxels[0]} * voxels[1] * voxels[2] > kMaxPartitionVoxels)
-        throw UserError(fmt::format("--voxels {}: must be at most 2^24 in total", t.voxels));
-    return voxels;
-}
-
-}  // namespace
-
 TorusSettings torus_settings(const RenderOptions& o, const TorusOptions& t, const Scene& scene) {
     TorusSettings settings;
     settings.machine = machine_named(o.machine);
     const ImageSize size = image_size(o, scene);
     settings.width = size.width;
     settings.height = size.height;
-    const Sides nodes =
+    const std::array<std::uint32_t, 3> nodes =
         t.nodes.empty() ? kDefaultNodes : parse_three_sides("--nodes", t.nodes, "at most 65,536 in total");
     settings.links = t.links;
     settings.torus = make_torus(nodes, settings.links);
-    settings.voxels = voxels_of(t, nodes);
+    settings.voxels = nodes;
+    if (!t.voxels.empty()) settings.voxels = parse_three_sides("--voxels", t.voxels, "at most 2^24 in total");
+    // Each side is at most 10^6, so the 64-bit product does not overflow.
+    if (std::uint64_t{settings.voxels[0]} * settings.voxels[1] * settings.voxels[2] > kMaxPartitionVoxels)
+        throw UserError(fmt::format("--voxels {}: must be at most 2^24 in total", t.voxels));
     settings.inject = t.inject;
     settings.packets = {t.packet_words.value_or(RAYA_PACKET_WORDS), t.one_return_per_ray};
     settings.queue = t.queue.value_or(0);

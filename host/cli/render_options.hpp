@@ -47,7 +47,7 @@ RingSettings ring_settings(const RenderOptions& options, const Scene& scene);
 
 /// The options as given on the command line. An empty value means the default.
 struct TorusOptions {
-    std::string nodes, voxels, packets;
+    std::string nodes, voxels;
     Links links = Links::kTorus3d;
     Injection inject = Injection::kAll;
     bool one_return_per_ray = false;

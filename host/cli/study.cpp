@@ -40,9 +40,8 @@ void check_module_folder(const fs::path& folder) {
     if (!why.empty()) throw UserError(fmt::format("refused to run '{}': {}; remedy: chmod go-w", folder.string(), why));
 }
 
-}  // namespace
-
-void start_study(std::vector<std::string> arguments) {
+// Replaces the process with Python, which runs the module raya.lab with these arguments. Throws UserError on failure.
+[[noreturn]] void start_study(std::vector<std::string> arguments) {
     const std::string python_variable = environment_value("RAYA_PYTHON");
     const std::string python = python_variable.empty() ? "/usr/bin/python3" : python_variable;
     const fs::path program = fs::read_symlink("/proc/self/exe"), folder = package_folder(program);
@@ -76,6 +75,8 @@ void start_study(std::vector<std::string> arguments) {
                     "set RAYA_PYTHON to another Python",
                     python, std::generic_category().message(errno)));
 }
+
+}  // namespace
 
 void add_study_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("study", "Run series of renders that test the papers' claims");

@@ -73,10 +73,6 @@ void print_tunings(const std::vector<Tuning>& tunings) {
                        trial.error);
 }
 
-TunedEntry entry_of(const Tuning& tuning, const std::string& scene) {
-    return {tuning.workload.key(), tuning.best, 1 / tuning.ratio, scene};
-}
-
 void tune_device(const CLI::App& parser, TuneCommand& command) {
     Warnings warnings;
     warn_of_build_options(warnings);

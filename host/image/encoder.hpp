@@ -2,8 +2,6 @@
 // OpenImageIO's 250 libraries takes longer than a small render.
 #pragma once
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace raya {
 
@@ -12,11 +10,6 @@ inline constexpr int kJpegQuality = 95;  // libjpeg's scale, 1..100
 inline constexpr const char* kEncoderModule = "raya_pictures";
 inline constexpr const char* kEncoderFunction = "raya_encode_picture";
 
-/// Metadata of an image file, as pairs of key and text. PNG stores them as text chunks, and OpenEXR as header
-/// attributes; the names are `raya:key`, to avoid the names of standard attributes. TIFF and JPEG store lines
-/// `raya:key=text` in the image description. PFM and PPM do not support metadata.
-using ImageAttributes = std::vector<std::pair<std::string, std::string>>;
-
 /// An image to encode. `values` has the shape [height, width, channels]; row 0 is the top.
 struct PictureToEncode {
     const char* format;  // OpenImageIO's name: "png", "tiff" or "jpeg" (8-bit codes) or "exr" (floats)
@@ -24,7 +17,6 @@ struct PictureToEncode {
     int height;          // pixels
     int channels;        // 3, or 1: channel Y
     const void* values;  // float for EXR, else std::uint8_t
-    const ImageAttributes& attributes;
 };
 
 /// The type of the module's function kEncoderFunction. On success returns true and sets `result` to the file's bytes,

@@ -9,31 +9,6 @@
 namespace raya {
 namespace {
 
-// Returns the attributes as one text, for TIFF and JPEG, which do not support attributes with custom names.
-std::string description(const ImageAttributes& attributes) {
-    std::string text;
-    for (const auto& [key, value] : attributes) text += (text.empty() ? "raya:" : "\nraya:") + key + '=' + value;
-    return text;
-}
-
-// Sets the attributes of a format with 8-bit codes.
-void describe_codes(OIIO::ImageSpec& spec, const PictureToEncode& picture, std::string_view format) {
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    if (format == "png") {
-        for (const auto& [key, text] : picture.attributes) spec.attribute("raya:" + key, text);
-        return;
-    }
-    if (!picture.attributes.empty()) spec.attribute("ImageDescription", description(picture.attributes));
-    if (format == "tiff") {
-        spec.attribute("compression", "zip");
-        // OpenImageIO 2.4 cannot write EXIF data to memory, because they are in a second TIFF directory.
-        spec.attribute("tiff:write_exif", 0);
-        return;
-    }
-    spec.attribute("Compression", "jpeg:" + std::to_string(kJpegQuality));
-    spec.attribute("jpeg:subsampling", "4:4:4");
-}
-
 OIIO::ImageSpec make_spec(const PictureToEncode& picture) {
     const std::string_view format = picture.format;
     OIIO::ImageSpec spec(picture.width, picture.height, picture.channels,
@@ -43,13 +18,14 @@ OIIO::ImageSpec make_spec(const PictureToEncode& picture) {
     // have no date. It also prints a debug message, which debug = 0 disables.
     if (format == "exr" || format == "tiff") spec.attribute("DateTime", 0);
     OIIO::attribute("debug", 0);
-    if (format != "exr") {
-        describe_codes(spec, picture, format);
-        return spec;
+    spec.attribute("oiio:ColorSpace", format == "exr" ? "Linear" : "sRGB");
+    if (format == "exr" || format == "tiff") spec.attribute("compression", "zip");
+    // OpenImageIO 2.4 cannot write EXIF data to memory, because they are in a second TIFF directory.
+    if (format == "tiff") spec.attribute("tiff:write_exif", 0);
+    if (format == "jpeg") {
+        spec.attribute("Compression", "jpeg:" + std::to_string(kJpegQuality));
+        spec.attribute("jpeg:subsampling", "4:4:4");
     }
-    spec.attribute("oiio:ColorSpace", "Linear");
-    for (const auto& [key, text] : picture.attributes) spec.attribute("raya:" + key, text);
-    spec.attribute("compression", "zip");
     return spec;
 }
 

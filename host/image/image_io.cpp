@@ -37,8 +37,6 @@ double linear_from_srgb(double encoded) {
 
 }  // namespace
 
-float srgb_light(std::uint8_t code) { return static_cast<float>(linear_from_srgb(code / 255.0)); }
-
 std::uint8_t srgb_code(double linear) {
     // borders[k]: the linear value at which the nearest code changes from k to k + 1
     static const std::array<double, 255> borders = [] {
@@ -133,23 +131,22 @@ std::size_t first_pixel(int part, int parts, int pixels) {
 
 }  // namespace
 
-int preview_side(int image_side, int longer_side, int max_side) {
-    if (longer_side <= max_side) return image_side;
-    return std::max(1, static_cast<int>((std::int64_t{image_side} * max_side + longer_side / 2) / longer_side));
-}
-
 Image as_displayed(const Image& image, double exposure) {
     Image displayed{image.width, image.height, {}};
     displayed.rgb.reserve(image.rgb.size());
-    for (const std::uint8_t code : srgb_codes(image.rgb, exposure)) displayed.rgb.push_back(srgb_light(code));
+    for (const std::uint8_t code : srgb_codes(image.rgb, exposure))
+        displayed.rgb.push_back(static_cast<float>(linear_from_srgb(code / 255.0)));
     return displayed;
 }
 
 Image preview_of(const Image& image, int max_side) {
     if (image.width < 1 || image.height < 1 || max_side < 1) throw std::logic_error("preview_of: no pixels");
     const int longer_side = std::max(image.width, image.height);
-    Image preview{
-        preview_side(image.width, longer_side, max_side), preview_side(image.height, longer_side, max_side), {}};
+    const auto reduced = [&](std::int64_t side) {  // both sides by the same factor, to at least 1 pixel
+        if (longer_side <= max_side) return static_cast<int>(side);
+        return std::max(1, static_cast<int>((side * max_side + longer_side / 2) / longer_side));
+    };
+    Image preview{reduced(image.width), reduced(image.height), {}};
     const auto width = static_cast<std::size_t>(image.width);
     for (int y = 0; y < preview.height; ++y)
         for (int x = 0; x < preview.width; ++x) {
@@ -218,10 +215,9 @@ EncodePicture* encoder(const fs::path& path) {
     }
 }
 
-std::string encode(const fs::path& path, const char* format, const Pixels& pixels, const void* values,
-                   const ImageAttributes& attributes) {
+std::string encode(const fs::path& path, const char* format, const Pixels& pixels, const void* values) {
     std::string result;
-    if (!encoder(path)({format, pixels.width, pixels.height, pixels.channels, values, attributes}, result))
+    if (!encoder(path)({format, pixels.width, pixels.height, pixels.channels, values}, result))
         refuse_to_encode(path, result);
     return result;
 }
@@ -248,7 +244,7 @@ std::string pfm_bytes(const Pixels& pixels) {
 
 // Writes the pixels in the format of the extension. `exposure` applies only to formats with 8-bit codes.
 void write_pixels(const fs::path& path, const Pixels& pixels, std::span<const std::string_view> extensions,
-                  const ImageAttributes& attributes, double exposure) {
+                  double exposure) {
     const bool positive = pixels.width > 0 && pixels.height > 0;
     if (!positive || pixels.values.size() != static_cast<std::size_t>(pixels.width) *
                                                  static_cast<std::size_t>(pixels.height * pixels.channels))
@@ -258,11 +254,9 @@ void write_pixels(const fs::path& path, const Pixels& pixels, std::span<const st
     const std::string extension = lower_case_extension(path, extensions);
     const char* const format = encoded_format(extension);
     if (extension == ".pfm") return write_whole_file(path, pfm_bytes(pixels));
-    if (extension == ".exr")
-        return write_whole_file(path, encode(path, format, pixels, pixels.values.data(), attributes));
+    if (extension == ".exr") return write_whole_file(path, encode(path, format, pixels, pixels.values.data()));
     const std::vector<std::uint8_t> codes = srgb_codes(pixels.values, exposure);
-    write_whole_file(
-        path, format == nullptr ? ppm_bytes(pixels, codes) : encode(path, format, pixels, codes.data(), attributes));
+    write_whole_file(path, format == nullptr ? ppm_bytes(pixels, codes) : encode(path, format, pixels, codes.data()));
 }
 
 }  // namespace
@@ -283,12 +277,12 @@ void load_encoder(const fs::path& path) {
     if (encoded_format(lower_case_extension(path, kImageExtensions)) != nullptr) encoder(path);
 }
 
-void write_image(const fs::path& path, const Image& image, const ImageAttributes& attributes, double exposure) {
-    write_pixels(path, {image.width, image.height, 3, image.rgb}, kImageExtensions, attributes, exposure);
+void write_image(const fs::path& path, const Image& image, double exposure) {
+    write_pixels(path, {image.width, image.height, 3, image.rgb}, kImageExtensions, exposure);
 }
 
-void write_image(const fs::path& path, const GreyImage& image, const ImageAttributes& attributes) {
-    write_pixels(path, {image.width, image.height, 1, image.values}, kGreyImageExtensions, attributes, 0);
+void write_image(const fs::path& path, const GreyImage& image) {
+    write_pixels(path, {image.width, image.height, 1, image.values}, kGreyImageExtensions, 0);
 }
 
 }  // namespace raya

@@ -42,9 +42,6 @@ std::string pixel_hash(const Image& image);
 /// distance of every float from these values is more than 10^-11.
 std::uint8_t srgb_code(double linear);
 
-/// Returns the linear value of a code on the sRGB curve.
-float srgb_light(std::uint8_t code);
-
 /// Returns the codes of the values multiplied by 2^exposure. A NaN counts as 0, an infinite value as the largest float.
 /// The result is the same on every machine, except for values at the border of two codes, which depend on the rounding
 /// of exp2().
@@ -52,24 +49,17 @@ std::vector<std::uint8_t> srgb_codes(std::span<const float> values, double expos
 
 // A PNG encoder that does not need OpenImageIO, for images in HTML pages and reports.
 
-/// Returns the bytes of a PNG file (ISO/IEC 15948) without attributes. It stores the 8-bit sRGB code nearest to each
+/// Returns the bytes of a PNG file (ISO/IEC 15948). It stores the 8-bit sRGB code nearest to each
 /// value clamped to 0..1, as write_image() does by default. Throws std::logic_error if `image` has no pixels
 /// or does not have 3 floats per pixel.
 std::string plain_png(const Image& image);
 
 // Reduced images for reports and pages.
 
-inline constexpr int kPreviewSide = 256;  // default maximum of a preview's longer side, pixels
-
-/// Returns the length of one side of a preview. All lengths are in pixels. `image_side`: the same side of the image;
-/// `longer_side`: the image's longer side; `max_side`: maximum for the preview's longer side. Both sides are reduced by
-/// the same factor, but to at least 1 pixel. If `longer_side` is at most `max_side`, the size does not change.
-int preview_side(int image_side, int longer_side, int max_side = kPreviewSide);
-
 /// Reduces an image to at most `max_side` pixels per side and keeps its proportions. Each pixel of the result is the
 /// mean of the pixels that it covers, after clamping them to 0..1 (NaN: 0), in linear light. An image that is small
 /// enough is only clamped. Throws std::logic_error if `image` has no pixels.
-Image preview_of(const Image& image, int max_side = kPreviewSide);
+Image preview_of(const Image& image, int max_side = 256);
 
 /// Returns the linear light that an sRGB screen displays for the 8-bit codes of `image` multiplied by 2^exposure.
 Image as_displayed(const Image& image, double exposure);
@@ -93,11 +83,10 @@ void load_encoder(const std::filesystem::path& path);
 /// JPEG (kJpegQuality, 4:4:4) and PPM store the nearest 8-bit code of each value; EXR (channels R, G, B,
 /// zip) and PFM store the floats. Throws UserError with file, reason and remedy; std::logic_error if `image` does not
 /// have 3 floats per pixel.
-void write_image(const std::filesystem::path& path, const Image& image, const ImageAttributes& attributes,
-                 double exposure = 0);
+void write_image(const std::filesystem::path& path, const Image& image, double exposure = 0);
 
 /// Writes an image of one number per pixel as EXR (channel Y, zip) or PFM. Throws UserError with file, reason
 /// and remedy; std::logic_error if `image` does not have one float per pixel.
-void write_image(const std::filesystem::path& path, const GreyImage& image, const ImageAttributes& attributes);
+void write_image(const std::filesystem::path& path, const GreyImage& image);
 
 }  // namespace raya

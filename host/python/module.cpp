@@ -81,13 +81,10 @@ void add_generators(py::module_& module) {
         "ceil(n) spheres, n = count / (x * y * z). voxels: (x, y, z).");
     generators.def("random", generate_random, py::arg("count"), py::arg("seed") = 1,
                    "count spheres (1..20000000) with random centres in the cube [-1, 1]^3.");
-    generators.def("terrain", generate_terrain, py::arg("triangles") = 100'000, py::arg("seed") = 1,
-                   "A height field of triangles (1..20000000) above a square whose cells have side 1.");
     generators.def(
         "cluster", [](std::uint64_t seed) { return generate_cluster(seed); }, py::arg("seed") = 1,
         "Seven random spheres above a floor. Averaged over many seeds, load and imbalance match those that Kohata & "
         "Ito (1993) report.");
-    generators.def("centre", generate_centre, "The scene of scenes/centre.nff.");
 }
 
 void add_scenes(py::module_& module) {

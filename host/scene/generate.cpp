@@ -15,7 +15,7 @@
 namespace raya {
 namespace {
 
-constexpr double kMillionths = 1e6, kTenThousandths = 1e4;  // values of the parameter `parts` of rounded()
+constexpr double kMillionths = 1e6;  // for the parameter `parts` of rounded()
 
 /// `text`: describes the number in the message.
 void check_number(const std::string& text, int number, int lowest, int highest) {
@@ -76,6 +76,7 @@ Scene generate_uniform(int count, std::array<int, 3> voxels) {
         check_number(fmt::format("uniform: {} voxels along an axis", axis_voxels), axis_voxels, 1, kMaxVoxelsPerAxis);
         voxel_count *= axis_voxels;
     }
+    constexpr std::int64_t kMaxVoxels = 1 << 20;
     if (voxel_count > kMaxVoxels)
         throw UserError(fmt::format("uniform: {} voxels: at most {}", voxel_count, kMaxVoxels));
 
@@ -127,39 +128,6 @@ Scene generate_random(int count, std::uint64_t seed) {
     return scene;
 }
 
-Scene generate_centre() {
-    Scene scene;
-    scene.name = "centre.nff";
-    scene.background = {0.3, 0.5, 0.85};
-    scene.view = {{0, -11, 4.4}, {0, 0, 1.35}, {0, 0, 1}, 28, 0, 256, 256};
-    scene.lights = {{{-7, -8, 11}, Colour(0.62, 0.6, 0.55)}, {{8, -5, 7}, Colour(0.22, 0.24, 0.3)}};
-    scene.surfaces = {
-        {{1, 1, 1}, 0.02, 0.12, 200, 0.85, 1.5, {}},     // glass
-        {{1, 1, 1}, 0.08, 0.85, 200, 0, 1, {}},          // mirror
-        {{0.9, 0.1, 0.08}, 0.75, 0.25, 60, 0, 1, {}},    // glossy red
-        {{0.95, 0.65, 0.08}, 0.75, 0.25, 60, 0, 1, {}},  // glossy yellow
-        {{0.1, 0.25, 0.85}, 0.75, 0.25, 60, 0, 1, {}},   // glossy blue
-        {{0.9, 0.9, 0.9}, 0.85, 0, 0, 0, 1, Checker{{0.9, 0.87, 0.8}, {0.2, 0.3, 0.34}, 2}},
-    };
-    scene.spheres.push_back({{0, 0, 1.3}, 1.3, 0});
-    scene.spheres.push_back({{0, 0, 3.05}, 0.45, 1});
-    // A ring of equal spheres around the z axis; `first_azimuth` in full turns. The surfaces are assigned cyclically.
-    const auto add_ring = [&](int count, double distance, double height, double radius, double first_azimuth,
-                              int first_surface, int surface_count) {
-        for (int i = 0; i < count; ++i) {
-            const double azimuth = 2 * std::numbers::pi * (first_azimuth + static_cast<double>(i) / count);
-            const Vec3 centre(rounded(distance * std::cos(azimuth), kTenThousandths),
-                              rounded(distance * std::sin(azimuth), kTenThousandths), height);
-            scene.spheres.push_back({centre, radius, first_surface + i % surface_count});
-        }
-    };
-    add_ring(12, 1.85, 0.4, 0.4, 0.02, 1, 4);
-    add_ring(8, 1.35, 2.45, 0.28, 0.04, 0, 2);
-    scene.planes.push_back({{0, 0, 1}, 0, 5});
-    merge_equal_surfaces(scene);
-    return scene;
-}
-
 Scene generate_cluster(std::uint64_t seed) {
     constexpr int kGlassSpheres = 3, kMirrorSpheres = 1, kSpheres = 7;
     constexpr int kMaxRedraws = 200;  // maximum number of new places and radii of a sphere that touches another one
@@ -201,15 +169,14 @@ Scene scattered(const Scene& scene, std::uint64_t seed) {
 }
 
 Scene moved_into_voxels(const Scene& scene) {
-    constexpr double kVoxel = 2.0 / kVoxelsPerCubeSide;  // side of a voxel
+    constexpr double kVoxels = 4, kVoxel = 2 / kVoxels;  // number of voxels along an axis; side of a voxel
     // Upper bound of the distance by which a hit region (host/accel) exceeds its sphere.
     constexpr double kGap = kVoxel / 16;
     Scene moved = scene;
     for (Sphere& sphere : moved.spheres)
         for (int axis = 0; axis < 3; ++axis) {
             double& coordinate = sphere.centre[axis];
-            const double voxel_low =
-                -1 + kVoxel * std::clamp(std::floor((coordinate + 1) / kVoxel), 0.0, kVoxelsPerCubeSide - 1.0);
+            const double voxel_low = -1 + kVoxel * std::clamp(std::floor((coordinate + 1) / kVoxel), 0.0, kVoxels - 1);
             const double margin = std::min(sphere.radius + kGap, kVoxel / 2);
             coordinate = std::clamp(coordinate, voxel_low + margin, voxel_low + kVoxel - margin);
         }
@@ -342,7 +309,7 @@ void add_sphere_and_cylinders(Scene& scene, int size, const std::array<int, 3>& 
 }  // namespace
 
 Scene generate_balls(int level) {
-    check_number(fmt::format("balls: level {}", level), level, 0, kMaxBallsLevel);
+    check_number(fmt::format("balls: level {}", level), level, 0, 6);
     Scene scene;
     scene.name = fmt::format("balls{}.nff", level);
     scene.background = {0.078, 0.361, 0.753};
@@ -356,7 +323,7 @@ Scene generate_balls(int level) {
 }
 
 Scene generate_gears(int size) {
-    check_number(fmt::format("gears: size {}", size), size, 1, kMaxGearsSize);
+    check_number(fmt::format("gears: size {}", size), size, 1, 16);
     Scene scene;
     scene.name = fmt::format("gears{}.nff", size);
     scene.background = {0.078, 0.361, 0.753};
@@ -382,7 +349,7 @@ Scene generate_gears(int size) {
 }
 
 Scene generate_lattice(int size) {
-    check_number(fmt::format("lattice: size {}", size), size, 1, kMaxLatticeSize);
+    check_number(fmt::format("lattice: size {}", size), size, 1, 64);
     Scene scene;
     scene.name = fmt::format("lattice{}.nff", size);
     scene.background = {0.078, 0.361, 0.753};

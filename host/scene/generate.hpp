@@ -4,20 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <string_view>
 
 #include "host/scene/scene.hpp"
 
 namespace raya {
 
-inline constexpr int kMaxBallsLevel = 6;    // `level` of generate_balls(); makes 597,871 spheres
-inline constexpr int kMaxLatticeSize = 64;  // `size` of generate_lattice(); makes 274,625 spheres and 811,200 cylinders
-inline constexpr int kMaxGearsSize = 16;    // `size` of generate_gears(); makes 598,017 polygons
-// `count` of generate_uniform() and generate_random(), `triangles` of generate_terrain()
+// `count` of generate_uniform() and generate_random()
 inline constexpr int kMaxObjects = 20'000'000;
 inline constexpr int kMaxVoxelsPerAxis = 256;  // each element of `voxels` of generate_uniform()
-inline constexpr int kMaxVoxels = 1'048'576;   // product of `voxels` of generate_uniform()
 
 /// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six decimals). Rounding keeps
 /// files short, and makes them equal on all platforms although the last bits of sines and cosines differ.
@@ -54,28 +48,10 @@ Scene generate_uniform(int count, std::array<int, 3> voxels);
 /// twelve surfaces are matt, glossy or mirroring. Throws UserError unless 1 <= count <= 20,000,000.
 Scene generate_random(int count, std::uint64_t seed);
 
-/// A height field of `triangles` triangles above a square: octaves of value noise (D. S. Ebert et al., "Texturing and
-/// Modeling: A Procedural Approach", 1994), computed in integers so that it is equal on all platforms. The square's
-/// cells have side 1, and each has two triangles; the last row of cells may be incomplete. The scene has one matt
-/// surface and one light. Throws UserError unless 1 <= triangles <= 20,000,000.
-Scene generate_terrain(int triangles, std::uint64_t seed);
-
-/// Returns a function that returns the terrain as binary PLY in pieces, for write_whole_file(). It needs memory for a
-/// row of cells only. The file has little-endian floats and no view, light or surface.
-std::function<std::string_view()> terrain_ply(int triangles, std::uint64_t seed);
-
-/// The project's main scene, an example of the worst case for a static distribution of pixels over PEs (Kohata & Ito,
-/// IPSJ Journal 1993): expensive glass and mirror spheres in the centre of the image, above a cheap checkered plane.
-/// 256 x 256 pixels.
-Scene generate_centre();
-
 /// A cluster of three glass, one mirroring and three matt spheres above a checkered floor, with one light. While a
 /// sphere touches another sphere, it gets a new random place and radius, at most 200 times. The means of load and
 /// imbalance over many seeds match Kohata & Ito's figures. 256 x 256 pixels.
 Scene generate_cluster(std::uint64_t seed);
-
-/// Number of voxels along each axis of the cube in moved_into_voxels().
-inline constexpr std::uint32_t kVoxelsPerCubeSide = 4;
 
 /// Returns a copy of `scene`, which lies in the cube [-1, 1]^3, in which each sphere has a random centre, clamped so
 /// that the sphere stays inside the cube. Radii and surfaces do not change.

@@ -34,18 +34,16 @@ std::string text_of(const Vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.
 
 std::string with_leading_blank(const Vec3& v) { return fmt::format(" {}", text_of(v)); }
 
-/// Writes a scene in pieces.
 class NffWriter {
   public:
     explicit NffWriter(const Scene& scene) : scene_(scene), fills_(scene.surfaces.size()) {}
 
-    /// Returns the next piece, valid until the next call; empty at the end.
-    std::string_view next_piece() {
-        constexpr std::size_t kBytes = 1 << 16;
-        text_.clear();
-        if (next_object_ == 0 && !std::exchange(has_head_, true)) write_head();
-        while (text_.size() < kBytes && next_object_ < scene_.object_count()) write_object(next_object_++);
-        return text_;
+    std::string text() {
+        write_head();
+#define RAYA_WRITE(kind, kinds, KIND) \
+    for (const auto& object : scene_.kinds) write(object);
+        RAYA_OBJECT_LIST(RAYA_WRITE)
+        return std::move(text_);
     }
 
   private:
@@ -62,13 +60,6 @@ class NffWriter {
         write_line("angle {}\nhither {}\nresolution {} {}", view.angle_degrees, view.hither, view.width, view.height);
         for (const Light& light : scene_.lights)
             write_line("l {}{}", text_of(light.position), light.colour ? with_leading_blank(*light.colour) : "");
-    }
-
-    void write_object(std::size_t number) {
-#define RAYA_WRITE(kind, kinds, KIND)                                     \
-    if (number < scene_.kinds.size()) return write(scene_.kinds[number]); \
-    number -= scene_.kinds.size();
-        RAYA_OBJECT_LIST(RAYA_WRITE)
     }
 
     void write(const Sphere& s) {
@@ -110,8 +101,6 @@ class NffWriter {
     }
 
     const Scene& scene_;
-    bool has_head_ = false;
-    std::size_t next_object_ = 0;
     std::vector<std::string> fills_;  // the `f` of each surface; empty until the surface is used
     std::string text_;
     std::string last_fill_;
@@ -127,15 +116,6 @@ Scene read_nff(const std::filesystem::path& path, std::vector<SceneRemark>* rema
     }
 }
 
-std::function<std::string_view()> nff_pieces(const Scene& scene) {
-    return [writer = NffWriter(scene)]() mutable { return writer.next_piece(); };
-}
-
-std::string write_nff(const Scene& scene) {
-    std::string text;
-    NffWriter writer(scene);
-    for (std::string_view piece = writer.next_piece(); !piece.empty(); piece = writer.next_piece()) text += piece;
-    return text;
-}
+std::string write_nff(const Scene& scene) { return NffWriter(scene).text(); }
 
 }  // namespace raya

@@ -18,7 +18,6 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,8 +47,8 @@ std::string remark_text(const std::string& file, const SceneRemark& remark);
 ///
 /// If `remarks` is not null, parse_nff() tolerates the following deviations and adds a remark for each: it leaves out
 /// objects without size and polygons without area, cuts polygons that are not flat into triangles, converts patches
-/// with a normal of 0 into polygons, and skips entities of other NFF dialects (la, lf, tt, ...) and a mail header.
-/// Prose, a missing view and a file without objects remain errors.
+/// with a normal of 0 into polygons, and skips entities of other NFF dialects (la, lf, tt, ...).
+/// Other text, a missing view and a file without objects remain errors.
 Scene parse_nff(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks = nullptr);
 
 /// Reads and parses a file; "-" reads from stdin, which is named "stdin" in messages. Throws UserError as parse_nff()
@@ -64,8 +63,5 @@ std::string in_quotes(std::string_view text);
 /// returns an equal scene if equal surfaces of `scene` are merged (merge_equal_surfaces()). Throws UserError for a
 /// checker on a sphere or cone, which NFF cannot express.
 std::string write_nff(const Scene& scene);
-
-/// Returns a function that returns the text of write_nff() in pieces, for write_whole_file(). `scene` must outlive it.
-std::function<std::string_view()> nff_pieces(const Scene& scene);
 
 }  // namespace raya

@@ -62,73 +62,15 @@ ParsedNumber parsed_number(std::string_view text) {
 /// Returns true if a token starts with a number; more characters may follow it.
 bool reads_as_number(std::string_view text) { return parsed_number(text).error != std::errc::invalid_argument; }
 
-constexpr std::string_view kBlanks = " \t\v\f", kLineEnds = "\r\n";
-
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
+/// Returns true if a token may be the keyword of an NFF dialect (`la`, `tt`, `Q`): at most eight letters, digits and
+/// underscores.
 bool reads_as_keyword(std::string_view token) {
     constexpr std::size_t kMaxLength = 8;
     return !token.empty() && token.size() <= kMaxLength && is_letter(token[0]) &&
            std::all_of(token.begin(), token.end(),
                        [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
-}
-
-/// Returns true if a dot or slash occurs before the last character, as in `wood.ppm`. A token that ends with a dot may
-/// be the last word of a sentence.
-bool reads_as_file(std::string_view token) {
-    return token.substr(0, token.size() - 1).find_first_of("./") != token.npos;
-}
-
-bool opens_mail(std::string_view line) {
-    const auto colon = std::find_if_not(line.begin(), line.end(), [](char c) { return is_letter(c) || c == '-'; });
-    return line.starts_with("From ") || (colon - line.begin() > 1 && colon != line.end() && *colon == ':');
-}
-
-/// Returns true if a line looks like an entity of an NFF dialect (`la 0.2 0.2 0.2`, `tt wood.ppm 0 0 1`, `Q`) and not
-/// like prose: a keyword of at most eight letters, digits and underscores, then any number of numbers and file names.
-/// A line with numbers may also contain up to two names that are not file names. `rest`: the line after the keyword.
-bool reads_as_entity(std::string_view keyword, std::string_view rest) {
-    constexpr int kMaxNames = 2;
-    int numbers = 0, names = 0;
-    rest = rest.substr(0, rest.find('#'));
-    for (std::size_t at = 0; (at = rest.find_first_not_of(kBlanks, at)) != rest.npos;) {
-        const std::string_view token = rest.substr(at, rest.find_first_of(kBlanks, at) - at);
-        if (reads_as_number(token))
-            ++numbers;
-        else if (!reads_as_file(token))
-            ++names;
-        at += token.size();
-    }
-    return reads_as_keyword(keyword) && names <= (numbers > 0 ? kMaxNames : 0);
-}
-
-/// Returns true if `token`, the first token of a file, identifies the file as Sense8's NFF, a different format with the
-/// same name.
-bool is_sense8_keyword(std::string_view token) {
-    constexpr std::string_view kKeyword = "nff";
-    return std::equal(token.begin(), token.end(), kKeyword.begin(), kKeyword.end(),
-                      [](char c, char lower) { return is_letter(c) && (c | 0x20) == lower; });
-}
-
-/// Length of a mail header, including the empty lines before it.
-struct MailHeader {
-    std::size_t bytes = 0;  // 0: no header
-    int lines = 0;          // number of lines
-};
-
-/// Finds a mail header at the beginning of a text. The header may follow empty lines, starts with a line `From
-/// somebody` or `Name: text`, and ends before the next empty line.
-MailHeader mail_header(std::string_view text) {
-    const auto line_at = [&](std::size_t at) { return text.substr(at, text.find_first_of(kLineEnds, at) - at); };
-    std::size_t at = std::min(text.find_first_not_of("\r\n \t\v\f"), text.size());
-    if (!opens_mail(line_at(at))) return {};
-    for (std::string_view line = line_at(at); line.find_first_not_of(kBlanks) != line.npos; line = line_at(at)) {
-        at += line.size();
-        at += text.substr(at).starts_with("\r\n") ? 2 : at < text.size() ? 1 : 0;
-    }
-    const std::string_view header = text.substr(0, at);
-    const auto count_of = [&](char c) { return std::count(header.begin(), header.end(), c); };
-    return {at, static_cast<int>(std::max(count_of('\n'), count_of('\r')))};
 }
 
 /// A run of characters without white space. At the end of the file `text` is empty.
@@ -142,10 +84,8 @@ struct NffToken {
 /// may end in LF, CR LF or CR. Every error is a UserError "NAME:LINE: reason".
 class NffTokens {
   public:
-    /// `text` must outlive this object; its lines are counted from `first_line`. Control characters, as in a binary
-    /// file, are an error.
-    NffTokens(std::string_view text, std::string name, int first_line)
-        : text_(text), name_(std::move(name)), line_(first_line) {
+    /// `text` must outlive this object. Control characters, as in a binary file, are an error.
+    NffTokens(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {
         constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // which some editors write at the start of a file
         if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
         advance();
@@ -207,14 +147,9 @@ class NffTokens {
         return static_cast<int>(value);
     }
 
-    /// Skips an unknown entity: the rest of its line and all following lines that begin with a number. Returns false
-    /// and skips nothing if the line does not look like an entity (reads_as_entity()).
-    bool skip_unknown() {
-        const std::size_t at = position_ - next_.text.size();
-        const std::string_view line = text_.substr(at, text_.find_first_of("\r\n", at) - at);
-        if (!reads_as_entity(entity_, next_.first_on_line ? std::string_view() : line)) return false;
+    /// Skips the rest of an entity's line and all following lines that begin with a number.
+    void skip_entity() {
         while (!next_.text.empty() && (!next_.first_on_line || number_follows())) advance();
-        return true;
     }
 
     /// Returns true if the next token starts with a number; more characters may follow it.
@@ -311,18 +246,14 @@ class NffReader {
   public:
     /// Starts before the first token of `text`, which must outlive this object. `remarks`: null in strict mode, in
     /// which every deviation is an error.
-    NffReader(std::string_view text, const std::string& name, int first_line, std::vector<SceneRemark>* remarks)
-        : tokens_(text, name, first_line), remarks_(remarks) {
+    NffReader(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks)
+        : tokens_(text, name), remarks_(remarks) {
         scene_.name = std::filesystem::path(name).filename().string();
         scene_.surfaces.emplace_back();  // for objects before the first `f`
     }
 
     /// Reads all entities and returns the scene. Throws UserError "NAME:LINE: reason".
     Scene read() {
-        if (is_sense8_keyword(tokens_.peek().text))
-            tokens_.refuse(tokens_.peek().line,
-                           "this is Sense8's NFF (WorldToolKit), another format of the same name; raya reads E. "
-                           "Haines's NFF");
         while (!tokens_.peek().text.empty()) read_entity();
         const int end = tokens_.peek().line;
         if (checker_) tokens_.refuse(checker_line_, "no plane or polygon follows this '#raya checker'");
@@ -377,9 +308,11 @@ class NffReader {
             if (entity.keyword == keyword) return (this->*entity.read)();
         if (is_number)
             refuse(in_quotes(keyword) + " instead of an entity: does the previous one have too many numbers?");
-        if (remarks_ && tokens_.skip_unknown())
+        if (remarks_ && reads_as_keyword(keyword)) {
+            tokens_.skip_entity();
             return add_remark(*remarks_, {.what = "entity " + in_quotes(keyword) + " of another dialect, skipped",
                                           .line = tokens_.entity_line()});
+        }
         refuse("unknown entity " + in_quotes(keyword) +
                "; NFF has v b l f s p pp c; the names of meshes end in .obj, .ply, .gltf, .glb or .stl");
     }
@@ -563,9 +496,7 @@ std::string in_quotes(std::string_view text) {
 }
 
 Scene parse_nff(std::string_view text, const std::string& name, std::vector<SceneRemark>* remarks) {
-    const MailHeader header = remarks ? mail_header(text) : MailHeader{};
-    if (header.bytes > 0) add_remark(*remarks, {.what = "mail header before the scene, skipped", .line = 1});
-    return NffReader(text.substr(header.bytes), name, 1 + header.lines, remarks).read();
+    return NffReader(text, name, remarks).read();
 }
 
 }  // namespace raya

@@ -154,9 +154,6 @@ OutlineCheck clean_outline(Polygon& polygon) {
     const double max_error = 1e-12 * size * size + 8 * kEpsilon * largest_coordinate * size;
     const Vec3 normal = newell_normal(vertices);
     const double doubled_area = normal.length();
-    for (std::size_t i = 2; doubled_area <= max_error && i < vertices.size(); ++i)
-        if ((vertices[i - 1] - vertices[0]).cross(vertices[i] - vertices[0]).length() > max_error)
-            return {OutlineFault::kCrosses, "crosses or retraces itself, so that its signed area is 0"};
     if (doubled_area <= max_error) return {OutlineFault::kNoArea, "has no area"};
 
     double off_plane = 0;  // maximum distance of a vertex from the plane
@@ -176,8 +173,6 @@ void add_polygon(Scene& scene, Polygon polygon, const RemarkOrRefuse& report) {
         scene.polygons.push_back(std::move(polygon));
         return;
     }
-    if (check.fault == OutlineFault::kCrosses)
-        return report("the polygon " + check.reason, "polygon that " + check.reason + ", left out");
     // A triangle is flat by definition. If the check says otherwise, it is a sliver with almost no area, and it cannot
     // be cut into triangles.
     if (check.fault == OutlineFault::kNoArea || polygon.vertices.size() == 3)

@@ -51,7 +51,7 @@ inline constexpr double kMaxWeight = 100;
 /// digits are only about 1e-5 off the plane.
 inline constexpr double kFlatness = 1e-3;
 
-enum class OutlineFault { kNone, kNoArea, kCrosses, kNotFlat };
+enum class OutlineFault { kNone, kNoArea, kNotFlat };
 
 /// Result of the check of an outline. `reason` completes a sentence that begins with "the polygon".
 struct OutlineCheck {
@@ -59,8 +59,8 @@ struct OutlineCheck {
     std::string reason;
 };
 
-/// Removes each vertex that equals the previous one, with its normal, and checks the outline. A self-intersection is
-/// detected only if the signed area is 0.
+/// Removes each vertex that equals the previous one, with its normal, and checks the outline. An outline that crosses
+/// itself so that its signed area is 0 has no area.
 OutlineCheck clean_outline(Polygon& polygon);
 
 /// Reports a polygon that cannot be traced as given. Throws UserError with `reason`, a sentence about the polygon, or

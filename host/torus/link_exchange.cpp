@@ -1,18 +1,10 @@
 #include "host/torus/link_exchange.hpp"
 
 #include <algorithm>
-#include <cstring>
+
+#include "host/scene/packer.hpp"
 
 namespace raya {
-namespace {
-
-raya_head head_at(const std::uint32_t* packet) {
-    raya_head head;
-    std::memcpy(&head, packet, sizeof head);
-    return head;
-}
-
-}  // namespace
 
 std::string link_name(std::uint32_t link) { return std::string(link % 2 == 0 ? "+" : "-") + "xyz"[link / 2]; }
 
@@ -155,10 +147,10 @@ void LinkExchange::visit_new_packets(const NodeStatus& status,
             const std::size_t box = std::size_t{link} * nodes_ + slot;
             const std::uint32_t first = sent_flags_[box] ? 0 : visited_[box];
             visited_[box] = packets;
-            if (!visit) continue;
             std::vector<std::uint32_t> words(std::size_t{packets - first} * class_.packet_words);
             session_.read("record", outboxes_, words, outbox_at(link, slot) + box_words(first));
-            for (std::size_t i = 0; i < words.size(); i += class_.packet_words) visit(node, head_at(&words[i]));
+            for (std::size_t i = 0; i < words.size(); i += class_.packet_words)
+                visit(node, record_at<raya_head>(words, i));
         }
     }
 }

@@ -76,7 +76,7 @@ class LinkExchange {
     /// Saves or restores counts and packets of the mailboxes. `status`: that of all nodes. Restore after clear().
     void visit_state(RenderState& state, const NodeStatus& status);
 
-    /// Calls `visit`, unless it is empty, with the node and the head of every packet that was put into an outbox of
+    /// Calls `visit` with the node and the head of every packet that was put into an outbox of
     /// this rank since the last call of visit_new_packets().
     void visit_new_packets(const NodeStatus& status,
                            const std::function<void(std::uint32_t node, const raya_head& packet)>& visit);

@@ -77,7 +77,7 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
     session_.write("scatter", memories_, memories.words);
     session_.write("scatter", starts_, memories.starts);
     write_inbox_table();
-    set_pixels(settings.pixels);
+    write_run_constants();
 }
 
 void NodeArray::write_inbox_table() {
@@ -88,14 +88,14 @@ void NodeArray::write_inbox_table() {
     session_.write("scatter", inbox_of_link_, inboxes);
 }
 
-void NodeArray::set_pixels(const PixelSubset& pixels) {
+void NodeArray::write_run_constants() {
     const raya_run run{.nodes = nodes_,
                        .inboxes = distribution_.inboxes(),
                        .queue = buffers_.queue,
                        .box = buffers_.box,
                        .host = buffers_.queue,
-                       .stride = pixels.stride,
-                       .offset = pixels.first,
+                       .stride = settings_.pixels.stride,
+                       .offset = settings_.pixels.first,
                        .root_injects = settings_.inject == Injection::kRoot || raya_nodes(settings_.torus) == 1,
                        .one_return_per_ray = settings_.packets.one_return_per_ray};
     session_.write("scatter", run_, {&run, 1});
@@ -276,22 +276,6 @@ std::uint64_t cycles_of(const NodeStatus& status, std::uint32_t node) {
     return status.at(node, RAYA_STATUS_CYCLES) | std::uint64_t{status.at(node, RAYA_STATUS_CYCLES + 1)} << 32;
 }
 
-bool is_return(const raya_head& packet) { return raya_state_kind(packet.state) == RAYA_KIND_RETURN; }
-
-// Returns true if the node of the outbox created or changed the packet, and the model charges the packet as a message.
-bool is_new_message(const raya_head& packet) {
-    return packet.state & RAYA_STATE_FRESH && (!is_return(packet) || packet.state & RAYA_STATE_CHARGED);
-}
-
-PacketRecord record_of(const TorusSettings& settings, std::uint32_t superstep, std::uint32_t node,
-                       const raya_head& packet) {
-    return {.superstep = superstep,
-            .source = node,
-            .destination = destination_of(settings.torus, node, packet),
-            .head = packet,
-            .words = is_return(packet) ? settings.packets.return_words() : settings.packets.ray_words};
-}
-
 }  // namespace
 
 std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32_t nodes) {
@@ -329,13 +313,12 @@ double progress_of(const MachineState& state, std::size_t returns, std::uint64_t
 }
 
 void NodeArray::record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink) {
-    if (!sink) {
-        ray_links_.visit_new_packets(status, {});
-        return return_links_.visit_new_packets(status, {});
-    }
     std::vector<PacketRecord> own_records;
     const auto record_new = [&](std::uint32_t node, const raya_head& packet) {
-        if (is_new_message(packet)) own_records.push_back(record_of(settings_, superstep, node, packet));
+        const bool is_return = raya_state_kind(packet.state) == RAYA_KIND_RETURN;
+        if (!(packet.state & RAYA_STATE_FRESH) || (is_return && !(packet.state & RAYA_STATE_CHARGED))) return;
+        own_records.push_back({superstep, node, destination_of(settings_.torus, node, packet), packet,
+                               is_return ? settings_.packets.return_words() : settings_.packets.ray_words});
     };
     ray_links_.visit_new_packets(status, record_new);
     return_links_.visit_new_packets(status, record_new);

@@ -83,9 +83,6 @@ class NodeArray {
     /// Empties queues and mailboxes, sets counters to 0, and restarts the generation of primary rays.
     void clear();
 
-    /// Chooses the pixels that the following renders compute; the default is TorusSettings::pixels.
-    void set_pixels(const PixelSubset& pixels);
-
     void inject();
     void trace_voxel(Reserve reserve);
     void route();
@@ -111,7 +108,7 @@ class NodeArray {
 
     /// In rank 0, passes the new messages in the outboxes of all ranks to `sink`: the charged packets
     /// (docs/glossary.md) that the outbox's node created or changed. All ranks must call record_packets() in every
-    /// superstep. An empty sink skips the superstep; it must be empty in all ranks or in none.
+    /// superstep.
     void record_packets(const NodeStatus& status, std::uint32_t superstep, const PacketSink& sink);
 
     /// Counts of the nodes of this rank, [slot][RAYA_EVENTS] or [slot][RAYA_KINDS].
@@ -134,6 +131,7 @@ class NodeArray {
   private:
     NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
               const NodeDistribution& distribution);
+    void write_run_constants();
     void write_inbox_table();
     /// Repeats `launch(work, resume)` until no node has work left.
     template <class Launch>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <ranges>
 #include <stdexcept>
 
 #include "host/error.hpp"
@@ -215,14 +216,11 @@ constexpr std::uint64_t kReturnBytes = RAYA_RETURN_WORDS * sizeof(std::uint32_t)
 // `memory` bytes. The queue `min_queue` must fit.
 std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint64_t memory, std::uint32_t min_queue,
                             std::uint32_t max_queue) {
-    while (min_queue < max_queue) {
-        const std::uint32_t middle = max_queue - (max_queue - min_queue) / 2;
-        if (node_bytes(words, buffers_for(middle), links) <= memory)
-            min_queue = middle;
-        else
-            max_queue = middle - 1;
-    }
-    return min_queue;
+    const auto fits = [&](std::uint64_t queue) {
+        return node_bytes(words, buffers_for(static_cast<std::uint32_t>(queue)), links) <= memory;
+    };
+    const auto longer = std::views::iota(std::uint64_t{min_queue} + 1, std::uint64_t{max_queue} + 1);
+    return static_cast<std::uint32_t>(*std::ranges::partition_point(longer, fits) - 1);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "host/base/encoding.hpp"
 #include "host/cl/kernel_options.hpp"
@@ -22,14 +21,6 @@ namespace {
 NodeBuffers buffers_of(const Scene& scene, const NodeSizes& sizes, const TorusSettings& s) {
     return plan_buffers(scene.name, sizes, s.torus, s.memory_bytes, s.queue,
                         raya_min_queue(static_cast<std::uint32_t>(scene.lights.size()), s.bounces));
-}
-
-// Writes windows of all nodes into the headers of `nodes`.
-void set_windows(NodeMemories& memories, const std::vector<PixelWindow>& windows,
-                 const std::vector<std::uint32_t>& nodes) {
-    for (std::size_t slot = 0; slot < nodes.size(); ++slot)
-        put_record(memories.words, memories.starts[slot] + offsetof(raya_node, window) / sizeof(std::uint32_t),
-                   windows[nodes[slot]]);
 }
 
 TorusJob receive_job(const NodeDistribution& distribution) {
@@ -131,7 +122,9 @@ TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusS
     const auto memories_of = [&](std::uint32_t rank) {
         const std::vector<std::uint32_t>& nodes = distribution.pes_of(rank);
         NodeMemories memories = pack_nodes(job, partition, s.torus, nodes);
-        set_windows(memories, windows, nodes);
+        for (std::size_t slot = 0; slot < nodes.size(); ++slot)
+            put_record(memories.words, memories.starts[slot] + offsetof(raya_node, window) / sizeof(std::uint32_t),
+                       windows[nodes[slot]]);
         return memories;
     };
     TorusJobHeader header{
@@ -193,7 +186,7 @@ struct Projection {
     double depth(const Vec3& p) const { return (p - eye).dot(normal) / corner.dot(normal); }
 
     // Returns column and row of P, which must be in front of the eye.
-    std::array<double, 2> pixel(const Vec3& p) const {
+    Imath::V2d pixel(const Vec3& p) const {
         const Vec3 flat = (p - eye) / depth(p) - corner;
         return {flat.dot(row_step.cross(normal)) / column_step.dot(row_step.cross(normal)),
                 flat.dot(column_step.cross(normal)) / row_step.dot(column_step.cross(normal))};
@@ -205,12 +198,10 @@ struct Projection {
     double max_distance = 0;  // maximum |P - eye| of a pixel at depth c = 1
 };
 
-// Bounds of projected points: [0] columns, [1] rows.
+// Bounds of projected points: columns x and rows y.
 struct ScreenBounds {
-    double low[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    double high[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    Imath::Box2d pixels;
     bool whole = false;  // true: no bound is known, so the window is the whole image
-    bool is_nonempty() const { return whole || low[0] <= high[0]; }
 };
 
 // Clips a face to the points with depth >= `min_depth` (Sutherland & Hodgman 1974).
@@ -238,13 +229,8 @@ void add_face(ScreenBounds& bounds, const Projection& projection, const raya_gri
         face[corner][third] = raya_voxel_plane(grid, third, at.at[third] + corner / 2);
     }
     // The clipping depth is smaller than the depth of any visible point of the face.
-    for (const Vec3& p : clipped(projection, face, distance / projection.max_distance / 2)) {
-        const std::array<double, 2> pixel = projection.pixel(p);
-        for (std::size_t i = 0; i < 2; ++i) {
-            bounds.low[i] = std::min(bounds.low[i], pixel[i]);
-            bounds.high[i] = std::max(bounds.high[i], pixel[i]);
-        }
-    }
+    for (const Vec3& p : clipped(projection, face, distance / projection.max_distance / 2))
+        bounds.pixels.extendBy(projection.pixel(p));
 }
 
 void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
@@ -290,15 +276,16 @@ std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& gri
         bounds.whole = voxels > 0 && format.fraction_bits < kMinWindowBits;
         for (std::uint32_t i = 0; i < voxels && !bounds.whole; ++i)
             add_voxel(bounds, projection, grid, raya_voxel_of_node(torus, grid, node, i));
-        PixelWindow window{{0, height}, {0, width}};
-        if (!bounds.is_nonempty()) window = {{0, 0}, {0, 0}};
-        if (bounds.is_nonempty() && !bounds.whole) {
-            const double m = projection.margin;
-            window = {
-                {clamped(std::floor(bounds.low[1] - m), height), clamped(std::ceil(bounds.high[1] + m) + 1, height)},
-                {clamped(std::floor(bounds.low[0] - m), width), clamped(std::ceil(bounds.high[0] + m) + 1, width)}};
-        }
-        windows.push_back(window);
+        const Imath::Box2d& box = bounds.pixels;
+        const double m = projection.margin;
+        if (bounds.whole)
+            windows.push_back({{0, height}, {0, width}});
+        else if (box.isEmpty())
+            windows.push_back({});
+        else
+            windows.push_back(
+                {{clamped(std::floor(box.min.y - m), height), clamped(std::ceil(box.max.y + m) + 1, height)},
+                 {clamped(std::floor(box.min.x - m), width), clamped(std::ceil(box.max.x + m) + 1, width)}});
     }
     return windows;
 }

@@ -45,11 +45,6 @@ TorusRenderer::TorusRenderer(Session& session, const Scene& scene, const TorusSe
     ranks.one_rank_per_host_first([this] { build(); });
 }
 
-void TorusRenderer::set_pixels(const PixelSubset& pixels) {
-    settings_.pixels = pixels;
-    nodes_->set_pixels(pixels);
-}
-
 void TorusRenderer::set_queue(std::uint32_t queue) {
     job_.buffers = buffers_for(queue);
     build();
@@ -187,9 +182,7 @@ NodeStatus TorusRenderer::route(TorusRun& run, const RenderObservers& observers)
     nodes_->route();
     const NodeStatus status = nodes_->read_status();
     nodes_->continue_gather(status, run.returns);
-    if (observers.packets)
-        nodes_->record_packets(status, run.superstep,
-                               run.superstep % observers.packets_every ? PacketSink{} : observers.packets);
+    if (observers.packets) nodes_->record_packets(status, run.superstep, observers.packets);
     return status;
 }
 
@@ -264,11 +257,6 @@ bool comes_before(const raya_head& a, const raya_head& b) {
     return raya_comes_before(a.path, a.state, b.path, b.state);
 }
 
-void append_contribution(std::vector<float>& colours, const raya_head& packet) {
-    colours.insert(colours.end(), std::begin(packet.carries.colour), std::end(packet.carries.colour));
-    colours.push_back(packet.weight);
-}
-
 }  // namespace
 
 Contributions sort_contributions(const std::vector<raya_head>& returns, std::uint32_t pixels) {
@@ -293,7 +281,10 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
         for (auto i = first; i != last; ++i) {
             if (i != first && !comes_before(returns[i[-1]], returns[*i]))
                 throw std::logic_error(fmt::format("pixel {}: two contributions of the same ray", pixel));
-            append_contribution(sorted.colours, returns[*i]);
+            const raya_head& packet = returns[*i];
+            sorted.colours.insert(sorted.colours.end(), std::begin(packet.carries.colour),
+                                  std::end(packet.carries.colour));
+            sorted.colours.push_back(packet.weight);
         }
     }
     return sorted;

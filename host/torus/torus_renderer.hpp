@@ -73,10 +73,6 @@ class TorusRenderer {
     /// Returns the factor by which the scene's lengths are multiplied.
     const LengthScale& scale() const { return job_.scale; }
 
-    /// Chooses the pixels that the following renders compute, so that one renderer can render the pixel subsets of
-    /// several groups of nodes one after another.
-    void set_pixels(const PixelSubset& pixels);
-
     /// Sets the capacity of the queues, in packets, for the following images. The queues may exceed a node's memory.
     /// Throws UserError if the queues exceed the device's maximum buffer, and DeviceError if the device fails.
     void set_queue(std::uint32_t queue);

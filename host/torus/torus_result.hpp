@@ -55,9 +55,8 @@ using SuperstepSink = std::function<void(const SuperstepDetail&)>;
 /// Callbacks during a render; an empty callback is not called. With several ranks, only rank 0 calls them.
 struct RenderObservers {
     PacketSink packets{};  // called for each packet sent to another node, in the order of supersteps, then sources
-    std::uint32_t packets_every = 1;  // `packets` is called only in supersteps 0, packets_every, ..., to save time
-    SuperstepSink supersteps{};       // called for each superstep
-    NodeWorkSink work{};              // called for each node and superstep; needs TorusSettings::history and one rank
+    SuperstepSink supersteps{};  // called for each superstep
+    NodeWorkSink work{};         // called for each node and superstep; needs TorusSettings::history and one rank
 };
 
 /// [RAYA_KIND_*]: name of the kind of packets, in files and reports.

@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <iterator>
-#include <random>
+#include <numeric>
+#include <span>
 
 #include "host/model/t805.hpp"
 #include "host/torus/topology.hpp"
@@ -12,175 +12,93 @@
 namespace raya {
 namespace {
 
-constexpr std::size_t kCompressedBlock = 1 << 16;  // number of bytes of text that PacketTrace compresses at a time
-
 constexpr TraceTrack kSupersteps = {kTraceMachine, 1};
-constexpr std::uint32_t kFirstNodeTrack = 2;  // track of node 0
+
+TraceTrack track_of(std::uint32_t node) { return {kTraceMachine, kSupersteps.thread + 1 + node}; }
 
 // Like torus_time(), assumes the same number of words in both directions of the link.
 double link_ms(std::uint64_t words) { return t805_link_ms(words, words); }
-TraceTrack track_of(std::uint32_t node) { return {kTraceMachine, kFirstNodeTrack + node}; }
+
+std::uint64_t sum(std::span<const std::uint64_t> numbers) {
+    return std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
+}
+
+// A superstep in modelled time.
+struct TracedStep {
+    std::string name;
+    const Superstep& all;
+    std::span<const std::uint64_t> cycles, link_words;  // [node], [node][RAYA_LINKS]
+    double begin_ms, computed_ms, end_ms;
+};
+
+void add_superstep(TraceFile& trace, const raya_torus& torus, const TracedStep& step) {
+    const Load load = load_of({step.cycles.begin(), step.cycles.end()});
+    const std::uint64_t begin_ns = nanoseconds(step.begin_ms), words = sum(step.link_words);
+    trace.slice(kSupersteps, step.name, begin_ns, nanoseconds(step.end_ms),
+                {{"live", step.all.live},
+                 {"u", load.imbalance},
+                 {"busiest_cycles", step.all.max_node_cycles},
+                 {"busiest_link_words", step.all.max_link_words},
+                 {"words", words}});
+    const double links = static_cast<double>(step.cycles.size()) * links_of_node(torus);
+    trace.counter(kTraceMachine, "live rays", begin_ns, {{"packets", static_cast<double>(step.all.live)}});
+    trace.counter(kTraceMachine, "u", begin_ns, {{"u", load.imbalance}});
+    trace.counter(kTraceMachine, "link words", begin_ns,
+                  {{"busiest", static_cast<double>(step.all.max_link_words)},
+                   {"mean", links > 0 ? static_cast<double>(words) / links : 0}});
+}
+
+void add_node(TraceFile& trace, std::uint32_t node, const TracedStep& step) {
+    const auto slice = [&](const char* name, double begin_ms, double end_ms, const Json& arguments = {}) {
+        if (nanoseconds(end_ms) > nanoseconds(begin_ms))
+            trace.slice(track_of(node), name, nanoseconds(begin_ms), nanoseconds(end_ms), arguments);
+    };
+    trace.slice(track_of(node), step.name, nanoseconds(step.begin_ms), nanoseconds(step.end_ms));
+    const std::span<const std::uint64_t> words = step.link_words.subspan(std::size_t{node} * RAYA_LINKS, RAYA_LINKS);
+    const std::uint64_t busiest = std::ranges::max(words);
+    const double done_ms = step.begin_ms + t805_ms(step.cycles[node]), sent_ms = step.computed_ms + link_ms(busiest);
+    slice("compute", step.begin_ms, done_ms, {{"cycles", step.cycles[node]}});
+    slice("wait for the busiest node", done_ms, step.computed_ms);
+    slice("exchange", step.computed_ms, sent_ms, {{"busiest_link_words", busiest}, {"words", sum(words)}});
+    slice("wait for the busiest link", sent_ms, step.end_ms);
+}
 
 }  // namespace
 
-PacketTrace::PacketTrace() : text_("superstep,source,destination,kind,bytes,ray,parent\n") {}
-
-std::uint64_t PacketTrace::number_of(const RayId& ray) {
-    const auto [number, is_new] = numbers_.try_emplace(ray, next_number_);
-    next_number_ += is_new;
-    return number->second;
-}
-
-void PacketTrace::add(const PacketRecord& record) {
-    const std::uint32_t kind = raya_state_kind(record.head.state);
-    const RayId ray = RayId::of(record.head.pixel, record.head.path, record.head.state);
-    // A return gets a new number that is not looked up again, because it is recorded once and has no children.
-    const std::uint64_t number = kind == RAYA_KIND_RETURN ? next_number_++ : number_of(ray);
-    auto to = std::back_inserter(text_);
-    fmt::format_to(to, "{},{},{},{},{},{},", record.superstep, record.source, record.destination, kPacketKinds.at(kind),
-                   sizeof(std::uint32_t) * record.words, number);
-    if (kind != RAYA_KIND_PRIMARY) fmt::format_to(to, "{}", number_of(kind == RAYA_KIND_RETURN ? ray : ray.parent()));
-    text_ += '\n';
-    ++rows_;
-    if (text_.size() < kCompressedBlock) return;
-    file_.append(text_);
-    text_.clear();
-}
-
-std::string PacketTrace::finish() {
-    file_.append(text_);
-    return file_.finish();
-}
-
-void TorusTrace::add_superstep(const SuperstepDetail& step) {
-    std::vector<NodeStep> nodes(step.cycles.size());
-    for (std::size_t node = 0; node < nodes.size(); ++node) {
-        nodes[node].cycles = step.cycles[node];
-        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link) {
-            const auto words = static_cast<std::uint32_t>(step.link_words[node * RAYA_LINKS + link]);
-            nodes[node].words += words;
-            nodes[node].busiest_link_words = std::max(nodes[node].busiest_link_words, words);
-        }
-    }
-    steps_.push_back(std::move(nodes));
-}
-
-void TorusTrace::add_packet(const PacketRecord& p) {
-    if (p.superstep % kPacketsEvery == 0)
-        packets_.push_back({p.superstep, p.source, p.destination, raya_state_kind(p.head.state)});
-}
-
-// Adds supersteps and flows to a trace. The supersteps follow one another, from time 0 on.
-class TorusTrace::Timeline {
-  public:
-    Timeline(const TorusTrace& machine_trace, TraceFile& trace, const TorusResult& result, std::size_t nodes)
-        : machine_trace_(machine_trace), trace_(trace), result_(result), nodes_(traced_pes(result.load.per_pe, nodes)) {
-        trace.name_process(kTraceMachine, "torus of T805s (modelled time, step by step)");
-        trace.name_track(kSupersteps, "supersteps");
-        for (const TracedPe& n : nodes_) trace.name_track(track_of(n.pe), traced_pe_name("node", n));
-    }
-
-    void add_supersteps() {
-        for (std::size_t step = 0; step < machine_trace_.steps_.size(); ++step) {
-            const Superstep& superstep = result_.supersteps[step];
-            begins_ms_.push_back(now_ms_);
-            const double compute_end_ms = now_ms_ + t805_ms(superstep.max_node_cycles);
-            compute_ends_ms_.push_back(compute_end_ms);
-            const double end_ms = compute_end_ms + link_ms(superstep.max_link_words);
-            add_machine(step, end_ms);
-            for (const TracedPe& n : nodes_) add_node(step, n.pe, compute_end_ms, end_ms);
-            now_ms_ = end_ms;
-        }
-    }
-
-    // Adds the flows and returns their number.
-    std::size_t add_flows() {
-        std::vector<bool> is_traced(raya_nodes(machine_trace_.torus_));
-        for (const TracedPe& n : nodes_) is_traced[n.pe] = true;
-        std::vector<TracedPacket> shown;
-        for (const TracedPacket& p : machine_trace_.packets_)
-            if (arrival_of(p) < begins_ms_.size() && is_traced[p.source] && is_traced[p.destination])
-                shown.push_back(p);
-        std::vector<TracedPacket> sample;
-        std::ranges::sample(shown, std::back_inserter(sample), kMaxPackets, std::mt19937());
-        for (const TracedPacket& p : sample)
-            trace_.flow(kPacketKinds[p.kind], track_of(p.source), nanoseconds(compute_ends_ms_[p.superstep]),
-                        track_of(p.destination), nanoseconds(begins_ms_[arrival_of(p)]));
-        return sample.size();
-    }
-
-  private:
-    // Returns the earliest superstep in which the packet can arrive. The routes of returns take the axes in another
-    // order than those of rays, but are equally long.
-    std::size_t arrival_of(const TracedPacket& p) const {
-        return p.superstep + raya_node_distance(machine_trace_.torus_, p.source, p.destination);
-    }
-
-    void add_machine(std::size_t step, double end_ms) {
-        const std::vector<NodeStep>& nodes = machine_trace_.steps_[step];
-        const Superstep& superstep = result_.supersteps[step];
-        std::vector<std::uint64_t> cycles;
-        std::uint64_t words = 0;
-        for (const NodeStep& n : nodes) {
-            cycles.push_back(n.cycles);
-            words += n.words;
-        }
-        const Load load = load_of(std::move(cycles));
-        const std::uint64_t begin_ns = nanoseconds(now_ms_);
-        trace_.slice(kSupersteps, fmt::format("superstep {}", step), begin_ns, nanoseconds(end_ms),
-                     {{"live", superstep.live},
-                      {"u", load.imbalance},
-                      {"busiest_cycles", superstep.max_node_cycles},
-                      {"busiest_link_words", superstep.max_link_words},
-                      {"words", words}});
-        trace_.counter(kTraceMachine, "live rays", begin_ns, {{"packets", static_cast<double>(superstep.live)}});
-        trace_.counter(kTraceMachine, "u", begin_ns, {{"u", load.imbalance}});
-        const double links = static_cast<double>(nodes.size()) * links_of_node(machine_trace_.torus_);
-        trace_.counter(kTraceMachine, "link words", begin_ns,
-                       {{"busiest", static_cast<double>(superstep.max_link_words)},
-                        {"mean", links > 0 ? static_cast<double>(words) / links : 0}});
-    }
-
-    void add_node(std::size_t step, std::uint32_t node, double compute_end_ms, double end_ms) {
-        const NodeStep& n = machine_trace_.steps_[step][node];
-        const TraceTrack track = track_of(node);
-        const auto slice = [&](const char* name, double begin_ms, double finish_ms, const Json& arguments = {}) {
-            if (nanoseconds(finish_ms) > nanoseconds(begin_ms))
-                trace_.slice(track, name, nanoseconds(begin_ms), nanoseconds(finish_ms), arguments);
-        };
-        trace_.slice(track, fmt::format("superstep {}", step), nanoseconds(now_ms_), nanoseconds(end_ms));
-        const double done_ms = now_ms_ + t805_ms(n.cycles), sent_ms = compute_end_ms + link_ms(n.busiest_link_words);
-        slice("compute", now_ms_, done_ms, {{"cycles", n.cycles}});
-        slice("wait for the busiest node", done_ms, compute_end_ms);
-        slice("exchange", compute_end_ms, sent_ms, {{"busiest_link_words", n.busiest_link_words}, {"words", n.words}});
-        slice("wait for the busiest link", sent_ms, end_ms);
-    }
-
-    const TorusTrace& machine_trace_;
-    TraceFile& trace_;
-    const TorusResult& result_;
-    std::vector<TracedPe> nodes_;
-    std::vector<double> begins_ms_, compute_ends_ms_;  // [superstep]: start, end of its computation, ms
-    double now_ms_ = 0;
-};
-
-void TorusTrace::add_to(TraceFile& trace, const TorusResult& result, std::size_t nodes) const {
+void add_torus_machine(TraceFile& trace, const raya_torus& torus, const TorusResult& result,
+                       const std::vector<std::uint64_t>& cycles, const std::vector<std::uint64_t>& link_words,
+                       std::size_t nodes) {
     if (nodes == 0) {
         trace.metadata()["machine"] = "left out: the number of nodes to trace is 0";
         return;
     }
-    Timeline timeline(*this, trace, result, nodes);
-    timeline.add_supersteps();
-    const std::size_t flows = timeline.add_flows();
+    trace.name_process(kTraceMachine, "torus of T805s (modelled time, step by step)");
+    trace.name_track(kSupersteps, "supersteps");
+    const std::vector<TracedPe> traced = traced_pes(result.load.per_pe, nodes);
+    for (const TracedPe& n : traced) trace.name_track(track_of(n.pe), traced_pe_name("node", n));
+    const std::size_t all_nodes = raya_nodes(torus);
+    double now_ms = 0;
+    for (std::size_t i = 0; i < result.supersteps.size(); ++i) {
+        const Superstep& all = result.supersteps[i];
+        const double computed_ms = now_ms + t805_ms(all.max_node_cycles),
+                     end_ms = computed_ms + link_ms(all.max_link_words);
+        const TracedStep step{fmt::format("superstep {}", i),
+                              all,
+                              std::span(cycles).subspan(i * all_nodes, all_nodes),
+                              std::span(link_words).subspan(i * all_nodes * RAYA_LINKS, all_nodes * RAYA_LINKS),
+                              now_ms,
+                              computed_ms,
+                              end_ms};
+        add_superstep(trace, torus, step);
+        for (const TracedPe& n : traced) add_node(trace, n.pe, step);
+        now_ms = end_ms;
+    }
     trace.metadata()["machine"] = {
         {"name", "torus"},
-        {"nodes", raya_nodes(torus_)},
-        {"packets_recorded", packets_.size()},
-        {"flows", flows},
+        {"nodes", all_nodes},
         {"note",
          "modelled time, from time 0 of the trace; every superstep waits for its busiest node and link. The modelled "
-         "time is independent of the measured times above. Flows show packets of every 16th superstep; a flow ends at "
-         "the earliest superstep in which its packet can arrive"}};
+         "time is independent of the measured times above"}};
 }
 
 }  // namespace raya

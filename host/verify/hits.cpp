@@ -19,6 +19,20 @@
 namespace raya {
 namespace {
 
+// Options with which kernels/checks/hits.cl is built.
+struct HitBuild {
+    NumberFormat format;
+    std::uint32_t lanes = 1;
+    bool filter = false;  // use the sphere filter
+    bool grid = true;     // false: leave out the grid traversal, which takes most of the build time
+    KernelSources sources{};
+
+    // Returns text such as "e6m15 filtered, 16 lanes".
+    std::string name() const {
+        return fmt::format("{}{}, {}", format_name(format), filter ? " filtered" : "", counted(lanes, "lane"));
+    }
+};
+
 CheckRunner hit_runner(Session& session, const HitBuild& build) {
     KernelOptions options;
     options.lanes = build.lanes;
@@ -227,10 +241,10 @@ Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector
     return {runner.read(objects), runner.read(distances)};
 }
 
-std::string HitBuild::name() const {
-    return fmt::format("{}{}, {}", format_name(format), filter ? " filtered" : "", counted(lanes, "lane"));
-}
+namespace {
 
+// Adds the checks of one build: known hits; the hits of random rays with and without grid, and with and without
+// filters, if the build has them.
 void verify_hits(Verification& v, const HitBuild& build) {
     const auto check = [&](const std::string& subject, const std::function<Verdict(CheckRunner&, Session&)>& body) {
         v.check("geometry", fmt::format("{}, {}", subject, build.name()), [&](Session& session) {
@@ -258,6 +272,8 @@ void verify_hits(Verification& v, const HitBuild& build) {
                                    "filters", {"polygons", "spheres"}, rays_per_scene, true);
         });
 }
+
+}  // namespace
 
 void verify_geometry(Verification& v) {
     for (const std::uint32_t lanes : v.lanes())

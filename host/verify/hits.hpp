@@ -40,22 +40,4 @@ struct Hits {
 /// of rays must be a multiple of kMaxLanes.
 Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector<std::uint32_t>& job, const Rays& rays);
 
-/// Options with which kernels/checks/hits.cl is built.
-struct HitBuild {
-    NumberFormat format;
-    std::uint32_t lanes = 1;
-    bool filter = false;  // use the sphere filter
-    bool grid = true;     // false: leave out the grid traversal, which takes most of the build time
-    KernelSources sources{};
-
-    /// Returns text such as "e6m15 filtered, 16 lanes".
-    std::string name() const;
-};
-
-class Verification;
-
-/// Adds the checks of one build to layer "geometry": known hits; the hits of random rays with and without grid, and
-/// with and without filters, if the build has them.
-void verify_hits(Verification& verification, const HitBuild& build);
-
 }  // namespace raya

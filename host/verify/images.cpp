@@ -255,10 +255,7 @@ Rendered render_on_ring(const KernelChoice& kernels, Session& session, const Ren
 
 Rendered render_on_torus(const KernelChoice& kernels, Session& session, const Rendering& r) {
     const ReferenceImage& image = reference_image_named(r.image);
-    TorusSettings s;
-    s.machine = machine_named("torus");
-    s.width = image.size.width;
-    s.height = image.size.height;
+    TorusSettings s = default_torus(image.size);
     s.torus = make_torus(r.nodes, r.links);
     s.links = r.links;
     s.voxels = r.voxels;

@@ -141,8 +141,8 @@ struct Rounds {
     }
 };
 
-}  // namespace
-
+// Checks transfers of blocks over the bus; a block has kRows rows of `words` words. For each of five distances d, PE i
+// receives the block of PE (i + d) mod `pes`. Then each PE in turn broadcasts its block to all PEs.
 Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Bus bus(session, counted, Distribution(static_cast<std::uint32_t>(pes)));
@@ -165,6 +165,7 @@ Verdict check_transfers(Session& session, std::size_t pes, std::size_t words) {
                               kRows * words));
 }
 
+// Checks 12 rotations (circular shifts over the ring) of `pes` blocks, in both directions.
 Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
     Communication counted;
     Ring ring(session, counted, Distribution(static_cast<std::uint32_t>(pes)), kRows, words);
@@ -180,8 +181,6 @@ Verdict check_rotations(Session& session, std::size_t pes, std::size_t words) {
         return *verdict;
     return passed(fmt::format("{} rotations of {} blocks of {} words", rounds.rounds, pes, kRows * words));
 }
-
-namespace {
 
 // Fills every `stride`-th outbox with packets, exchanges packets over all links once, and checks all inboxes and the
 // flags that mark the outboxes whose packets have been transferred.

@@ -21,11 +21,6 @@ bool is_nan(std::uint32_t bits) { return std::isnan(std::bit_cast<float>(bits));
 bool is_zero(std::uint32_t bits) { return bits << 1 == 0; }
 bool agrees(std::uint32_t got, std::uint32_t expected) { return got == expected || (is_nan(got) && is_nan(expected)); }
 
-std::array<std::uint32_t, 3> operands_of(const NumberRows& rows, std::size_t row) {
-    return {std::bit_cast<std::uint32_t>(rows.a[row]), std::bit_cast<std::uint32_t>(rows.b[row]),
-            std::bit_cast<std::uint32_t>(rows.c[row])};
-}
-
 std::string number_text(std::uint32_t bits) {
     return fmt::format("0x{:08x} = {:.9g}", bits, std::bit_cast<float>(bits));
 }
@@ -38,8 +33,10 @@ std::string operands_text(std::size_t operation, const std::array<std::uint32_t,
     return text;
 }
 
-Fault fault_of(const NumberFormat& format, std::size_t operation, const std::array<std::uint32_t, 3>& operands,
+Fault fault_of(const NumberFormat& format, std::size_t operation, const NumberRows& rows, std::size_t row,
                std::uint32_t expected, std::uint32_t got) {
+    const std::array operands = {std::bit_cast<std::uint32_t>(rows.a[row]), std::bit_cast<std::uint32_t>(rows.b[row]),
+                                 std::bit_cast<std::uint32_t>(rows.c[row])};
     return {.where = fmt::format("{}({}) in {}", kNumberOperations[operation].name, operands_text(operation, operands),
                                  format_name(format)),
             .expected = number_text(expected),
@@ -123,7 +120,7 @@ Verdict check_numbers(Session& session, const NumberBuild& build, const NumberRo
             flushed += flushes && !keeps;
             known.set(answers.operation * rows.count() + row, flushes ? got : correct, is_nan(correct));
             if (keeps || flushes) continue;
-            if (wrong++ == 0) fault = fault_of(build.format, answers.operation, operands_of(rows, row), correct, got);
+            if (wrong++ == 0) fault = fault_of(build.format, answers.operation, rows, row, correct, got);
             ++wrong_of_operation;
         }
         if (wrong_of_operation)
@@ -233,15 +230,6 @@ void verify_numbers(Verification& v) {
     if (v.full())
         v.check("number", "chains of bench, fp32, " + counted(options.lanes, "lane"),
                 [&](Session& session) { return check_chains(session, options, v.settings().sources); });
-}
-
-void verify_number_format(Verification& v, const NumberFormat& format, std::uint32_t lanes) {
-    const auto& all = known_answers();
-    const auto found = std::ranges::find(all, format, &FormatAnswers::format);
-    if (found != all.end()) return verify_format(v, *found, lanes, true);
-    const NumberBuild build{.format = format, .lanes = lanes};
-    v.check("number", build.name(),
-            [&](Session&) { return skipped(fmt::format("there are no stored results in {}", format_name(format))); });
 }
 
 std::vector<FormatAnswers> parse_known_answers(const std::string& text) {

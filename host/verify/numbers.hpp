@@ -124,10 +124,4 @@ std::vector<FormatAnswers> parse_known_answers(const std::string& text);
 /// Returns the answers of known_answers.csv, which is embedded in the program.
 const std::vector<FormatAnswers>& known_answers();
 
-class Verification;
-
-/// Adds a check of all operations in one format to layer "number". If known_answers.csv does not have the format, the
-/// check is skipped.
-void verify_number_format(Verification& verification, const NumberFormat& format, std::uint32_t lanes);
-
 }  // namespace raya

@@ -15,13 +15,6 @@
 namespace raya {
 namespace {
 
-// Parses a text such as "3f8/3f8/0".
-std::vector<float> colour_of(const std::string& text) {
-    std::vector<float> rgb;
-    for (const std::string& digits : split(text, '/')) rgb.push_back(std::bit_cast<float>(word_of(digits)));
-    return rgb;
-}
-
 void read_row(const std::string& line, const Image& previous, Image& image) {
     std::istringstream in(line);
     for (std::string pixel; in >> pixel;) {
@@ -32,7 +25,7 @@ void read_row(const std::string& line, const Image& previous, Image& image) {
         else if (pixel == "=" && at + 3 <= previous.rgb.size())
             rgb = {previous.rgb[at], previous.rgb[at + 1], previous.rgb[at + 2]};
         else
-            rgb = colour_of(pixel);
+            for (const std::string& digits : split(pixel, '/')) rgb.push_back(std::bit_cast<float>(word_of(digits)));
         image.rgb.insert(image.rgb.end(), rgb.begin(), rgb.end());
     }
     image.height += 1;
@@ -89,16 +82,11 @@ Scene scene_of(const ReferenceImage& image) {
     return parse_nff(embedded_files().at(file), file);
 }
 
-RingSettings simplest_settings(const ImageSize& size) {
+RingSettings reference_settings(const ReferenceImage& image) {
     RingSettings settings;
     settings.machine = machine_named("grande");
-    settings.mapping = make_mapping(column_mapping(), size, 1);
+    settings.mapping = make_mapping(column_mapping(), image.size, 1);
     settings.kernels = {.lanes = 1, .group_size = 1, .filter = false};
-    return settings;
-}
-
-RingSettings reference_settings(const ReferenceImage& image) {
-    RingSettings settings = simplest_settings(image.size);
     settings.bounces = kReferenceBounces;
     settings.format = parse_format(image.format);
     settings.sampling = image.sampling;

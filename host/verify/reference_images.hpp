@@ -38,11 +38,8 @@ const std::vector<ReferenceImage>& reference_images();
 const ReferenceImage& reference_image_named(const std::string& name);
 Scene scene_of(const ReferenceImage& image);
 
-/// Returns the settings of the simplest kernels: a ring with one PE, one lane, work-groups of one work-item, no
-/// accelerator, no sphere filter or polygon filter.
-RingSettings simplest_settings(const ImageSize& size);
-
-/// Returns the settings with which reference_images.txt was generated: simplest_settings() for the image.
+/// Returns the settings with which reference_images.txt was generated, those of the simplest kernels: a ring with one
+/// PE, one lane, work-groups of one work-item, no accelerator, no sphere filter or polygon filter.
 RingSettings reference_settings(const ReferenceImage& image);
 
 /// The stored hash, pixels and counts of a reference image.

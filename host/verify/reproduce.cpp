@@ -23,12 +23,13 @@
 namespace raya {
 namespace {
 
+namespace fs = std::filesystem;
+
 // How to run a check in a child process.
 struct CheckRun {
-    std::string name;                                  // for people: "-cl-opt-disable"
-    std::string selector;                              // of the device, as in choose_device()
-    VerifySettings settings;                           // select one check
-    std::map<std::string, std::string> environment{};  // variables of the child process
+    std::string name;         // for people: "-cl-opt-disable"
+    std::string selector;     // of the device, as in choose_device()
+    VerifySettings settings;  // select one check
 };
 
 // A build or a launch of a run; see Capture (host/cl/capture.hpp).
@@ -61,7 +62,6 @@ void take_line(Observation& seen, const Json& line) {
 Observation observe(const CheckRun& v, std::size_t step = 0, const std::filesystem::path& folder = {},
                     bool ends_at_step = false) {
     Json request = settings_json(v.settings, v.selector, 0);
-    request["environment"] = v.environment;
     request["capture"] = {{"step", step}, {"folder", folder.string()}};
     Observation seen;
     const Clock::time_point start = Clock::now();
@@ -76,84 +76,15 @@ Observation observe(const CheckRun& v, std::size_t step = 0, const std::filesyst
     return seen;
 }
 
-constexpr const char* kBuildOptions = "RAYA_BUILD_OPTIONS";
-
-// Repeats a failing check with changes of the environment: variables and their values.
-class Bisector {
-  public:
-    using Changes = std::vector<std::pair<std::string, std::string>>;
-
-    Bisector(CheckRun failing, std::function<void(const std::string&)> print)
-        : failing_(std::move(failing)), print_(std::move(print)) {}
-
-    /// Prints the smallest part of `changes` with which the check passes.
-    void run(const Changes& changes) {
-        const std::string& name = failing_.settings.only;
-        if (!passes(changes)) return print_(name + ": fails also with all of these changes");
-        print_(fmt::format("{}: passes with {}", name, text_of(minimal({}, changes, false))));
-    }
-
-  private:
-    static std::string text_of(const Changes& changes) {
-        std::string text;
-        for (const auto& [variable, value] : changes)
-            text += fmt::format("{}{}={}", text.empty() ? "" : ", ", variable, value);
-        return text;
-    }
-
-    static Changes together(Changes a, const Changes& b) {
-        a.insert(a.end(), b.begin(), b.end());
-        return a;
-    }
-
-    // Returns a smallest part of `candidates` that, together with `given`, makes the check pass. `has_new`: `given` has
-    // changes with which the check has not been tried.
-    Changes minimal(const Changes& given, const Changes& candidates, bool has_new) {
-        if (has_new && passes(given)) return {};
-        if (candidates.size() == 1) return candidates;
-        const auto middle = candidates.begin() + static_cast<std::ptrdiff_t>(candidates.size() / 2);
-        const Changes first(candidates.begin(), middle), second(middle, candidates.end());
-        const Changes of_second = minimal(together(given, first), second, !first.empty());
-        const Changes of_first = minimal(together(given, of_second), first, !of_second.empty());
-        return together(of_first, of_second);
-    }
-
-    bool passes(const Changes& changes) {
-        const TemporaryFolder cache("raya-bisect");
-        CheckRun variant = failing_;
-        variant.environment = {{"POCL_CACHE_DIR", cache.path().string()}, {kBuildOptions, user_build_options()}};
-        for (const auto& [variable, value] : changes) {
-            std::string& all = variant.environment[variable];
-            all += (all.empty() ? "" : " ") + value;
-        }
-        const bool passed = observe(variant).passed;
-        print_(fmt::format("{}  {}", passed ? "PASS" : "FAIL", text_of(changes)));
-        return passed;
-    }
-
-    CheckRun failing_;
-    std::function<void(const std::string&)> print_;
-};
-
-}  // namespace
-
-void bisect(const std::string& selector, const DeviceChecks& device, const VerifySettings& settings,
-            const std::string& full_name, const std::function<void(const std::string& line)>& print) {
-    Bisector::Changes changes;
-    for (const char* const option : {"-cl-opt-disable", kNoBuiltins, "-DRAYA_EXACT_DIVIDE=0", "-DRAYA_EXACT_FMA=0"})
-        changes.emplace_back(kBuildOptions, option);
-    if (device.platform == "Portable Computing Language")
-        for (const auto& change : Bisector::Changes{{"POCL_WORK_GROUP_METHOD", "loops"},
-                                                    {"POCL_MAX_PTHREAD_COUNT", "1"},
-                                                    {"POCL_CPU_MAX_CU_COUNT", "1"},
-                                                    {"POCL_WORK_GROUP_SPECIALIZATION", "0"}})
-            changes.push_back(change);
-    Bisector({"", selector, settings_of_one(settings, full_name)}, print).run(changes);
+// Returns the settings to run only the check of this name, "LAYER NAME", once.
+VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name) {
+    settings.only = full_name;
+    settings.is_whole_name = true;
+    settings.skip.clear();
+    settings.shard = settings.shards = settings.repeat = 1;
+    settings.done = 0;
+    return settings;
 }
-
-namespace {
-
-namespace fs = std::filesystem;
 
 // Moves options "-DNAME=VALUE" from `options` to the returned lines "#define NAME VALUE".
 std::string take_definitions(std::string& options) {
@@ -213,7 +144,7 @@ std::vector<CheckRun> references(const CheckRun& failing) {
     }
     all.push_back(failing);
     all.back().name = "-cl-opt-disable";
-    all.back().environment[kBuildOptions] = user_build_options() + " -cl-opt-disable";
+    all.back().settings.sources.more_options.emplace_back(all.back().name);
     for (std::size_t i = 0; i < all_devices().size(); ++i) {
         all.push_back(failing);
         all.back().selector = std::to_string(i);

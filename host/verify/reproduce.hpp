@@ -1,22 +1,12 @@
-// Search for the cause of a failed check: the setting that makes it pass, and a self-contained case: one kernel with
-// its inputs and correct outputs, and a C program that runs it (host/verify/case/).
+// A self-contained case of a failed check: one kernel with its inputs and correct outputs, and a C program that runs it
+// (host/verify/case/).
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <string>
 
 #include "host/verify/supervisor.hpp"
 
 namespace raya {
-
-/// Searches for a smallest set of changes with which the failed check `full_name` passes: build options, macros of the
-/// kernels, and for PoCL its environment variables. Runs the check a few times for each change of the result, by the
-/// QuickXplain algorithm (Junker 2004), which assumes that more changes never make a passing check fail. Calls `print`
-/// with a line after each run, such as "PASS  RAYA_BUILD_OPTIONS=-cl-opt-disable", and at the end with the result. Each
-/// run has an empty cache of PoCL, because PoCL's variables are not part of the cache's keys. `selector` selects the
-/// device, as in choose_device().
-void bisect(const std::string& selector, const DeviceChecks& device, const VerifySettings& settings,
-            const std::string& full_name, const std::function<void(const std::string& line)>& print);
 
 /// Writes a case of the failed check `check` into the folder `folder`, which must not exist or be empty. `selector`
 /// selects the device, as in choose_device().

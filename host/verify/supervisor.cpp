@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <optional>
 
 #include "host/base/child_process.hpp"
@@ -20,16 +19,14 @@ template <class Settings, class Visit>
 void for_each_setting(Settings& s, const Visit& visit) {
     visit("depth", s.depth);
     visit("kernel_dir", s.sources.folder);
+    visit("build_options", s.sources.more_options);
     visit("only", s.only);
     visit("is_whole_name", s.is_whole_name);
     visit("skip", s.skip);
     visit("shard", s.shard);
     visit("shards", s.shards);
     visit("repeat", s.repeat);
-    visit("soak_s", s.soak_s);
-    visit("seed", s.seed);
     visit("lanes", s.lanes);
-    visit("as", s.as);
     visit("done", s.done);
 }
 
@@ -89,10 +86,7 @@ class Supervision {
     bool run_remaining(const std::string& selector, std::size_t index) {
         const std::size_t done_before = settings_.done;
         ended_ = false;
-        VerifySettings remaining = settings_;
-        if (settings_.soak_s > 0)
-            remaining.soak_s = std::max(1e-3, settings_.soak_s - seconds_since(supervision_start_));
-        const auto status = run_child(kVerifyTask, settings_json(remaining, selector, index), [&](const Json& line) {
+        const auto status = run_child(kVerifyTask, settings_json(settings_, selector, index), [&](const Json& line) {
             if (!line.is_null())
                 take(line);
             else if (sink_.running && running_)
@@ -172,7 +166,6 @@ class Supervision {
     DeviceChecks all_;
     std::size_t devices_ = 0;  // number of selected devices
     std::optional<Check> running_;
-    Clock::time_point supervision_start_ = Clock::now();
     Clock::time_point start_;  // of the running check
     bool ended_ = false;       // the process has written {"ended": true}
 };
@@ -186,12 +179,9 @@ DeviceChecks supervise(const std::string& selector, std::size_t index, const Ver
     return supervision.take_checks();
 }
 
-void run_checks(int pipe, const Json& request, const std::function<RenderCase(const std::string&)>& render_case) {
-    if (const Json* environment = find_member(request, "environment"))  // before the first use of OpenCL
-        for (const auto& [name, value] : environment->items()) ::setenv(name.c_str(), json_text(value).c_str(), 1);
+void run_checks(int pipe, const Json& request) {
     VerifySettings settings;
     for_each_setting(settings, [&](const char* name, auto& value) { request.at(name).get_to(value); });
-    if (!settings.as.empty()) settings.render = std::make_shared<RenderCase>(render_case(settings.as));
     const std::string& selector = json_text(request.at("device"));
     const std::size_t index = json_integer(request.at("index"));
     const SelectedDevices selected = selected_devices(selector, index);
@@ -215,10 +205,7 @@ void run_checks(int pipe, const Json& request, const std::function<RenderCase(co
                              [&](const Check& check) {
                                  send_line(pipe, {{"check", to_json(check)}});
                              }};
-    if (settings.soak_s > 0)
-        verify_at_random(device, settings, sink);
-    else
-        verify(device, settings, sink);
+    verify(device, settings, sink);
     send_line(pipe, {{"ended", true}});
 }
 

@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "host/verify/render_case.hpp"
 #include "host/verify/verify.hpp"
 
 namespace raya {
@@ -34,19 +33,17 @@ struct SupervisorSink {
 /// text, choose_device(selector, index). If the child process ends early, or a check takes longer than
 /// settings.timeout_s, the running check counts as failed, and the next checks run in a new process. Throws the
 /// UserError or DeviceError that the child process reports, and DeviceError if the driver ends the process before the
-/// first check. Several threads may call it at once.
+/// first check.
 DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink);
 
 /// Returns the request of the child process's task: settings and device, see supervise(). With a member "capture",
-/// {"step": N, "folder": TEXT}, the child also captures step N and writes the lines of Capture (host/cl/capture.hpp); a
-/// member "environment", {VARIABLE: VALUE}, sets variables of the child.
+/// {"step": N, "folder": TEXT}, the child also captures step N and writes the lines of Capture (host/cl/capture.hpp).
 Json settings_json(const VerifySettings& settings, const std::string& selector, std::size_t index);
 
 /// Name and function of the child process's task (host/base/child_process.hpp). run_checks() writes the lines to the
 /// file descriptor `pipe`, except the line "error": run_checks() throws the exception, and its caller writes the line.
-/// `render_case` parses VerifySettings::as.
 inline constexpr const char* kVerifyTask = "verify";
-void run_checks(int pipe, const Json& request, const std::function<RenderCase(const std::string&)>& render_case);
+void run_checks(int pipe, const Json& request);
 
 }  // namespace raya

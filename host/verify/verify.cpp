@@ -14,8 +14,7 @@
 #include "host/cl/kernel_source.hpp"
 #include "host/cl/program.hpp"
 #include "host/error.hpp"
-#include "host/scene/split_mix.hpp"
-#include "host/verify/render_case.hpp"
+#include "host/version.hpp"
 
 namespace raya {
 namespace {
@@ -59,7 +58,6 @@ std::string indented(const std::string& label, const std::string& text) {
 }
 
 void visit_layers(Verification& verification) {
-    if (const auto& render = verification.settings().render) return verify_render_case(verification, *render);
     verify_numbers(verification);
     verify_geometry(verification);
     verify_machines(verification);
@@ -203,37 +201,6 @@ std::vector<Check> verify(const cl::Device& device, const VerifySettings& settin
     return verification.take_checks();
 }
 
-VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name) {
-    settings.only = full_name;
-    settings.is_whole_name = true;
-    settings.skip.clear();
-    settings.shard = settings.shards = settings.repeat = 1;
-    settings.done = 0;
-    settings.soak_s = 0;
-    return settings;
-}
-
-void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
-    std::vector<VerifySettings> choices;
-    std::vector<std::uint32_t> lanes_choices = {1, 4, 8, 16};
-    if (settings.lanes != 0 || settings.render) lanes_choices = {settings.lanes};
-    for (const std::uint32_t lanes : lanes_choices) {
-        VerifySettings all = settings;
-        all.lanes = lanes;
-        for (const std::string& name : check_names(device, all)) choices.push_back(settings_of_one(all, name));
-    }
-    SplitMix random(settings.seed);
-    const Clock::time_point start = Clock::now();
-    for (std::size_t n = 0; seconds_since(start) < settings.soak_s; ++n) {
-        const VerifySettings& one = choices[random.next() % choices.size()];
-        if (n < settings.done) continue;
-        verify(device, one, {.started = sink.started, .finished = [&](Check check) {
-                                 if (one.lanes != 0) check.verdict.result += fmt::format(", --lanes {}", one.lanes);
-                                 sink.finished(check);
-                             }});
-    }
-}
-
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings) {
     Verification verification(device, settings, {}, false);
     visit_layers(verification);
@@ -256,6 +223,13 @@ void members_of(Members& m, DeviceChecks& device) {
     m("passed_unexpectedly", count(Outcome::kUnexpectedPass), "Number of passed checks that --expect lists.");
     m("seconds", device.seconds, "Sum of the times of all checks, s.");
     m("checks", device.checks, "Checks in the order of execution.");
+}
+
+void members_of(Members& m, const VerifyReport& report) {
+    m("kind", kVerifyReportKind, "Identifies the report: `raya verify`.");
+    m("program", name_and_version(), "raya and its version.");
+    m("depth", depth_name(report.depth), "Extent of the checks: `brief`, `quick` or `full`.");
+    m("devices", report.devices, "Checked devices.");
 }
 
 namespace {

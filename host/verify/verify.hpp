@@ -3,7 +3,6 @@
 #pragma once
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -63,8 +62,6 @@ struct ExpectedFailure {
 /// Changes the outcome of a check that is expected to fail: a failure becomes kExpectedFail, a pass kUnexpectedPass.
 void apply_expectations(Check& check, const std::vector<ExpectedFailure>& expected_failures);
 
-struct RenderCase;
-
 struct VerifySettings {
     Depth depth = Depth::kQuick;
     KernelSources sources{};
@@ -73,15 +70,11 @@ struct VerifySettings {
     std::uint32_t shard = 1, shards = 1;  // of the selected checks, run those with number modulo `shards` = shard - 1
     std::uint32_t repeat = 1;             // number of runs of each check; it fails if one of them fails
     double timeout_s = 0;                 // time after which supervise() ends a check; 0: never
-    double soak_s = 0;       // if not 0: verify_at_random() runs for so long; otherwise verify() runs each check once
-    std::uint64_t seed = 1;  // of verify_at_random()
-    bool is_whole_name = false;                        // `only` is a whole "LAYER NAME"
+    bool is_whole_name = false;           // `only` is a whole "LAYER NAME"
     std::vector<ExpectedFailure> expected_failures{};  // supervise() changes the outcome of checks that match
     std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
                               // Depth::kFull, all four numbers
-    std::string as{};         // if not empty: check only this render (docs/verify.md)
-    std::shared_ptr<const RenderCase> render{};  // `as`, parsed
-    std::size_t done = 0;  // number of checks, from the first on, that are already done; verify() skips them
+    std::size_t done = 0;     // number of checks, from the first on, that are already done; verify() skips them
 };
 
 /// Returns remedies for a failed check, the most promising first.
@@ -97,13 +90,6 @@ struct CheckSink {
 /// cause. Throws DeviceError if the device's properties cannot be read, std::logic_error if a patch of the kernel
 /// sources does not apply.
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink = {});
-
-/// Runs random checks with random numbers of lanes for settings.soak_s seconds. The same settings and seed give the
-/// same sequence of checks; the first settings.done checks of the sequence are skipped. The results end with the lanes.
-void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink);
-
-/// Returns the settings to run only the check of this name, "LAYER NAME", once.
-VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name);
 
 /// Returns "LAYER NAME" of every check that verify() would run, in the same order.
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings);
@@ -175,6 +161,13 @@ DeviceChecks device_checks_of(const DeviceInfo& info);
 
 /// Lists the members of a device, for to_json(), schema_of() and from_json().
 void members_of(Members& m, DeviceChecks& device);
+
+/// The report of `raya verify --report`.
+struct VerifyReport {
+    Depth depth = Depth::kQuick;
+    std::vector<DeviceChecks> devices;
+};
+void members_of(Members& m, const VerifyReport& report);
 
 // Files for continuous integration (CI): results of checks as JUnit XML, and the list of expected failures.
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
-#include <set>
 
 #include "host/base/whole_file.hpp"
 #include "tests/cli/device_with_fault.hpp"
@@ -165,34 +164,13 @@ TEST_CASE("verify: no check builds more than six programs, for which the default
     CHECK(std::ranges::count_if(lines, [](const std::string& line) { return contains(line, "\tbuild\t"); }) == 6);
 }
 
-TEST_CASE("verify --soak: finds a copy that is lost once in many, on all devices at once", "[cli][verify]") {
-    const ScratchFolder scratch;
-    const Arguments soak = {
-        "--brief", "--only",   "machine ring: rotations", "--lanes", "4", "--soak", "3s", "--seed", "7", "--device",
-        "all",     "--report", scratch / "v.json"};
-    RunOptions options = device_with_fault("clEnqueueCopyBuffer 1000000 lost");
-    options.variables.emplace_back("POCL_DEVICES", "pthread basic");
-    const auto names_on = [](const Document& device) {
-        std::vector<std::string> names;
-        for (const Document& check : device["checks"]) names.push_back(check["name"]);
-        return names;
-    };
-    const RunOutcome right = verify(soak, options);
-    INFO(right.describe());
-    CHECK(right.code == 0);
-    const Document devices = json_of(scratch / "v.json")["devices"];
-    REQUIRE(devices.size() == 2);
-    const std::vector<std::string> first = names_on(devices[0]), second = names_on(devices[1]);
-    REQUIRE((!first.empty() && !second.empty()));
-    const auto [name, other_name] = std::ranges::mismatch(first, second);  // the same seed
-    CHECK((name == first.end() || other_name == second.end()));
-    options.variables[1].second = "clEnqueueCopyBuffer 40 lost";
-    const RunOutcome wrong = verify(soak, options);
-    INFO(wrong.describe());
-    CHECK(wrong.code == 4);
-    CHECK(has_line(wrong.out, ".*after [0-9.]+ s: FAIL  machine .*"));
-    CHECK(
-        has_line(wrong.out, ".*machine ring: rotations of [0-9]+ PEs: failed [0-9]+ of [0-9]+ times?, first after .*"));
+TEST_CASE("verify --repeat: finds a copy that is lost once in many", "[cli][verify]") {
+    const Arguments repeat = {"--only", "machine ring: rotations of 7", "--repeat", "9"};
+    CHECK(verify(repeat).code == 0);
+    const RunOutcome run = verify(repeat, device_with_fault("clEnqueueCopyBuffer 40 lost"));
+    INFO(run.describe());
+    CHECK(run.code == 4);
+    CHECK(has_line(run.out, "FAIL  machine .* \\(in run [2-9] of 9\\)"));
 }
 
 /// Returns true if the command line of any running process contains this text.
@@ -255,109 +233,6 @@ TEST_CASE("progress: slow commands name their step on a terminal within two seco
     CHECK(text_on_terminal(render, "clCreateContext 1 slow") == "");
     const RunOutcome run = run_raya(one_check, device_with_fault("clFinish 1 slow"));
     CHECK((run.code == 0 && run.err.empty()));
-}
-
-// Of verify --as: a light is lost with four lanes and a BVH.
-const SourcePatch kLostLight{"shading/shade.clh", "const uint light_count = ((job_words)scene)->lights;",
-                             "const uint light_count = ((job_words)scene)->lights - (RAYA_ACCEL == RAYA_ACCEL_BVH && "
-                             "RAYA_LANES == 4);"};
-
-TEST_CASE("verify --as: runs the checks of a render, and finds a fault only if the render meets it", "[cli][verify]") {
-    const ScratchFolder scratch;
-    const std::string lost_light = " --kernel-dir " + write_kernels(scratch / "light", {kLostLight}),
-                      wrong_packet =
-                          " --kernel-dir " +
-                          write_kernels(scratch / "packet",
-                                        {{"bvh/packet.clh", "return entered & all;", "return entered & all & ~1u;"}}),
-                      rounding = " --kernel-dir " + write_kernels(scratch / "rounding", {kRoundingFault});
-    struct Row {
-        std::string scene, options;
-        Arguments more;
-        int code;
-        Arguments parts;
-        std::string absent = "machine ";
-    };
-    const std::vector<Row> rows = {
-        {"polygons",
-         "--lanes 4 --format fp32" + lost_light,
-         {},
-         0,
-         {"PASS  number    fp32, 4 lanes", "PASS  geometry  known hits of cones, fp32, 4 lanes",
-          "PASS  image     polygons fp32, as given", "PASS  image     glass fp32 filter, as given",
-          "PASS  image     polygons.nff 32x32, as given and as simple as possible"}},
-        {"polygons",
-         "--lanes 4 --format fp32 --accel bvh --size 40x20" + lost_light,
-         {"--only", "image polygons"},
-         4,
-         {"FAIL  image     polygons fp32, as given", "-DRAYA_ACCEL=2",
-          "FAIL  image     polygons.nff 32x16, as given and as simple as possible"}},
-        {"polygons",
-         "--machine grande --accel bvh --lanes 4" + wrong_packet,
-         {"--only", "image polygons"},
-         4,
-         {"FAIL  image     polygons fp32, as given", "-DRAYA_RAY_PACKETS=1"}},
-        {"polygons",
-         "--machine torus --nodes 2x2x1 --lanes 4",
-         {"--only", "image polygons"},
-         0,
-         {"PASS  image     polygons fp32, as given", "PASS  image     polygons.nff 32x32"},
-         "filter"},
-        {"mirrors",
-         "--size 40 --offset 35 --lanes 4",
-         {"--only", "image mirrors"},
-         0,
-         {"SKIP  image     mirrors spa22, as given", "--offset 35: must be 0..19",
-          "PASS  image     mirrors.nff 40x40"}},
-        {"mirrors", "--lanes 4" + rounding, {"--only", "number"}, 4, {"FAIL  number    e6m15, 4 lanes"}},
-        {"mirrors", "--lanes 4", {"--only", "number", "--soak", "1s"}, 0, {}},
-        // Without reference images in the format: compares with the simplest render.
-        {"polygons",
-         "--lanes 4 --format e7m11 --accel bvh" + lost_light,
-         {},
-         4,
-         {"SKIP  number    e7m11, 4 lanes", "there are no stored results in e7m11",
-          "there is no reference image in e7m11",
-          "FAIL  image     polygons.nff 32x32, as given and as simple as possible"}},
-        // A report needs all counts, so that there are no packets.
-        {"polygons",
-         "--machine grande --accel bvh --lanes 16 --report r.json" + wrong_packet,
-         {"--only", "image polygons"},
-         0,
-         {}}};
-    for (const Row& row : quick_of(7, rows)) {
-        Arguments arguments = {"--as", "raya render '" + scene_file(row.scene) + "' -o x.png " + row.options};
-        arguments.insert(arguments.end(), row.more.begin(), row.more.end());
-        const RunOutcome run = verify(arguments);
-        INFO(run.describe());
-        CHECK(run.code == row.code);
-        for (const std::string& part : row.parts) CHECK_THAT(run.out, Catch::Contains(part));
-        CHECK_THAT(run.out, !Catch::Contains(" " + row.absent));
-    }
-}
-
-TEST_CASE("verify --as: builds the same program as the render", "[cli][verify]") {
-    const ScratchFolder scratch;
-    const std::string options = " --lanes 4 --group 3 --bounces 4 --format fp32 --accel grid --size 64";
-    const auto trace_builds = [&](const Arguments& arguments) {
-        const std::string log = scratch / "log";
-        const RunOutcome run = run_raya(arguments, {.variables = {{"RAYA_KERNEL_LOG", log}}});
-        INFO(run.describe());
-        CHECK(run.code == 0);
-        std::set<std::string> builds;
-        for (const std::string& line : lines_of(file_contents(log)))
-            if (contains(line, "\tbuild\tring/trace.cl")) builds.insert(line.substr(line.find('\t')));
-        fs::remove(log);
-        return builds;
-    };
-    Arguments render = {"render", scene_file("mirrors"), "-o", scratch / "x.pfm"};
-    const Arguments more = tokens_of(options);
-    render.insert(render.end(), more.begin(), more.end());
-    const std::set<std::string> of_render = trace_builds(render);
-    REQUIRE(of_render.size() == 1);
-    const auto of_verify = trace_builds(
-        {"verify", "--as", "render '" + scene_file("mirrors") + "'" + options, "--only", "image mirrors.nff"});
-    CHECK(of_verify.size() == 2);  // the render's program and the simplest one
-    CHECK(of_verify.contains(*of_render.begin()));
 }
 
 }  // namespace

@@ -23,8 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
 
-const ImageAttributes kAttributes{{"scene", "centre.nff"}, {"mapping", "cyclic"}, {"offset", "16"}, {"format", "fp32"}};
-
 std::string contents(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -45,7 +43,7 @@ TEST_CASE("EXR, PFM: preserve every bit", "[image_io]") {
     const Image image = special_image();
     for (const char* name : {"a.exr", "a.pfm", "A.EXR"}) {
         CAPTURE(name);
-        write_image(folder / name, image, kAttributes);
+        write_image(folder / name, image);
         const Image read = read_image(folder / name);
         CHECK(read.width == 5);
         CHECK(read.height == 3);
@@ -58,7 +56,7 @@ TEST_CASE("EXR, PFM: preserve grey images; EXR has a float channel Y", "[image_i
     const GreyImage image{3, 2, {0, 1.5f, 1e9f, 16777217.0f, -4, 0.1f}};
     for (const char* name : {"cost.exr", "cost.pfm"}) {
         CAPTURE(name);
-        write_image(folder / name, image, kAttributes);
+        write_image(folder / name, image);
         const GreyImage read = read_grey_image(folder / name);
         CHECK(read.width == 3);
         CHECK(read.height == 2);
@@ -72,19 +70,19 @@ TEST_CASE("EXR, PFM: preserve grey images; EXR has a float channel Y", "[image_i
 
 TEST_CASE("PFM: little-endian floats, bottom row first", "[image_io]") {
     const ScratchFolder folder;
-    write_image(folder / "grey.pfm", GreyImage{1, 2, {1.0f, -2.0f}}, {});  // the upper pixel is 1, the lower -2
+    write_image(folder / "grey.pfm", GreyImage{1, 2, {1.0f, -2.0f}});  // the upper pixel is 1, the lower -2
     CHECK(contents(folder / "grey.pfm") == std::string("Pf\n1 2\n-1.0\n\x00\x00\x00\xc0\x00\x00\x80\x3f", 20));
-    write_image(folder / "rgb.pfm", Image{2, 1, {1, 0, 0, 0, 0, 1}}, {});
+    write_image(folder / "rgb.pfm", Image{2, 1, {1, 0, 0, 0, 0, 1}});
     CHECK(contents(folder / "rgb.pfm").substr(0, 16) == std::string("PF\n2 1\n-1.0\n\x00\x00\x80\x3f", 16));
     CHECK(contents(folder / "rgb.pfm").size() == 12 + 24);
 }
 
 TEST_CASE("PPM: stores the same codes as PNG, top row first", "[image_io]") {
     const ScratchFolder folder;
-    write_image(folder / "two.ppm", Image{2, 2, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0.5f}}, {});
+    write_image(folder / "two.ppm", Image{2, 2, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0.5f}});
     CHECK(contents(folder / "two.ppm") ==
           std::string("P6\n2 2\n255\n\xff\x00\x00\x00\x00\xff\x00\x00\x00\xbc\xbc\xbc", 23));
-    for (const char* name : {"a.png", "a.PPM"}) write_image(folder / name, special_image(), kAttributes);
+    for (const char* name : {"a.png", "a.PPM"}) write_image(folder / name, special_image());
     const Image png = read_image(folder / "a.png"), ppm = read_image(folder / "a.PPM");
     CHECK(ppm.width == 5);
     CHECK(ppm.height == 3);
@@ -93,8 +91,7 @@ TEST_CASE("PPM: stores the same codes as PNG, top row first", "[image_io]") {
 
 TEST_CASE("TIFF: stores the same codes as PNG, with either extension", "[image_io]") {
     const ScratchFolder folder;
-    for (const char* name : {"a.png", "a.tif", "a.tiff", "A.TIF"})
-        write_image(folder / name, special_image(), kAttributes);
+    for (const char* name : {"a.png", "a.tif", "a.tiff", "A.TIF"}) write_image(folder / name, special_image());
     for (const char* name : {"a.tif", "a.tiff", "A.TIF"})
         CHECK(read_image(folder / name).rgb == read_image(folder / "a.png").rgb);
 }
@@ -113,7 +110,7 @@ TEST_CASE("JPEG: differs from PNG by at most 4 codes, without chroma subsampling
         for (int x = 0; x < 64; ++x)
             for (const int code : {4 * x, 5 * y, 2 * (x + y)})
                 image.rgb.push_back(linear_from_srgb_code(static_cast<std::uint8_t>(code)));
-    for (const char* name : {"a.png", "a.jpg", "a.jpeg"}) write_image(folder / name, image, kAttributes);
+    for (const char* name : {"a.png", "a.jpg", "a.jpeg"}) write_image(folder / name, image);
     CHECK(contents(folder / "a.jpg") == contents(folder / "a.jpeg"));
     CHECK(sampling_factors(contents(folder / "a.jpg")) == "\x11\x11\x11");
     const Image png = read_image(folder / "a.png"), jpeg = read_image(folder / "a.jpg");
@@ -125,31 +122,17 @@ TEST_CASE("JPEG: differs from PNG by at most 4 codes, without chroma subsampling
     CHECK(max_difference <= 4);
 }
 
-TEST_CASE("TIFF, JPEG: each line of the description is one attribute", "[image_io]") {
-    const ScratchFolder folder;
-    for (const char* name : {"a.tif", "a.jpg"}) {
-        CAPTURE(name);
-        write_image(folder / name, special_image(), kAttributes);
-        const auto file = OIIO::ImageInput::open((folder / name).string());
-        REQUIRE(file);
-        CHECK(file->spec().get_string_attribute("ImageDescription") ==
-              "raya:scene=centre.nff\nraya:mapping=cyclic\nraya:offset=16\nraya:format=fp32");
-        write_image(folder / name, special_image(), {});
-        CHECK_THAT(contents(folder / name), !Contains("raya"));
-    }
-}
-
 TEST_CASE("8-bit files: store the codes of the exposure", "[image_io]") {
     const ScratchFolder folder;
     constexpr double kExposure = 1;
     const Image image = special_image();
     std::string expected = "P6\n5 3\n255\n";
     for (const std::uint8_t code : srgb_codes(image.rgb, kExposure)) expected += static_cast<char>(code);
-    write_image(folder / "a.ppm", image, {}, kExposure);
+    write_image(folder / "a.ppm", image, kExposure);
     CHECK(contents(folder / "a.ppm") == expected);
     for (const char* name : {"a.png", "a.tif"}) {
         CAPTURE(name);
-        write_image(folder / name, image, {}, kExposure);
+        write_image(folder / name, image, kExposure);
         const auto file = OIIO::ImageInput::open((folder / name).string());
         REQUIRE(file);
         std::string bytes(45, '\0');
@@ -157,7 +140,7 @@ TEST_CASE("8-bit files: store the codes of the exposure", "[image_io]") {
         CHECK(bytes == expected.substr(expected.size() - 45));
     }
     for (const char* name : {"a.exr", "a.pfm"}) {
-        write_image(folder / name, image, {}, kExposure);
+        write_image(folder / name, image, kExposure);
         CHECK(pixel_hash(read_image(folder / name)) == pixel_hash(image));
     }
     for (const char* name : {"a.png", "a.ppm", "a.tif", "a.tiff", "a.JPG", "a.jpeg", "-"})
@@ -165,24 +148,13 @@ TEST_CASE("8-bit files: store the codes of the exposure", "[image_io]") {
     for (const char* name : {"a.exr", "a.pfm"}) CHECK_FALSE(stores_8bit_codes(name));
 }
 
-TEST_CASE("PNG, EXR: store attributes with the prefix raya:", "[image_io]") {
-    const ScratchFolder folder;
-    for (const char* name : {"a.png", "a.exr"}) {
-        CAPTURE(name);
-        write_image(folder / name, special_image(), kAttributes);
-        const auto file = OIIO::ImageInput::open((folder / name).string());
-        REQUIRE(file);
-        for (const auto& [key, text] : kAttributes) CHECK(file->spec().get_string_attribute("raya:" + key) == text);
-    }
-}
-
 TEST_CASE("image files: contain no date, host or software version", "[image_io]") {
     const ScratchFolder folder;
     for (const char* name : {"a.png", "a.exr", "a.pfm", "a.ppm", "a.tif", "a.jpg"}) {
         CAPTURE(name);
-        write_image(folder / name, special_image(), kAttributes);
+        write_image(folder / name, special_image());
         std::string first = contents(folder / name);
-        write_image(folder / name, special_image(), kAttributes);
+        write_image(folder / name, special_image());
         CHECK(contents(folder / name) == first);
         const std::string no_date("capDate\0string\0\1\0\0\0000", 20);  // OpenImageIO 3.1 writes the date "0"
         if (const std::size_t at = first.find(no_date); at != first.npos) first.erase(at, no_date.size());
@@ -196,12 +168,12 @@ TEST_CASE("write_image: refuses an unknown extension and names the known extensi
     const auto message = Contains("use one of .png, .exr, .pfm, .ppm, .tif, .tiff, .jpg, .jpeg");
     for (const char* name : {"a.gif", "a", ".png", "a.png.gz"}) {
         CAPTURE(name);
-        CHECK_THROWS_WITH(write_image(folder / name, special_image(), {}), Contains(name) && message);
+        CHECK_THROWS_WITH(write_image(folder / name, special_image()), Contains(name) && message);
         CHECK_THROWS_WITH(check_image_name(folder / name, kImageExtensions), Contains(name) && message);
         CHECK_THROWS_AS(check_image_name(folder / name, kImageExtensions), UserError);
     }
     for (const char* name : {"cost.png", "cost.ppm"})
-        CHECK_THROWS_WITH(write_image(folder / name, GreyImage{1, 1, {1}}, {}), Contains("use one of .exr, .pfm"));
+        CHECK_THROWS_WITH(write_image(folder / name, GreyImage{1, 1, {1}}), Contains("use one of .exr, .pfm"));
     CHECK(folder.entries() == 0);
 }
 
@@ -209,18 +181,18 @@ TEST_CASE("write_image: refuses a file that it cannot write, and leaves no parti
     const ScratchFolder folder;
     fs::create_symlink("/dev/full", folder / "full.png");
     check_image_name(folder / "new.png", kImageExtensions);
-    CHECK_THROWS_WITH(write_image(folder / "missing/a.exr", special_image(), {}), Contains("does not exist"));
-    CHECK_THROWS_WITH(write_image(folder / "full.png", special_image(), {}), Contains("No space left on device"));
+    CHECK_THROWS_WITH(write_image(folder / "missing/a.exr", special_image()), Contains("does not exist"));
+    CHECK_THROWS_WITH(write_image(folder / "full.png", special_image()), Contains("No space left on device"));
     Image wide{1'000'001, 1, {}};  // libpng's limit is 1,000,000
     wide.rgb.resize(3'000'003);
-    CHECK_THROWS_WITH(write_image(folder / "wide.png", wide, {}), Contains("wide.png") && Contains(".ppm"));
+    CHECK_THROWS_WITH(write_image(folder / "wide.png", wide), Contains("wide.png") && Contains(".ppm"));
     CHECK(folder.entries() == 1);
 }
 
 TEST_CASE("write_image: an image with missing pixels is an internal error", "[image_io]") {
     const ScratchFolder folder;
-    CHECK_THROWS_AS(write_image(folder / "a.exr", Image{2, 2, std::vector<float>(11)}, {}), std::logic_error);
-    CHECK_THROWS_AS(write_image(folder / "a.exr", GreyImage{0, 2, {}}, {}), std::logic_error);
+    CHECK_THROWS_AS(write_image(folder / "a.exr", Image{2, 2, std::vector<float>(11)}), std::logic_error);
+    CHECK_THROWS_AS(write_image(folder / "a.exr", GreyImage{0, 2, {}}), std::logic_error);
     CHECK(folder.entries() == 0);
 }
 

@@ -146,7 +146,7 @@ def test_pixels_do_not_depend_on_the_accelerator_but_on_the_format(centre):
 
 
 @pytest.mark.parametrize("options, message_part", [
-    ({"size": 0}, "--size"), ({"offset": 300}, "--offset"), ({"machine": "sap"}, "did you mean spa"),
+    ({"size": 0}, "--size"), ({"offset": 300}, "--offset"), ({"machine": "sap"}, "no such machine"),
     ({"sise": 16}, "sise"), ({"format": "e9m4"}, "e9m4"), ({"pes": -1}, "--pes")])
 def test_bad_options_raise_value_error(centre, options, message_part):
     with pytest.raises(ValueError, match=message_part):

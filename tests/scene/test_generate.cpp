@@ -2,8 +2,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,7 +10,6 @@
 #include "host/scene/generate.hpp"
 #include "host/scene/nff.hpp"
 #include "host/scene/split_mix.hpp"
-#include "tests/paths.h"
 #include "tests/scene/spd_folder.hpp"
 
 using namespace raya;
@@ -35,8 +32,6 @@ TEST_CASE("generated scenes have the same bytes on all platforms", "[generate]")
         {generate_uniform(3000, {3, 5, 2}), "3eebf0274a5f7c34208987e0a28d3fd2"},
         {generate_random(1, 7), "5610adb29674ddbf96d87b90abe45f45"},
         {generate_random(20000, 8), "e46ac2c7e061950bc838a6e733313d72"},
-        {generate_terrain(1, 3), "d20634bf6a87f290316fd43e252138aa"},
-        {generate_terrain(20001, 1), "e8c593b4545aa1ecbcfab71b716c4b67"},
         {generate_cluster(1), "371dca7fa892ccfc1aafffc401a9d2d5"},
         {generate_cluster(300), "7f4df50a598028d1d135ac86d1203bef"}};
     for (const auto& [scene, hash] : scenes) {
@@ -87,18 +82,6 @@ TEST_CASE("balls and lattice: scenes equal those of SPD's files, with objects in
     }
 }
 
-TEST_CASE("centre: the committed file is the generator's output", "[generate]") {
-    const Scene s = generate_centre();
-    CHECK(s.object_count() >= 20);
-    CHECK(s.object_count() <= 30);
-    CHECK(s.planes.size() == 1);
-    CHECK(s.lights.size() <= 2);
-    std::ifstream file(RAYA_SOURCE_DIR "/scenes/centre.nff");
-    const std::string committed{std::istreambuf_iterator<char>(file), {}};
-    CHECK(committed == write_nff(s));
-    CHECK(read_nff(RAYA_SOURCE_DIR "/scenes/centre.nff") == s);
-}
-
 TEST_CASE("generators refuse parameters out of range", "[generate]") {
     CHECK_THROWS_WITH(generate_balls(-1), "balls: level -1: must be 0..6");
     CHECK_THROWS_WITH(generate_balls(7), "balls: level 7: must be 0..6");
@@ -106,8 +89,6 @@ TEST_CASE("generators refuse parameters out of range", "[generate]") {
     CHECK_THROWS_WITH(generate_gears(0), "gears: size 0: must be 1..16");
     CHECK_THROWS_WITH(generate_random(0, 1), "random: 0 spheres: must be 1..20000000");
     CHECK_THROWS_WITH(generate_uniform(20000001, {1, 1, 1}), "uniform: 20000001 spheres: must be 1..20000000");
-    CHECK_THROWS_WITH(generate_terrain(0, 1), "terrain: 0 triangles: must be 1..20000000");
-    CHECK_THROWS_WITH(terrain_ply(20000001, 1), "terrain: 20000001 triangles: must be 1..20000000");
     CHECK_THROWS_WITH(generate_uniform(1, {1, 1, 257}), "uniform: 257 voxels along an axis: must be 1..256");
     CHECK_THROWS_WITH(generate_uniform(1, {256, 256, 17}), "uniform: 1114112 voxels: at most 1048576");
 }

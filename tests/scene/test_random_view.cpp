@@ -34,7 +34,7 @@ TEST_CASE("a random view moves only the camera, at the same distance and within 
 }
 
 TEST_CASE("random views are uniform in azimuth and height between the elevation limits", "[view]") {
-    const Scene scene = generate_centre();
+    const Scene scene = generate_cluster(1);
     constexpr int kViews = 4000, kParts = 8;
     int heights[kParts] = {}, azimuths[kParts] = {};
     std::set<double> x_components;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests `raya verify --reproduce` and `--bisect` with injected faults: each case must fail on the faulty kernel or driver and pass on the right one.
+"""Tests `raya verify --reproduce` with injected faults: each case must fail on the faulty kernel or driver and pass on the right one.
 
     test_reproduce.py RAYA PATCH_KERNELS CL_FAULTS [--reduce]
 
@@ -124,13 +124,6 @@ class Test:
         code, output = self.verify(check, "--only", "machine bus: broadcast", "--reproduce", str(self.new_folder()), fault="clEnqueueReadBuffer 1 -5")
         self.expect(code == 4 and "no case of" in output, f"a fault of transfers: exit code {code}", output)
 
-    def bisect(self):
-        check = "image glass fp32: cyclic:8 on 20"
-        for fault, result in [("clBuildProgram 1 fabs(a)=(a)", f"{check}: passes with RAYA_BUILD_OPTIONS=-cl-opt-disable\n"),
-                              ("clBuildProgram 0 fabs(a)=(a)", f"{check}: fails also with all of these changes\n")]:
-            code, output = self.verify(check, "--bisect", check, fault=fault)
-            self.expect(code == 4 and result in output, f"--bisect with {fault}: exit code {code}", output)
-
     def reduce(self):
         for check, fault in REDUCED_FAULTS:
             folder = self.driver_fault(check, fault, "launch of operations")
@@ -160,7 +153,6 @@ def main():
         for fault in DRIVER_FAULTS[1:]:
             test.driver_fault(*fault)
         test.endless_loop()
-        test.bisect()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-// Trace of the modelled torus machine: stepwise time, and flows of packets.
+// Trace of the modelled torus machine in stepwise time.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -18,24 +18,19 @@ struct TracedRender {
     TorusSettings settings;
     TorusResult result;
     Document trace;
-    std::uint64_t packets = 0;
 };
 
 TracedRender render(const Scene& scene, const TorusCase& c, std::size_t nodes) {
     Session session(choose_device(""));
     TracedRender t{settings_of(c), {}, {}};
-    TorusTrace torus_trace(t.settings.torus);
-    t.result = TorusRenderer(session, scene, t.settings)
-                   .render({}, {.packets =
-                                    [&](const PacketRecord& p) {
-                                        torus_trace.add_packet(p);
-                                        ++t.packets;
-                                        CHECK(p.superstep % TorusTrace::kPacketsEvery == 0);
-                                    },
-                                .packets_every = TorusTrace::kPacketsEvery,
-                                .supersteps = [&](const SuperstepDetail& step) { torus_trace.add_superstep(step); }});
+    std::vector<std::uint64_t> cycles, words;
+    const auto record = [&](const SuperstepDetail& step) {
+        cycles.insert(cycles.end(), step.cycles.begin(), step.cycles.end());
+        words.insert(words.end(), step.link_words.begin(), step.link_words.end());
+    };
+    t.result = TorusRenderer(session, scene, t.settings).render({}, {.supersteps = record});
     TraceFile trace(10'000'000);
-    torus_trace.add_to(trace, t.result, nodes);
+    add_torus_machine(trace, t.settings.torus, t.result, cycles, words, nodes);
     t.trace = Document::parse(trace.finish(false));
     return t;
 }
@@ -72,18 +67,12 @@ TEST_CASE("the traced torus ends at the stepwise time, and its nodes compute for
             CHECK(std::abs(computing - static_cast<std::int64_t>(40 * t.result.load.per_pe[node])) <=
                   static_cast<std::int64_t>(2 * steps.size()));
         }
-        // All nodes are shown, so every packet is a flow, except those that arrive after the last superstep.
-        REQUIRE((t.packets > 10 && t.packets < TorusTrace::kMaxPackets));
-        CHECK(schema.flows() == t.packets);
-        CHECK(t.trace["otherData"]["machine"]["flows"] == t.packets);
     }
 }
 
-TEST_CASE("a trace of some nodes has only flows between them", "[torus]") {
+TEST_CASE("a trace of some nodes has tracks for these nodes only", "[torus]") {
     const TracedRender t = render(random_view_scene(27), {.lanes = 4}, 3);
-    const TraceSchema schema(t.trace);
-    CHECK(schema.tracks().size() == 4);
-    CHECK(schema.flows() < t.packets);
+    CHECK(TraceSchema(t.trace).tracks().size() == 4);
 }
 
 TEST_CASE("the work of the torus's kernels agrees with the counts", "[torus]") {

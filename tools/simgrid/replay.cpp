@@ -6,7 +6,7 @@
 //
 // Prints "finish_ms T", the simulated time in ms, and "delivered N", the number of delivered messages. --cfg: options
 // of SimGrid. Exit codes: 0 done; 2 bad arguments, or a file that cannot be read; 4 deadlock. REPLAY is text, written
-// by `raya render --machine torus --packets FILE.csv.gz --replay simgrid` (docs/architecture.md):
+// by Python's `Result.write_replay()` (docs/architecture.md):
 //   machine NODES BUFFER ENTRY_SLOTS MESSAGE_CYCLES WORD_CYCLES
 //       BUFFER: number of slots of an output thread for messages of one class; ENTRY_SLOTS: number of free slots that a
 //       ray needs to enter a link of another axis; MESSAGE_CYCLES + words x WORD_CYCLES: processor cycles for sending
