@@ -40,6 +40,7 @@ struct VerifyCommand {
     std::uint32_t lanes = 0, repeat = 1;
     double timeout_s = kDefaultTimeout.count(), soak_s = 0;
     std::uint64_t seed = 1;
+    std::uint32_t random = 0;
     bool brief = false, quick = false, full = false, list = false;
 
     Depth depth() const { return full ? Depth::kFull : brief ? Depth::kBrief : Depth::kQuick; }
@@ -93,6 +94,7 @@ VerifySettings settings_of(const VerifyCommand& command) {
                             .timeout_s = command.timeout_s,
                             .soak_s = command.soak_s,
                             .seed = command.seed,
+                            .random = command.random,
                             .lanes = command.lanes,
                             .as = command.as};
     if (!command.shard.empty()) {
@@ -332,7 +334,11 @@ void add_verify_command(CLI::App& program) {
                        "failures"),
              0, kMaxTimeS, "seconds")
         ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}));
-    add_value(*command, "--seed N", options->seed, "Seed of --soak: the same seed gives the same sequence of checks")
+    in_range(add_value(*command, "--random N", options->random,
+                       "Run N random kernels, whose exact results raya computes on the host, instead of the checks"),
+             1, 1e9);
+    add_value(*command, "--seed N", options->seed,
+              "Seed of --soak and --random: the same seed gives the same sequence of checks and kernels")
         ->default_str("1");
     add_file(
         *command, FileUse::kRead, "--expect FILE", options->expect,

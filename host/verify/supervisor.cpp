@@ -28,6 +28,7 @@ void for_each_setting(Settings& s, const Visit& visit) {
     visit("repeat", s.repeat);
     visit("soak_s", s.soak_s);
     visit("seed", s.seed);
+    visit("random", s.random);
     visit("lanes", s.lanes);
     visit("as", s.as);
     visit("done", s.done);

@@ -60,6 +60,7 @@ std::string indented(const std::string& label, const std::string& text) {
 
 void visit_layers(Verification& verification) {
     if (const auto& render = verification.settings().render) return verify_render_case(verification, *render);
+    if (verification.settings().random > 0) return verify_random(verification);
     verify_numbers(verification);
     verify_geometry(verification);
     verify_machines(verification);
