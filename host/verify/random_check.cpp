@@ -96,10 +96,9 @@ Verdict check_random_kernel(Session& session, std::uint64_t number, const Verify
 }  // namespace
 
 void verify_random(Verification& v) {
-    constexpr std::uint64_t kBatch = 25;  // kernels of a check
     const VerifySettings& settings = v.settings();
-    for (std::uint64_t first = 0; first < settings.random; first += kBatch) {
-        const std::uint64_t end = std::min<std::uint64_t>(first + kBatch, settings.random);
+    for (std::uint64_t first = 0; first < settings.random; first += kRandomBatch) {
+        const std::uint64_t end = std::min<std::uint64_t>(first + kRandomBatch, settings.random);
         v.check("random", fmt::format("seed_{}_kernels_{}_to_{}", settings.seed, first, end - 1),
                 [&](Session& session) {
                     std::size_t words = 0;

@@ -223,10 +223,16 @@ void verify_at_random(const cl::Device& device, const VerifySettings& settings, 
         all.lanes = lanes;
         for (const std::string& name : check_names(device, all)) choices.push_back(settings_of_one(all, name));
     }
+    if (settings.only.empty() && settings.skip.empty() && !settings.render) {
+        choices.push_back(settings_of_one(settings, ""));
+        choices.back().is_whole_name = false;
+        choices.back().random = kRandomBatch;
+    }
     SplitMix random(settings.seed);
     const Clock::time_point start = Clock::now();
     for (std::size_t n = 0; seconds_since(start) < settings.soak_s; ++n) {
-        const VerifySettings& one = choices[random.next() % choices.size()];
+        VerifySettings one = choices[random.next() % choices.size()];
+        if (one.random > 0) one.seed = random.next() % 1'000'000;
         if (n < settings.done) continue;
         verify(device, one, {.started = sink.started, .finished = [&](Check check) {
                                  if (one.lanes != 0) check.verdict.result += fmt::format(", --lanes {}", one.lanes);

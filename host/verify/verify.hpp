@@ -158,6 +158,9 @@ void verify_images(Verification& verification);
 /// Layer "random": settings().random random kernels (random_kernel.hpp) of the sequence settings().seed.
 void verify_random(Verification& verification);
 
+/// Number of kernels in a check of layer "random".
+inline constexpr std::uint32_t kRandomBatch = 25;
+
 struct RandomKernel;
 struct KernelResults;
 /// Runs a random kernel with settings.change_random and settings.sources. Reports the correct words of `out`, those of
