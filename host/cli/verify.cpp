@@ -86,8 +86,9 @@ DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, cons
                 if (shows_progress()) show_status(fmt::format("running {} {} ... {:.0f} s", layer, name, seconds));
             },
         .finished =
-            [](const Check& check) {
-                if (!is_quiet() || is_unwanted(check.verdict.outcome)) print(check_lines(check));
+            [&](const Check& check) {
+                if ((!is_quiet() && settings.soak_s == 0) || is_unwanted(check.verdict.outcome))
+                    print(check_lines(check));
             }};
     DeviceChecks all = supervise(command.device, index, settings, sink);
     if (!is_quiet() || devices == 1 || !all.all_passed())
@@ -165,6 +166,17 @@ void add_verify_command(CLI::App& program) {
     in_range(add_value(*command, "--repeat N", options->checks.repeat,
                        "Number of runs of each check; it fails if one of them fails"),
              1, 1e6);
+    in_range(add_value(*command, "--random N", options->checks.random,
+                       "Run N random kernels, whose exact results raya computes on the host, instead of the checks"),
+             1, 1e9);
+    in_range(add_value(*command, "--soak TIME", options->checks.soak_s,
+                       "Run random checks with random lanes, and random kernels, for this time, such as 60s, 30m, 2h; "
+                       "print only failures"),
+             0, 1e6, "seconds")
+        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"m", 60}, {"h", 3600}}));
+    add_value(*command, "--seed N", options->checks.seed,
+              "Seed of --random and --soak: the same seed gives the same kernels and checks")
+        ->default_str("1");
     add_value(*command, "--shard I/N", options->shard,
               "Run the I-th of N parts of the selected checks, to divide them over N jobs");
     in_range(add_value(*command, "--timeout S", options->checks.timeout_s,

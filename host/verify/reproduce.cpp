@@ -76,16 +76,6 @@ Observation observe(const CheckRun& v, std::size_t step = 0, const std::filesyst
     return seen;
 }
 
-// Returns the settings to run only the check of this name, "LAYER NAME", once.
-VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name) {
-    settings.only = full_name;
-    settings.is_whole_name = true;
-    settings.skip.clear();
-    settings.shard = settings.shards = settings.repeat = 1;
-    settings.done = 0;
-    return settings;
-}
-
 // Moves options "-DNAME=VALUE" from `options` to the returned lines "#define NAME VALUE".
 std::string take_definitions(std::string& options) {
     std::string lines, others;

@@ -26,6 +26,9 @@ void for_each_setting(Settings& s, const Visit& visit) {
     visit("shard", s.shard);
     visit("shards", s.shards);
     visit("repeat", s.repeat);
+    visit("soak_s", s.soak_s);
+    visit("seed", s.seed);
+    visit("random", s.random);
     visit("lanes", s.lanes);
     visit("done", s.done);
 }
@@ -86,7 +89,10 @@ class Supervision {
     bool run_remaining(const std::string& selector, std::size_t index) {
         const std::size_t done_before = settings_.done;
         ended_ = false;
-        const auto status = run_child(kVerifyTask, settings_json(settings_, selector, index), [&](const Json& line) {
+        VerifySettings remaining = settings_;
+        if (settings_.soak_s > 0)
+            remaining.soak_s = std::max(1e-3, settings_.soak_s - seconds_since(supervision_start_));
+        const auto status = run_child(kVerifyTask, settings_json(remaining, selector, index), [&](const Json& line) {
             if (!line.is_null())
                 take(line);
             else if (sink_.running && running_)
@@ -166,6 +172,7 @@ class Supervision {
     DeviceChecks all_;
     std::size_t devices_ = 0;  // number of selected devices
     std::optional<Check> running_;
+    Clock::time_point supervision_start_ = Clock::now();
     Clock::time_point start_;  // of the running check
     bool ended_ = false;       // the process has written {"ended": true}
 };

@@ -70,7 +70,11 @@ struct VerifySettings {
     std::uint32_t shard = 1, shards = 1;  // of the selected checks, run those with number modulo `shards` = shard - 1
     std::uint32_t repeat = 1;             // number of runs of each check; it fails if one of them fails
     double timeout_s = 0;                 // time after which supervise() ends a check; 0: never
-    bool is_whole_name = false;           // `only` is a whole "LAYER NAME"
+    double soak_s = 0;                    // if not 0: verify() runs random checks with random lanes for so many seconds
+    std::uint64_t seed = 1;               // of the choice of checks, and of random kernels
+    std::uint32_t random = 0;             // if not 0: check so many random kernels instead
+    std::function<std::string(const std::string&)> change_random{};  // changes the text of random kernels, for tests
+    bool is_whole_name = false;                                      // `only` is a whole "LAYER NAME"
     std::vector<ExpectedFailure> expected_failures{};  // supervise() changes the outcome of checks that match
     std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
                               // Depth::kFull, all four numbers
@@ -90,6 +94,9 @@ struct CheckSink {
 /// cause. Throws DeviceError if the device's properties cannot be read, std::logic_error if a patch of the kernel
 /// sources does not apply.
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink = {});
+
+/// Returns the settings to run only the check of this name, "LAYER NAME", once.
+VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name);
 
 /// Returns "LAYER NAME" of every check that verify() would run, in the same order.
 std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings);
@@ -139,6 +146,18 @@ void verify_numbers(Verification& verification);
 void verify_geometry(Verification& verification);
 void verify_machines(Verification& verification);
 void verify_images(Verification& verification);
+/// Layer "random": settings().random random kernels (random_kernel.hpp) of the sequence settings().seed.
+void verify_random(Verification& verification);
+
+/// Number of kernels in a check of layer "random".
+inline constexpr std::uint32_t kRandomBatch = 25;
+
+struct RandomKernel;
+struct KernelResults;
+/// Runs a random kernel with settings.change_random and settings.sources. Reports the correct words of `out`, those of
+/// `expected`, to a capture unless it is null. Throws DeviceError.
+KernelResults run_random_kernel(Session& session, const RandomKernel& kernel, const std::vector<std::uint32_t>& in,
+                                const VerifySettings& settings, const KernelResults* expected = nullptr);
 
 // A device and the results of its checks, and their form in reports.
 
