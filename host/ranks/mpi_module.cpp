@@ -52,6 +52,7 @@ class MpiTransport final : public Transport {
         ::prctl(PR_SET_TIMERSLACK, 1);  // 1 ns: by default Linux may extend each sleep by 50 us
         MPI_Comm_rank(comm_, &rank_);
         MPI_Comm_size(comm_, &count_);
+        spin_s_ = ranks_of_host() > ::sysconf(_SC_NPROCESSORS_ONLN) ? 30e-6 : 300e-6;
         std::array<char, HOST_NAME_MAX + 1> name{};
         ::gethostname(name.data(), name.size() - 1);
         host_ = name.data();
@@ -104,11 +105,10 @@ class MpiTransport final : public Transport {
             });
     }
 
-    // Ranks may share cores, so this function polls without sleeping only for 0.1 ms and then sleeps between
+    // Ranks may share cores, so this function polls without sleeping only for spin_s_ seconds and then sleeps between
     // polls. It sleeps instead of calling sched_yield, because the scheduler gives a thread that has just woken up
     // priority over computing threads, but not a thread that has yielded.
     void wait() override {
-        constexpr double kPoll_s = 1e-4;
         constexpr auto kSleep = std::chrono::microseconds(20);
         const Clock::time_point start = Clock::now();
         for (int all_complete = 0;;) {
@@ -118,7 +118,7 @@ class MpiTransport final : public Transport {
             if (all_complete) return requests_.clear();
             const double elapsed_s = seconds_since(start);
             if (elapsed_s > limit_s_) throw DeviceError(timeout_text());
-            if (elapsed_s > kPoll_s) std::this_thread::sleep_for(kSleep);
+            if (elapsed_s > spin_s_) std::this_thread::sleep_for(kSleep);
         }
     }
 
@@ -145,6 +145,15 @@ class MpiTransport final : public Transport {
             call(bytes.subspan(begin, std::min(kMaxMessageBytes, bytes.size() - begin)));
     }
 
+    int ranks_of_host() const {
+        MPI_Comm host = MPI_COMM_NULL;
+        int ranks = 1;
+        check_mpi(MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &host), "MPI_Comm_split_type");
+        MPI_Comm_size(host, &ranks);
+        MPI_Comm_free(&host);
+        return ranks;
+    }
+
     std::string timeout_text() const {
         return fmt::format(
             "has waited for the other ranks for {:g} s; remedy: look for a rank that hangs, or raise the limit with "
@@ -155,6 +164,7 @@ class MpiTransport final : public Transport {
     MPI_Request& next_request() { return requests_.emplace_back(MPI_REQUEST_NULL); }
 
     const double limit_s_;
+    double spin_s_ = 0;  // time for which a wait polls before it sleeps; shorter if ranks share cores
     MPI_Comm comm_ = MPI_COMM_NULL;
     int rank_ = 0, count_ = 1;
     std::string host_, library_;
