@@ -1,7 +1,6 @@
 #include "host/ranks/launch.hpp"
 
 #include <fmt/core.h>
-#include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "host/base/encoding.hpp"
 #include "host/base/module.hpp"
+#include "host/base/parallel.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
 #include "host/ranks/transport.hpp"
@@ -53,15 +53,9 @@ std::unique_ptr<Transport> open_transport(const Launch& launch) {
     }
 }
 
-std::uint32_t count_usable_cores() {
-    cpu_set_t mask;
-    CPU_ZERO(&mask);
-    return ::sched_getaffinity(0, sizeof mask, &mask) == 0 ? static_cast<std::uint32_t>(CPU_COUNT(&mask)) : 1;
-}
-
 void limit_pocl_threads(const Ranks& ranks) {
     const auto host_cores = static_cast<std::uint32_t>(::sysconf(_SC_NPROCESSORS_ONLN));
-    const std::uint32_t threads = threads_of_rank(count_usable_cores(), host_cores, ranks.ranks_on_host());
+    const std::uint32_t threads = threads_of_rank(core_count(), host_cores, ranks.ranks_on_host());
     ::setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 0);
 }
 
