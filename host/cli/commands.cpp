@@ -93,6 +93,8 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
         return kExitOk;
     } catch (const CLI::ParseError& error) {
         return ranks.is_first() ? program.exit(error) : kExitOk;  // --help or --version, not an error
+    } catch (const RankFailure& failure) {
+        return ranks.fail(failure);
     } catch (const UserError& error) {
         return ranks.fail(error.what(), kExitUserError);
     } catch (const DeviceError& error) {
@@ -137,8 +139,8 @@ int run_with_ranks(Ranks& ranks, int argc, char** argv, const std::string& build
     refuse_many_ranks(*program, ranks);
     try {
         return ranks.close(flush_stdout(ranks, parse_and_run(*program, ranks, argc, argv)));
-    } catch (const DeviceError& error) {
-        return ranks.fail(error.what(), kExitDeviceError);
+    } catch (const RankFailure& failure) {
+        return ranks.fail(failure);
     }
 }
 
@@ -237,6 +239,8 @@ int run_program(int argc, char** argv, const std::string& build) {
         return fail_at_start(error.what(), kExitUserError);
     } catch (const DeviceError& error) {
         return fail_at_start(error.what(), kExitDeviceError);
+    } catch (const RankFailure& failure) {
+        return fail_at_start(failure.what(), failure.code);
     }
 }
 

@@ -1,5 +1,6 @@
 // MPI transport: raya_mpi.so. raya loads this module only if an MPI launcher has started raya, so that other runs do
-// not load MPI's libraries. wait() polls the requests instead of calling MPI_Wait, because MPI_Wait has no time limit.
+// not load MPI's libraries. wait() polls the requests instead of calling MPI_Wait, because MPI_Wait has no time limit
+// and would not notice that another rank has failed.
 #define OMPI_SKIP_MPICXX  // leaves out the C++ bindings, which MPI-3 has removed
 #define MPICH_SKIP_MPICXX
 #include <fmt/core.h>
@@ -24,6 +25,7 @@ namespace {
 
 // Maximum number of bytes in an MPI message. Longer messages are split, because MPI's message length is an int.
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 30;
+constexpr int kFailureTag = 1;  // tag of messages that report a failure to rank 0
 
 void check_mpi(int result, const char* call) {
     if (result == MPI_SUCCESS) return;
@@ -47,11 +49,14 @@ class MpiTransport final : public Transport {
     explicit MpiTransport(double limit_s) : limit_s_(limit_s) {
         int provided = 0;
         check_mpi(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
-        check_mpi(MPI_Comm_dup(MPI_COMM_WORLD, &comm_), "MPI_Comm_dup");
-        check_mpi(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+        for (MPI_Comm* comm : {&data_comm_, &failure_comm_}) {
+            check_mpi(MPI_Comm_dup(MPI_COMM_WORLD, comm), "MPI_Comm_dup");
+            check_mpi(MPI_Comm_set_errhandler(*comm, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+        }
         ::prctl(PR_SET_TIMERSLACK, 1);  // 1 ns: by default Linux may extend each sleep by 50 us
-        MPI_Comm_rank(comm_, &rank_);
-        MPI_Comm_size(comm_, &count_);
+        MPI_Comm_rank(data_comm_, &rank_);
+        MPI_Comm_size(data_comm_, &count_);
+        spin_s_ = ranks_of_host() > ::sysconf(_SC_NPROCESSORS_ONLN) ? 30e-6 : 300e-6;
         std::array<char, HOST_NAME_MAX + 1> name{};
         ::gethostname(name.data(), name.size() - 1);
         host_ = name.data();
@@ -65,8 +70,9 @@ class MpiTransport final : public Transport {
 
     void broadcast(std::span<std::byte> bytes) override {
         for_pieces(bytes, [&](std::span<std::byte> piece) {
-            check_mpi(MPI_Ibcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, 0, comm_, &next_request()),
-                      "MPI_Ibcast");
+            check_mpi(
+                MPI_Ibcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, 0, data_comm_, &next_request()),
+                "MPI_Ibcast");
             wait();
         });
     }
@@ -82,7 +88,7 @@ class MpiTransport final : public Transport {
             end += counts.back();
         }
         check_mpi(MPI_Iallgatherv(own_bytes.data(), static_cast<int>(own_bytes.size()), MPI_BYTE, all_bytes.data(),
-                                  counts.data(), starts.data(), MPI_BYTE, comm_, &next_request()),
+                                  counts.data(), starts.data(), MPI_BYTE, data_comm_, &next_request()),
                   "MPI_Iallgatherv");
         wait();
     }
@@ -93,33 +99,39 @@ class MpiTransport final : public Transport {
         for (const IncomingMessage& m : in)
             for_pieces(m.bytes, [&](std::span<std::byte> piece) {
                 check_mpi(MPI_Irecv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, static_cast<int>(m.sender),
-                                    m.tag, comm_, &next_request()),
+                                    m.tag, data_comm_, &next_request()),
                           "MPI_Irecv");
             });
         for (const OutgoingMessage& m : out)
             for_pieces(m.bytes, [&](std::span<const std::byte> piece) {
                 check_mpi(MPI_Isend(piece.data(), static_cast<int>(piece.size()), MPI_BYTE,
-                                    static_cast<int>(m.receiver), m.tag, comm_, &next_request()),
+                                    static_cast<int>(m.receiver), m.tag, data_comm_, &next_request()),
                           "MPI_Isend");
             });
     }
 
-    // Ranks may share cores, so this function polls without sleeping only for 0.1 ms and then sleeps between
-    // polls. It sleeps instead of calling sched_yield, because the scheduler gives a thread that has just woken up
-    // priority over computing threads, but not a thread that has yielded.
     void wait() override {
-        constexpr double kPoll_s = 1e-4;
-        constexpr auto kSleep = std::chrono::microseconds(20);
+        if (!complete_within(limit_s_, requests_)) throw RankFailure(timeout_text(), kExitDeviceError);
+        requests_.clear();
+    }
+
+    void report_failure(const std::string& text, int code) override {
+        // Time that rank 0 has to end all ranks; after this time the caller aborts all ranks. The time increases with
+        // the rank. So if several ranks fail and rank 0 does not react, only the lowest of the failed ranks aborts.
+        const double timeout_s = 4 + failure_delay_s(rank());
+        std::string message = fmt::format("{} {}", code, text);
+        std::vector<MPI_Request> sent(1);
+        const int size = static_cast<int>(message.size());
+        if (MPI_Isend(message.data(), size, MPI_BYTE, 0, kFailureTag, failure_comm_, sent.data()) != MPI_SUCCESS)
+            return;
         const Clock::time_point start = Clock::now();
-        for (int all_complete = 0;;) {
-            check_mpi(
-                MPI_Testall(static_cast<int>(requests_.size()), requests_.data(), &all_complete, MPI_STATUSES_IGNORE),
-                "MPI_Testall");
-            if (all_complete) return requests_.clear();
-            const double elapsed_s = seconds_since(start);
-            if (elapsed_s > limit_s_) throw DeviceError(timeout_text());
-            if (elapsed_s > kPoll_s) std::this_thread::sleep_for(kSleep);
-        }
+        complete_within(timeout_s, sent);
+        // Normally rank 0 ends this process during the sleep.
+        std::this_thread::sleep_for(std::chrono::duration<double>(timeout_s - seconds_since(start)));
+    }
+
+    void poll_failures() override {
+        if (rank_ == 0) receive_failure();
     }
 
     [[noreturn]] void abort(int code) override {
@@ -133,8 +145,7 @@ class MpiTransport final : public Transport {
 
     void close() override {
         const std::jthread limit =
-            deadline(limit_s_, rank_ == 0 ? fmt::format("raya: rank 0 on {}: {}\n", host_, timeout_text()) : "",
-                     kExitDeviceError);
+            deadline(limit_s_, rank_ == 0 ? fmt::format("raya: {}\n", timeout_text()) : "", kExitDeviceError);
         MPI_Finalize();
     }
 
@@ -145,17 +156,62 @@ class MpiTransport final : public Transport {
             call(bytes.subspan(begin, std::min(kMaxMessageBytes, bytes.size() - begin)));
     }
 
+    int ranks_of_host() const {
+        MPI_Comm host = MPI_COMM_NULL;
+        int ranks = 1;
+        check_mpi(MPI_Comm_split_type(data_comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &host),
+                  "MPI_Comm_split_type");
+        MPI_Comm_size(host, &ranks);
+        MPI_Comm_free(&host);
+        return ranks;
+    }
+
     std::string timeout_text() const {
         return fmt::format(
-            "has waited for the other ranks for {:g} s; remedy: look for a rank that hangs, or raise the limit with "
-            "RAYA_RANK_TIMEOUT=SECONDS",
-            limit_s_);
+            "rank {} on {}: has waited for the other ranks for {:g} s; remedy: look for a rank that hangs, or raise "
+            "the limit with RAYA_RANK_TIMEOUT=SECONDS",
+            rank_, host_, limit_s_);
     }
 
     MPI_Request& next_request() { return requests_.emplace_back(MPI_REQUEST_NULL); }
 
+    // Waits until all requests are complete; returns false if they are not complete after `limit_s` seconds. Ranks may
+    // share cores, so the function polls without sleeping only for spin_s_ seconds and then sleeps between polls. It
+    // sleeps instead of calling sched_yield, because the scheduler gives a thread that has just woken up priority over
+    // computing threads, but not a thread that has yielded.
+    bool complete_within(double limit_s, std::vector<MPI_Request>& requests) {
+        constexpr auto kSleep = std::chrono::microseconds(20);
+        const Clock::time_point start = Clock::now();
+        for (;;) {
+            int all_complete = 0;
+            check_mpi(
+                MPI_Testall(static_cast<int>(requests.size()), requests.data(), &all_complete, MPI_STATUSES_IGNORE),
+                "MPI_Testall");
+            if (all_complete) return true;
+            const double elapsed_s = seconds_since(start);
+            if (elapsed_s < spin_s_) continue;
+            if (rank_ == 0) receive_failure();
+            if (elapsed_s > limit_s) return false;
+            std::this_thread::sleep_for(kSleep);
+        }
+    }
+
+    void receive_failure() {
+        int available = 0;
+        MPI_Status status;
+        check_mpi(MPI_Iprobe(MPI_ANY_SOURCE, kFailureTag, failure_comm_, &available, &status), "MPI_Iprobe");
+        if (!available) return;
+        int size = 0;
+        MPI_Get_count(&status, MPI_BYTE, &size);
+        std::string message(static_cast<std::size_t>(size), ' ');
+        MPI_Recv(message.data(), size, MPI_BYTE, status.MPI_SOURCE, kFailureTag, failure_comm_, MPI_STATUS_IGNORE);
+        const std::size_t blank_at = message.find(' ');
+        throw RankFailure(message.substr(blank_at + 1), std::atoi(message.c_str()));
+    }
+
     const double limit_s_;
-    MPI_Comm comm_ = MPI_COMM_NULL;
+    double spin_s_ = 0;  // time for which a wait polls before it sleeps; shorter if ranks share cores
+    MPI_Comm data_comm_ = MPI_COMM_NULL, failure_comm_ = MPI_COMM_NULL;
     int rank_ = 0, count_ = 1;
     std::string host_, library_;
     std::vector<MPI_Request> requests_;

@@ -83,10 +83,17 @@ int Ranks::fail(const std::string& text, int code) {
         print_log(fmt::format("raya: {}\n", text));
         return code;
     }
-    suppress_interrupt_message();  // mpirun ends this rank by a signal that is not a Ctrl-C
-    std::this_thread::sleep_for(std::chrono::duration<double>(failure_delay_s(rank_)));
-    print_log(fmt::format("raya: rank {} on {}: {}\n", rank_, host(), text));
+    return abort_all(fmt::format("rank {} on {}: {}", rank_, host(), text), code);
+}
+
+int Ranks::fail(const RankFailure& failure) { return abort_all(failure.what(), failure.code); }
+
+int Ranks::abort_all(const std::string& message, int code) {
+    if (!is_first()) transport_->report_failure(message, code);
+    suppress_interrupt_message();  // mpirun ends this rank too, by a signal that is not a Ctrl-C
+    print_log(fmt::format("raya: {}\n", message));
     transport_->abort(code);
+    return code;
 }
 
 int Ranks::close(int code) {

@@ -115,6 +115,9 @@ class Ranks {
     void start(std::span<const OutgoingMessage> out, std::span<const IncomingMessage> in);
     void wait();
 
+    /// Throws RankFailure in rank 0 if another rank has failed. To be called during long computations.
+    void poll_failures() { transport_->poll_failures(); }
+
     /// Collective: calls work() first in one rank of each host, then in the remaining ranks, which find the first
     /// ranks' results in caches on disk. Returns when all ranks have finished.
     template <std::invocable Work>
@@ -127,14 +130,18 @@ class Ranks {
 
     const RankTraffic& traffic() const { return traffic_; }
 
-    /// Prints the error of this rank. With several ranks, also ends all of them with exit code `code`, and prints
-    /// nothing if a lower rank fails too (failure_delay_s()). With a single rank, returns the code.
+    /// With several ranks, rank 0 prints the error of this rank and ends all ranks with exit code `code`.
+    /// With a single rank, prints the error and returns the code.
     int fail(const std::string& text, int code);
+
+    /// Prints a failure that another rank has reported, and ends all ranks with the failure's exit code.
+    int fail(const RankFailure& failure);
 
     /// Collective: closes the transport and returns the maximum of all exit codes.
     int close(int code);
 
   private:
+    int abort_all(const std::string& message, int code);
     static constexpr int kDataTag = 0;
 
     void broadcast_bytes(std::span<std::byte> bytes);

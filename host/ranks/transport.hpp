@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -28,15 +29,22 @@ struct IncomingMessage {
     std::span<std::byte> bytes{};
 };
 
-/// Returns the time by which a failed rank delays its message and the end of all ranks. The time increases with the
-/// rank. So if several ranks fail, only the lowest of the failed ranks prints and ends all ranks.
+/// Thrown by a call that waits for another rank, if a rank has failed or does not answer. The text names the rank and
+/// its host; `code` is the exit code of raya.
+struct RankFailure : std::runtime_error {
+    RankFailure(const std::string& text, int exit_code) : std::runtime_error(text), code(exit_code) {}
+    int code;
+};
+
+/// Returns the time by which a failed rank delays the end of its process. The time increases with the rank, so that if
+/// several ranks fail, only the lowest of the failed ranks ends all ranks.
 inline double failure_delay_s(std::uint32_t rank) {
-    constexpr double kMinDelay_s = 2, kDelayPerRank_s = 0.5, kMaxDelay_s = 8;
-    return rank == 0 ? 0 : std::min(kMinDelay_s + kDelayPerRank_s * rank, kMaxDelay_s);
+    constexpr double kDelayPerRank_s = 0.25, kMaxDelay_s = 3;
+    return std::min(kDelayPerRank_s * rank, kMaxDelay_s);
 }
 
 /// Transfer of bytes between ranks. All ranks must make the same collective calls in the same order. Each rank must
-/// make its calls from one thread. A call that waits longer than a time limit throws DeviceError. The functions of this
+/// make its calls from one thread. A call that waits longer than a time limit throws RankFailure. The functions of this
 /// class are those of a single rank, for which communication is a no-op.
 class Transport {
   public:
@@ -61,6 +69,13 @@ class Transport {
     /// function may be called, until wait() has returned.
     virtual void start(std::span<const OutgoingMessage> /*out*/, std::span<const IncomingMessage> /*in*/) {}
     virtual void wait() {}
+
+    /// Throws RankFailure in rank 0 if another rank has reported a failure; does not block.
+    virtual void poll_failures() {}
+
+    /// Reports an error of this rank to rank 0, which prints it and ends all ranks. Returns after some seconds if rank
+    /// 0 has not ended this rank.
+    virtual void report_failure(const std::string& /*text*/, int /*code*/) {}
 
     /// Ends the processes of all ranks with exit code `code`.
     [[noreturn]] virtual void abort(int code) { std::exit(code); }

@@ -161,6 +161,7 @@ void RingRenderer::trace(std::uint32_t pass, PixelRange range, RingResult& resul
     if (resumed_ && position_.pass == pass) range.begin = std::max(range.begin, position_.next);
     PixelRange band = range;
     const auto report = [&](double done) {
+        ranks_.poll_failures();
         const double pixels = band.begin + done * (band.end - band.begin);
         if (progress) progress((pass + pixels / share_pixels_) / static_cast<double>(counters_.size()));
     };

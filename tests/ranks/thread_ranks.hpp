@@ -8,7 +8,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <stdexcept>
 #include <thread>
 #include <tuple>
 #include <utility>
@@ -18,11 +17,6 @@
 #include "host/ranks/ranks.hpp"
 
 namespace raya {
-
-/// Thrown in ranks that wait for a rank that has failed.
-struct RankFailure : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
 
 /// Messages that ranks have sent and that their receivers have not received yet.
 struct MessageStore {
@@ -41,7 +35,7 @@ struct MessageStore {
     void take(const Key& key, std::span<std::byte> bytes) {
         std::unique_lock lock(mutex);
         changed.wait(lock, [&] { return failed || !messages[key].empty(); });
-        if (messages[key].empty()) throw RankFailure("another rank failed");
+        if (messages[key].empty()) throw RankFailure("another rank failed", 1);
         const std::vector<std::byte> message = std::move(messages[key].front());
         messages[key].pop_front();
         if (message.size() != bytes.size())

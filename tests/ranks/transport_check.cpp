@@ -92,6 +92,7 @@ int check_all(Ranks& ranks) {
         check_broadcast(ranks, size, checks);
         check_gathers(ranks, size, checks);
         check_neighbours(ranks, size, checks);
+        ranks.poll_failures();
     }
     std::uint32_t failures = 0;
     for (const std::uint32_t rank_failures : ranks.all_gather(checks.failures)) failures += rank_failures;
