@@ -292,7 +292,7 @@ TEST_CASE("verify --as: runs the checks of a render, and finds a fault only if t
          {"FAIL  image     polygons fp32, as given", "-DRAYA_ACCEL=2",
           "FAIL  image     polygons.nff 32x16, as given and as simple as possible"}},
         {"polygons",
-         "--machine grande --accel bvh --lanes 4" + wrong_packet,
+         "--machine grande --accel bvh --lanes 16" + wrong_packet,
          {"--only", "image polygons"},
          4,
          {"FAIL  image     polygons fp32, as given", "-DRAYA_RAY_PACKETS=1"}},
