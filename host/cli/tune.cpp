@@ -97,7 +97,8 @@ void tune_device(const CLI::App& parser, TuneCommand& command) {
         tunings.push_back(tune(device, workload, settings, progress_printer(workload)));
         remaining_s = std::max(0.0, remaining_s - tunings.back().seconds);
         const std::string scene = render.scene.empty() ? "own" : render.scene;
-        save_tuned(device, entry_of(tunings.back(), scene));
+        const Tuning& tuning = tunings.back();
+        save_tuned(device, {tuning.workload.key(), tuning.best, 1 / tuning.ratio, scene});
     }
     clear_status();
     print_tunings(tunings);

@@ -85,7 +85,7 @@ TEST_CASE("faults injected into the number layer are detected", "[number][mutati
     for (const Mutation& mutation : mutations()) {
         CAPTURE(mutation.fault, mutation.patch.file, kMutationSeed);
         const NumberRows rows = RandomOperands(mutation.format, kMutationSeed).rows(kMutationRows);
-        NumberBuild build = mutation.refines ? refined_build(mutation.format, 1) : number_build(mutation.format, 1);
+        NumberBuild build = mutation.refines ? refined_build(mutation.format) : number_build(mutation.format);
         build.sources.patches.push_back(mutation.patch);
         CHECK(wrong_numbers(build, rows, expected_by_mpfr(mutation.format, rows, {mutation.operation})) != "");
     }

@@ -55,7 +55,7 @@ const Build kRingBuilds[] = {{"fp32", AccelKind::kNone, 4, 1},
                              {"spa22", AccelKind::kGrid, 4, 3},
                              {"fp32", AccelKind::kBvh, 4, 1},
                              {"spa22", AccelKind::kBvh, 4, 1},
-                             {"fp32", AccelKind::kBvh, 4, 3, true}};
+                             {"fp32", AccelKind::kBvh, 8, 3, true}};  // packets need eight lanes (shading/tree.clh)
 const Build kTorusBuilds[] = {
     {"fp32", AccelKind::kNone, 4, 1}, {"fp32", AccelKind::kNone, 1, 3}, {"spa22", AccelKind::kNone, 4, 1}};
 
