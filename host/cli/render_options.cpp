@@ -66,6 +66,9 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
     ring_only(add_value(command, "--pes P", o.pes,
                         "Number P of processing elements, 1..W*H; default: the machine's, or A*B of a grid",
                         "Number of PEs; default: the machine's"));
+    ring_only(add_value(command, "--split G", o.split,
+                        "Number G of parts of the objects, which rotate on the ring; a divisor of P; 1: every PE stores "
+                        "all objects; default: the smallest number with which the scene fits a PE"));
     ring_only(
         add_value(command, "--offset p", o.offset,
                   "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W) on spa and grande, 0 on "
@@ -235,6 +238,7 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     set_mapping(settings, o, image_size(o, scene));
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
     settings.antialias = antialias_settings(o);
+    settings.split = o.split;
     settings.accel = accel_of(o, settings, scene);
     settings.machine.pe_memory_bytes = pe_memory_of(o, settings.machine);
     settings.kernels = kernel_choice(o);

@@ -17,6 +17,7 @@ struct RenderOptions {
     std::string scene, machine = "spa", size, mapping, format, device, kernel_dir, accel;
     Sampling sampling = Sampling::kCentres;
     AntialiasMethod antialias = AntialiasMethod::kNone;
+    std::uint32_t split = 0;
     std::optional<raya_u32> points;
     std::optional<ExchangeMethod> exchange;
     std::optional<Fold> fold;

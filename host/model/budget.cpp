@@ -194,6 +194,11 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      .multiplications = 12 + 18,
      .work = "a primary ray whose first voxel belongs to another node: no packet. A ray that misses the box is charged "
              "the same"},
+    // Moves: origin 3, direction 3, nearest distance and object number 2, both stored 2. Branches: next ray, done.
+    {.event = RAYA_RESUMED,
+     .moves = 3 + 3 + 2 + 2,
+     .branches = 2,
+     .work = "a ray taken up and put back by a ring PE that tests it against a part of the objects"},
 }};
 
 constexpr bool budgets_in_order() {

@@ -10,6 +10,7 @@
 #include "host/model/number_format.hpp"
 #include "host/ring/mapping.hpp"
 #include "kernels/shared/bvh.h"
+#include "kernels/shared/part.h"
 
 namespace raya {
 namespace {
@@ -18,6 +19,13 @@ constexpr std::uint64_t kPendingRayWords = 7;  // a pending ray on the stack: or
 // State of a ray tree except the stack: ray, hit, normal, mirror direction, tint, sum, counters.
 constexpr std::uint64_t kRayTreeWords = 32;
 constexpr std::uint64_t kPixelBytes = 12;  // three colour components of 4 bytes
+
+// Returns the number of ray trees, at most one for each pixel of a share, that fit the rest of the memory.
+std::uint32_t trees_in_flight(const Machine& machine, const PeMemory& memory, std::uint32_t share_pixels) {
+    if (!machine.pe_memory_bytes) return share_pixels;
+    const std::uint64_t more = (*machine.pe_memory_bytes - memory.bytes()) / (4 * memory.tree_words);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(1 + more, share_pixels));
+}
 
 [[noreturn]] void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes,
                          const std::string& remedy) {
@@ -31,7 +39,10 @@ constexpr std::uint64_t kPixelBytes = 12;  // three colour components of 4 bytes
 }  // namespace
 
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
-    PeMemory memory{.job_words = demand.job_words, .tree_words = kRayTreeWords + kPendingRayWords * demand.bounces};
+    PeMemory memory{.job_words = demand.job_words,
+                    .part_words = demand.part_words,
+                    .tree_words = demand.part_words > 0 ? raya_flight_words(demand.bounces) - RAYA_EVENTS
+                                                        : kRayTreeWords + kPendingRayWords * demand.bounces};
     const bool antialiased = demand.antialias != AntialiasMethod::kNone;
     // The number of pixels that is reduced until the PE's memory suffices.
     std::uint32_t& fitted_pixels = antialiased ? memory.band_pixels : memory.block_pixels;
@@ -40,7 +51,10 @@ PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
     if (demand.antialias == AntialiasMethod::kSupersample) memory.marks = demand.share_pixels;
     const std::uint64_t fixed_bytes = memory.bytes();
     fitted_pixels = demand.share_pixels;
-    if (!machine.pe_memory_bytes || memory.bytes() <= *machine.pe_memory_bytes) return memory;
+    if (!machine.pe_memory_bytes || memory.bytes() <= *machine.pe_memory_bytes) {
+        if (demand.part_words > 0) memory.trees = trees_in_flight(machine, memory, demand.share_pixels);
+        return memory;
+    }
 
     const std::uint64_t limit_bytes = *machine.pe_memory_bytes;
     if (fixed_bytes + kPixelBytes > limit_bytes && antialiased)
@@ -196,25 +210,29 @@ std::size_t saved_tree_words(const KernelOptions& options, std::uint32_t pes) {
 
 }  // namespace
 
-Tracer::Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity, const LaunchWork& work)
+SampleTracer::SampleTracer(Kernels& kernels, std::string build_options, const Distribution& pes,
+                           std::uint32_t capacity)
     : session_(kernels.session()),
       options_(kernels.options()),
+      build_options_(std::move(build_options)),
       pes_(pes),
       capacity_(capacity),
+      progress_(session_.buffer<raya_trace_progress>("progress", pes.count())) {}
+
+Tracer::Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity, const LaunchWork& work)
+    : SampleTracer(kernels, kernels.program(TraceKernel::kFile).options(), pes, capacity),
       work_(work),
-      build_options_(kernels.program(TraceKernel::kFile).options()),
       kernel_(kernels.get<TraceKernel>()),
-      progress_(session_.buffer<raya_trace_progress>("progress", pes.count())),
       saved_trees_(session_.buffer<std::uint32_t>("saved trees", saved_tree_words(options_, pes.count()))) {}
 
-PassCounters Tracer::make_counters(const std::string& pass) const {
+PassCounters SampleTracer::make_counters(const std::string& pass) const {
     const std::size_t costs = options_.packets ? 1 : std::size_t{pes_.count()} * capacity_;  // else not counted
     return {session_.buffer<std::uint64_t>("pixel cycles of " + pass, costs),
             session_.buffer<std::uint64_t>("events of " + pass,
                                            std::size_t{pes_.count()} * options_.group_size * RAYA_EVENTS)};
 }
 
-void Tracer::clear(PassCounters& counters) {
+void SampleTracer::clear(PassCounters& counters) {
     session_.write("clear counters", counters.events, std::vector<std::uint64_t>(counters.events.size()));
     session_.fill("clear counters", counters.cycles, 0);
 }
@@ -232,26 +250,27 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
     const auto launch_part = [&](std::uint32_t work, bool) {
         launch(label, job, range, points, work, marks, pixels, counters);
     };
-    const auto end = [&] {
-        std::vector<raya_trace_progress> pes(pes_.count());
-        session_.read(label, progress_, pes);
-        LaunchEnd ended;
-        std::uint64_t traced = 0;
-        for (const raya_trace_progress& pe : pes) {
-            ended.done &= pe.left == 0;
-            ended.truncated |= pe.cut > 0;
-            traced += pe.next - range.begin;
-        }
-        if (progress && !ended.truncated)
-            progress(ended.done ? 1 : static_cast<double>(traced) / (1.0 * pes_.count() * (range.end - range.begin)));
-        return ended;
-    };
     launches_.run(session_, label, progress ? work_.with_progress : work_.first, work_.target_s / (progress ? 2 : 1),
-                  launch_part, end, progress_, saved_trees_, pixels, counters.cycles, counters.events);
+                  launch_part, [&] { return read_progress(label, range, progress); }, progress_, saved_trees_, pixels, counters.cycles, counters.events);
+}
+
+LaunchEnd SampleTracer::read_progress(const std::string& label, PixelRange range, const ProgressCallback& progress) {
+    std::vector<raya_trace_progress> pes(pes_.count());
+    session_.read(label, progress_, pes);
+    LaunchEnd ended;
+    std::uint64_t traced = 0;
+    for (const raya_trace_progress& pe : pes) {
+        ended.done &= pe.left == 0;
+        ended.truncated |= pe.cut > 0;
+        traced += pe.next - range.begin;
+    }
+    if (progress && !ended.truncated)
+        progress(ended.done ? 1 : static_cast<double>(traced) / (1.0 * pes_.count() * (range.end - range.begin)));
+    return ended;
 }
 
 // Writes the buffer instead of filling it, because Oclgrind reports filled buffers as uninitialised.
-void Tracer::reset_progress(const std::string& label, std::uint32_t pixel) {
+void SampleTracer::reset_progress(const std::string& label, std::uint32_t pixel) {
     session_.write(label, progress_, std::vector<raya_trace_progress>(pes_.count(), {pixel, 0, 0}));
 }
 

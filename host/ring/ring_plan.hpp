@@ -26,21 +26,23 @@ namespace raya {
 /// Contents of the memory of each PE. A word has 4 bytes.
 struct PeMemory {
     std::uint64_t job_words = 0;   // number of words of the job, which are broadcast to all PEs
-    std::uint64_t tree_words = 0;  // number of words of one ray tree's state: the modelled PE traces one ray at a time
+    std::uint64_t part_words = 0;  // number of words of a part of divided objects, stored twice: one is in transit
+    std::uint64_t tree_words = 0;  // number of words of one ray tree's state
+    std::uint32_t trees = 1;       // number of ray trees in flight; 1 if each PE has all objects
     std::uint32_t block_pixels = 0;  // number of traced pixels that are not gathered yet, 3 words each
     std::uint32_t sum_pixels = 0;    // number of filter sums, 3 words each
     std::uint32_t band_pixels = 0;   // number of pixels received from another PE, 3 words each
     std::uint32_t marks = 0;         // number of marks for supersampling, one byte each
 
     std::uint64_t bytes() const {
-        return 4 * (job_words + tree_words + 3ull * (block_pixels + sum_pixels + band_pixels)) + marks;
+        return 4 * (job_words + 2 * part_words + tree_words * trees + 3ull * (block_pixels + sum_pixels + band_pixels)) + marks;
     }
 };
 
 /// Properties of a render that determine a PE's memory.
 struct PeDemand {
     std::string scene;               // name of the scene, for messages
-    std::uint64_t job_words = 0;     // see PeMemory
+    std::uint64_t job_words = 0, part_words = 0;  // see PeMemory
     std::uint32_t bounces = 0;       // maximum number of reflections and refractions after the primary ray
     std::uint32_t share_pixels = 0;  // maximum number of pixels that a PE owns
     AntialiasMethod antialias = AntialiasMethod::kNone;
@@ -66,6 +68,9 @@ struct RingSettings : RenderSettings {
     // Maximum number of pixels of all PEs that the device holds at a time, 20 bytes each. With anti-aliasing the device
     // holds all pixels.
     std::uint64_t device_pixels = 1 << 22;
+    // Number of parts G of the objects, which rotate on the ring; a divisor of the number of PEs. 1: every PE stores all
+    // objects; 0: the smallest number with which the scene fits a PE.
+    std::uint32_t split = 0;
 };
 
 /// Sets settings.packets if that is possible: in fp32 with a BVH, if the mapping is tiles, so that the lanes hold
@@ -144,47 +149,67 @@ using TraceKernel =
                     Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&, Buffer<raya_trace_progress>&,
                     Buffer<std::uint32_t>&>;
 
-class Tracer {
+/// Traces sample points of the pixels of all PEs on a device.
+class SampleTracer {
   public:
-    /// `pes`: PEs on this device; `capacity`: number of pixels of each PE in the device buffers.
-    Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity, const LaunchWork& work);
+    virtual ~SampleTracer() = default;
 
     /// Allocates the counters of a pass.
     PassCounters make_counters(const std::string& pass) const;
     void clear(PassCounters& counters);
 
-    /// Launches the kernel once without pixels, so that its compilation, which PoCL does at the first launch, counts as
-    /// build time.
-    void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
-                 PassCounters& counters);
+    /// Launches the kernels once without pixels, so that their compilation, which PoCL does at the first launch, counts
+    /// as build time.
+    virtual void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
+                         PassCounters& counters) = 0;
 
     /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; supersampling points only of the marked
     /// pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of work,
     /// so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Throws DeviceError if the
     /// device ends loops early even in the smallest launch.
-    void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
+    virtual void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-               const ProgressCallback& progress = {});
+               const ProgressCallback& progress) = 0;
 
     const KernelOptions& options() const { return options_; }
     const std::string& build_options() const { return build_options_; }
+
+  protected:
+    /// `pes`: PEs on this device; `capacity`: number of pixels of each PE in the device buffers.
+    SampleTracer(Kernels& kernels, std::string build_options, const Distribution& pes, std::uint32_t capacity);
+
+    /// Sets the next pixel of every PE to index `pixel` of its share.
+    void reset_progress(const std::string& label, std::uint32_t pixel);
+    /// Reads the progress of all PEs in `range`, and calls `progress` if it is not empty.
+    LaunchEnd read_progress(const std::string& label, PixelRange range, const ProgressCallback& progress);
+
+    Session& session_;
+    KernelOptions options_;
+    std::string build_options_;
+    Distribution pes_;
+    std::uint32_t capacity_;
+    Buffer<raya_trace_progress> progress_;  // [PE]
+};
+
+/// Traces with the whole job in every PE (kernels/ring/trace.cl).
+class Tracer : public SampleTracer {
+  public:
+    Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity, const LaunchWork& work);
+
+    void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
+                 PassCounters& counters) override;
+    void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
+               const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
+               const ProgressCallback& progress) override;
 
   private:
     /// Launches the kernel for those pixels of the range that have not been traced.
     void launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                 std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters);
-    /// Sets the next pixel of every PE to index `pixel` of its share.
-    void reset_progress(const std::string& label, std::uint32_t pixel);
 
-    Session& session_;
-    KernelOptions options_;
-    Distribution pes_;
-    std::uint32_t capacity_;
     LaunchWork work_;
-    std::string build_options_;
     TraceKernel kernel_;
-    Buffer<raya_trace_progress> progress_;  // [PE]
-    Buffer<std::uint32_t> saved_trees_;     // unfinished ray trees, which the next launch continues
+    Buffer<std::uint32_t> saved_trees_;  // unfinished ray trees, which the next launch continues
     LaunchLoop<raya_trace_progress, std::uint32_t, float, std::uint64_t, std::uint64_t> launches_{
         "fewer tests of a ray (--accel bvh or grid), other --lanes or --group"};
 };

@@ -25,6 +25,31 @@ std::uint32_t device_window(const PeMemory& memory, const RingSettings& settings
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(memory.block_pixels, max_pixels));
 }
 
+PeMemory memory_of(const RingSettings& settings, const std::string& scene, const PackedJob& job,
+                   const std::optional<ObjectParts>& parts) {
+    PeDemand demand = pe_demand(settings, scene, parts ? parts->base.size() : job.words().size());
+    if (parts) demand.part_words = parts->part_words;
+    return plan_pe_memory(settings.machine, demand);
+}
+
+// Divides the objects into settings.split parts or, if it is 0 and the scene does not fit a PE, into as few as fit.
+std::optional<ObjectParts> parts_of(const PackedJob& job, const RingSettings& settings, const std::string& scene) {
+    if (settings.split > 1) return divide_objects(job, settings.split);
+    if (settings.split == 1 || settings.accel.kind != AccelKind::kNone) return {};
+    for (std::uint32_t parts = 1; parts <= settings.mapping.pes; ++parts) {
+        if (settings.mapping.pes % parts != 0) continue;
+        std::optional<ObjectParts> divided;
+        if (parts > 1) divided = divide_objects(job, parts);
+        try {
+            memory_of(settings, scene, job, divided);
+            return divided;
+        } catch (const DoesNotFit&) {
+            if (parts == settings.mapping.pes) throw;
+        }
+    }
+    return {};
+}
+
 constexpr std::uint32_t kFirstBandDivisor = 64;  // the first band is 1 / kFirstBandDivisor of a share
 constexpr std::uint32_t kMinPixelsPerLane = 16;  // minimum in the first band, so that no lane is idle
 
@@ -51,11 +76,12 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
       settings_(checked_settings(settings, session.device())),
       pes_(Distribution(settings_.mapping.pes, ranks)),
       job_(make_ring_job(session, scene, settings_, ranks, packed)),
+      parts_(parts_of(job_.job, settings_, scene.name)),
       share_pixels_(largest_share(settings_.mapping)),
-      memory_(plan_pe_memory(settings_.machine, pe_demand(settings_, scene.name, job_.job.words().size()))),
+      memory_(memory_of(settings_, scene.name, job_.job, parts_)),
       window_(device_window(memory_, settings_)),
       bus_(session, communication_, pes_),
-      broadcast_(session.buffer_of("broadcast words", std::span(job_.job.words()))),
+      broadcast_(session.buffer_of("broadcast words", std::span(parts_ ? parts_->base : job_.job.words()))),
       pixels_(session.buffer<float>("pixel blocks", 3ull * pes_.count() * window_)),
       no_marks_(session.buffer<std::uint8_t>("no marks", 1)) {
     ranks_.one_rank_per_host_first([this] { build(); });
@@ -67,10 +93,16 @@ void RingRenderer::build() {
     const Clock::time_point start = Clock::now();
     const KernelOptions options = kernel_options(settings_, job_.job, job_.accel, session_.device());
     Kernels kernels(session_, options, settings_.kernels.sources);
-    tracer_ =
-        std::make_unique<Tracer>(kernels, pes_, window_, launch_work(settings_, options, job_.objects, pes_.count()));
+    if (parts_) {
+        auto turns = std::make_unique<Turns>(kernels, communication_, pes_, window_, *parts_, memory_.trees);
+        turns_ = turns.get();
+        tracer_ = std::move(turns);
+    } else {
+        tracer_ = std::make_unique<Tracer>(kernels, pes_, window_,
+                                           launch_work(settings_, options, job_.objects, pes_.count()));
+    }
     counters_.push_back(tracer_->make_counters(kTracePass));
-    bus_.broadcast(broadcast_, job_.job.words());
+    bus_.broadcast(broadcast_, parts_ ? parts_->base : job_.job.words());
     tracer_->clear(counters_.front());
     tracer_->warm_up(broadcast_, no_marks_, pixels_, counters_.front());
     if (settings_.antialias.method != AntialiasMethod::kNone) build_exchange(options);
@@ -102,7 +134,8 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const Checkpoi
     const RankTraffic traffic_before = ranks_.traffic();
     RingResult result;
     prepare(result);
-    bus_.broadcast(broadcast_, job_.job.words());
+    bus_.broadcast(broadcast_, parts_ ? parts_->base : job_.job.words());
+    if (turns_) turns_->load_parts();
     if (checkpointing) resume(result);
     for (std::uint32_t block_begin = 0; block_begin < share_pixels_; block_begin += memory_.block_pixels)
         render_block(block_begin, result, progress);

@@ -1,0 +1,221 @@
+#include "host/ring/turns.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <numeric>
+
+#include "host/error.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::uint32_t kSlotAlignment = 16;  // maximum number of lanes
+
+using Words = std::vector<std::uint32_t>;
+
+// Packs one part of a job's objects.
+class PartPacker {
+  public:
+    PartPacker(const PackedJob& job, std::uint32_t base_words, std::uint32_t begin, std::uint32_t end)
+        : job_(job), base_words_(base_words), begin_(begin), end_(end) {
+        words_.resize(kWordsOf<raya_part>);
+        for (std::uint32_t object = begin; object < end; ++object) append_surface(surface_of(object));
+        fill_row();
+        append_spheres();
+        append_kind(RAYA_PLANE, RAYA_PLANE_WORDS, part_.objects.planes, part_.objects.planes_at);
+#define RAYA_APPEND_FIXED(kind, kinds, KIND) \
+    append_kind(RAYA_##KIND, RAYA_##KIND##_WORDS, part_.objects.kinds, part_.objects.kinds##_at);
+        RAYA_FIXED_LIST(RAYA_APPEND_FIXED)
+        const std::size_t polygons = words_.size();
+        append_kind(RAYA_POLYGON, RAYA_POLYGON_WORDS, part_.objects.polygons, part_.objects.polygons_at);
+        append_outlines(polygons);
+        fill_row();
+        part_.first = begin;
+        put_record(words_, 0, part_);
+    }
+
+    Words words() && { return std::move(words_); }
+
+  private:
+    struct Range {
+        std::uint32_t begin, end;
+        std::uint32_t size() const { return end - begin; }
+    };
+
+    const raya_objects& all() const { return job_.header().objects; }
+    // The part's objects of a kind.
+    Range range(std::uint32_t kind) const {
+        const std::uint32_t first = raya_first_object(all(), kind), last = raya_first_object(all(), kind + 1);
+        const std::uint32_t begin = std::clamp(begin_, first, last);
+        return {begin, std::max(begin, std::clamp(end_, first, last))};
+    }
+    std::uint32_t offset() const { return base_words_ + static_cast<std::uint32_t>(words_.size()); }
+    void fill_row() { words_.resize(padded_to_rows(words_.size())); }
+    void append(std::uint32_t at, std::size_t count) {
+        const auto from = job_.words().begin() + at;
+        words_.insert(words_.end(), from, from + static_cast<std::ptrdiff_t>(count));
+    }
+    std::uint32_t surface_of(std::uint32_t object) const {
+        return object < all().spheres ? job_.words()[raya_sphere_surfaces_at(all().spheres_at, all().spheres) + object]
+                                      : job_.object(object)[RAYA_OBJECT_SURFACE_AT];
+    }
+    void append_surface(std::uint32_t at) {
+        if (surfaces_.try_emplace(at, offset()).second) append(at, RAYA_SURFACE_WORDS);
+    }
+
+    void append_spheres() {
+        const Range spheres = range(RAYA_SPHERE);
+        part_.objects.spheres = spheres.size();
+        part_.objects.spheres_at = offset();
+        append(all().spheres_at + spheres.begin * RAYA_SPHERE_WORDS, std::size_t{spheres.size()} * RAYA_SPHERE_WORDS);
+        for (std::uint32_t i = spheres.begin; i < spheres.end; ++i) words_.push_back(surfaces_.at(surface_of(i)));
+    }
+
+    void append_kind(std::uint32_t kind, std::uint32_t words, std::uint32_t& count, std::uint32_t& at) {
+        const Range objects = range(kind);
+        count = objects.size();
+        at = offset();
+        for (std::uint32_t i = objects.begin; i < objects.end; ++i) {
+            const std::uint32_t* const object = job_.object(i);
+            words_.insert(words_.end(), object, object + words);
+            words_[words_.size() - words + RAYA_OBJECT_SURFACE_AT] = surfaces_.at(surface_of(i));
+        }
+    }
+
+    // Appends corners and normals of the polygons, whose records start at words_[record].
+    void append_outlines(std::size_t record) {
+        for (std::uint32_t i = 0; i < part_.objects.polygons; ++i, record += RAYA_POLYGON_WORDS) {
+            const std::uint32_t corners_at = words_[record + RAYA_POLYGON_CORNERS_AT],
+                                normals_at = words_[record + RAYA_POLYGON_NORMALS_AT];
+            words_[record + RAYA_POLYGON_CORNERS_AT] = offset();
+            append(corners_at, std::size_t{words_[record + RAYA_POLYGON_CORNERS]} * RAYA_CORNER_WORDS);
+            if (normals_at == 0) continue;
+            words_[record + RAYA_POLYGON_NORMALS_AT] = offset();
+            append(normals_at, RAYA_PATCH_WORDS);
+        }
+    }
+
+    const PackedJob& job_;
+    std::uint32_t base_words_, begin_, end_;
+    raya_part part_{};
+    Words words_;
+    std::map<std::uint32_t, std::uint32_t> surfaces_;  // offset in the job -> offset in the PE's memory
+};
+
+Words base_of(const PackedJob& job) {
+    raya_job header = job.header();
+    const auto lights = job.words().begin() + header.lights_at;
+    Words base(kWordsOf<raya_job>);
+    header.lights_at = kWordsOf<raya_job>;
+    base.insert(base.end(), lights, lights + std::ptrdiff_t{header.lights} * RAYA_LIGHT_WORDS);
+    base.resize(padded_to_rows(base.size()));
+    put_record(base, 0, header);
+    return base;
+}
+
+}  // namespace
+
+ObjectParts divide_objects(const PackedJob& job, std::uint32_t parts) {
+    if (job.header().lights > 32) throw UserError("the objects can be divided for at most 32 lights");
+    ObjectParts divided{.base = base_of(job), .parts = parts};
+    const auto base_words = static_cast<std::uint32_t>(divided.base.size());
+    const std::uint64_t objects = raya_first_object(job.header().objects, RAYA_OBJECT_KINDS);
+    std::vector<Words> packed;
+    for (std::uint64_t i = 0; i < parts; ++i) {
+        packed.push_back(PartPacker(job, base_words, static_cast<std::uint32_t>(objects * i / parts),
+                                    static_cast<std::uint32_t>(objects * (i + 1) / parts))
+                             .words());
+        divided.part_words = std::max(divided.part_words, static_cast<std::uint32_t>(packed.back().size()));
+    }
+    for (Words& part : packed) {
+        part.resize(divided.part_words);
+        divided.words.insert(divided.words.end(), part.begin(), part.end());
+    }
+    return divided;
+}
+
+Turns::Turns(Kernels& kernels, Communication& communication, const Distribution& pes, std::uint32_t capacity,
+             const ObjectParts& parts, std::uint32_t slots)
+    : SampleTracer(kernels, kernels.program(AdvanceKernel::kFile).options(), pes, capacity),
+      parts_(parts),
+      communication_(communication),
+      slots_(slots),
+      stride_((slots + kSlotAlignment - 1) / kSlotAlignment * kSlotAlignment),
+      ring_(session_, communication, pes, 1, parts.part_words),
+      advance_(kernels.get<AdvanceKernel>()),
+      meet_(kernels.get<MeetKernel>()),
+      state_(session_.buffer<std::uint32_t>(
+          "trees in flight", std::size_t{pes.count()} * stride_ * raya_flight_words(options_.bounces))),
+      spent_(session_.buffer<std::uint64_t>("cycles of a step", std::size_t{parts.parts + 1} * pes.count() * options_.group_size)) {}
+
+void Turns::load_parts() {
+    std::vector<float> blocks;
+    blocks.reserve(std::size_t{pes_.count()} * parts_.part_words);
+    for (std::uint32_t slot = 0; slot < pes_.count(); ++slot)
+        for (const std::uint32_t word : parts_.part((pes_.first() + slot) % parts_.parts))
+            blocks.push_back(std::bit_cast<float>(word));
+    session_.write("bus.broadcast parts", ring_.blocks(), blocks);
+    communication_.broadcasts += parts_.parts;
+    communication_.broadcast_words += parts_.words.size();
+}
+
+void Turns::warm_up(const Buffer<std::uint32_t>& base, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
+                    PassCounters& counters) {
+    reset_progress("warm-up", 0);
+    load_parts();
+    advance("warm-up", base, {}, RAYA_POINTS_OWN, true, marks, pixels, counters);
+    meet("warm-up", base, 1);
+}
+
+void Turns::trace(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,
+                  const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
+                  const ProgressCallback& progress) {
+    reset_progress(label, range.begin);
+    for (bool fresh = true;; fresh = false) {
+        advance(label, base, range, points, fresh, marks, pixels, counters);
+        const LaunchEnd ended = read_progress(label, range, progress);
+        if (ended.truncated) throw truncated_loops_error(label, session_.device().name, "fewer bounces (--bounces)");
+        add_barriers(label, fresh ? 1 : parts_.parts + 1);  // of this launch and of the steps before it
+        const std::vector<std::uint32_t> left = pes_.ranks().all_gather(std::uint32_t{!ended.done});
+        if (std::count(left.begin(), left.end(), 1u) == 0) return;
+        ++turns_;
+        for (std::uint32_t step = 0; step < parts_.parts; ++step) {
+            if (step > 0) ring_.rotate(RingDirection::kUp);
+            meet(label + ".meet", base, step + 1);
+        }
+    }
+}
+
+void Turns::advance(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,
+                    bool fresh, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters) {
+    session_.launch(label, advance_, pes_.count(), options_.group_size, base, Uint<"word_count">{cl_uint(base.size())},
+                    Uint<"window_start">{range.window_start}, Uint<"capacity">{capacity_}, Uint<"end">{range.end},
+                    Uint<"points">{points}, Uint<"first_pe">{pes_.first()}, Uint<"slots">{slots_},
+                    Uint<"stride">{stride_}, Uint<"fresh">{fresh}, marks, LocalMemory<raya_trace_progress>{1},
+                    LocalMemory<std::uint32_t>{base.size()}, pixels, counters.cycles, counters.events, progress_,
+                    state_, spent_);
+}
+
+void Turns::meet(const std::string& label, const Buffer<std::uint32_t>& base, std::uint32_t step) {
+    session_.launch(label, meet_, pes_.count(), options_.group_size, base, Uint<"word_count">{cl_uint(base.size())},
+                    ring_.blocks(), Uint<"part_words_count">{parts_.part_words}, Uint<"slots">{slots_},
+                    Uint<"stride">{stride_}, Uint<"step">{step},
+                    LocalMemory<std::uint32_t>{base.size() + parts_.part_words}, state_, spent_);
+}
+
+void Turns::add_barriers(const std::string& label, std::uint32_t steps) {
+    const std::size_t per_pe = options_.group_size, per_step = pes_.count() * per_pe;
+    std::vector<std::uint64_t> spent(steps * per_step), busiest(steps);
+    session_.read(label, spent_, spent);
+    for (std::size_t n = 0; n < spent.size(); n += per_pe) {
+        const auto first = spent.begin() + static_cast<std::ptrdiff_t>(n);
+        std::uint64_t& most = busiest[n / per_step];
+        most = std::max(most, std::accumulate(first, first + static_cast<std::ptrdiff_t>(per_pe), std::uint64_t{0}));
+    }
+    const std::vector<std::uint64_t> all = pes_.ranks().all_gather(std::span<const std::uint64_t>(busiest));
+    for (std::size_t n = 0; n < all.size(); ++n) busiest[n % steps] = std::max(busiest[n % steps], all[n]);
+    barrier_cycles_ = std::accumulate(busiest.begin(), busiest.end(), barrier_cycles_);
+}
+
+}  // namespace raya
