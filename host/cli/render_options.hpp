@@ -17,15 +17,14 @@ struct RenderOptions {
     std::string scene, machine = "spa", size, mapping, format, device, kernel_dir, accel;
     Sampling sampling = Sampling::kCentres;
     AntialiasMethod antialias = AntialiasMethod::kNone;
-    std::uint32_t split = 0;
     std::optional<raya_u32> points;
     std::optional<ExchangeMethod> exchange;
     std::optional<Fold> fold;
     bool strict = false, no_tuned = false;
     ViewOptions view;
-    std::optional<double> threshold;
-    std::optional<std::uint64_t> pe_memory;  // bytes
-    std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
+    std::optional<double> threshold, display_rate;  // display_rate: pixels per second
+    std::optional<std::uint64_t> pe_memory;         // bytes
+    std::optional<std::uint32_t> split, pes, offset, bounces, lanes, group;
 };
 
 /// Marks an option that only ring machines have.

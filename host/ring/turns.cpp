@@ -1,9 +1,12 @@
 #include "host/ring/turns.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <bit>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "host/error.hpp"
 
@@ -17,8 +20,7 @@ using Words = std::vector<std::uint32_t>;
 // Packs one part of a job's objects.
 class PartPacker {
   public:
-    PartPacker(const PackedJob& job, std::uint32_t base_words, std::uint32_t begin, std::uint32_t end)
-        : job_(job), base_words_(base_words), begin_(begin), end_(end) {
+    PartPacker(const PackedJob& job, std::uint32_t begin, std::uint32_t end) : job_(job), begin_(begin), end_(end) {
         words_.resize(kWordsOf<raya_part>);
         for (std::uint32_t object = begin; object < end; ++object) append_surface(surface_of(object));
         fill_row();
@@ -50,7 +52,7 @@ class PartPacker {
         const std::uint32_t begin = std::clamp(begin_, first, last);
         return {begin, std::max(begin, std::clamp(end_, first, last))};
     }
-    std::uint32_t offset() const { return base_words_ + static_cast<std::uint32_t>(words_.size()); }
+    std::uint32_t offset() const { return static_cast<std::uint32_t>(words_.size()); }
     void fill_row() { words_.resize(padded_to_rows(words_.size())); }
     void append(std::uint32_t at, std::size_t count) {
         const auto from = job_.words().begin() + at;
@@ -97,10 +99,10 @@ class PartPacker {
     }
 
     const PackedJob& job_;
-    std::uint32_t base_words_, begin_, end_;
+    std::uint32_t begin_, end_;
     raya_part part_{};
     Words words_;
-    std::map<std::uint32_t, std::uint32_t> surfaces_;  // offset in the job -> offset in the PE's memory
+    std::map<std::uint32_t, std::uint32_t> surfaces_;  // offset in the job -> offset in the part
 };
 
 Words base_of(const PackedJob& job) {
@@ -117,13 +119,11 @@ Words base_of(const PackedJob& job) {
 }  // namespace
 
 ObjectParts divide_objects(const PackedJob& job, std::uint32_t parts) {
-    if (job.header().lights > 32) throw UserError("the objects can be divided for at most 32 lights");
-    ObjectParts divided{.base = base_of(job), .parts = parts};
-    const auto base_words = static_cast<std::uint32_t>(divided.base.size());
+    ObjectParts divided{.base = base_of(job), .words = {}, .parts = parts};
     const std::uint64_t objects = raya_first_object(job.header().objects, RAYA_OBJECT_KINDS);
     std::vector<Words> packed;
     for (std::uint64_t i = 0; i < parts; ++i) {
-        packed.push_back(PartPacker(job, base_words, static_cast<std::uint32_t>(objects * i / parts),
+        packed.push_back(PartPacker(job, static_cast<std::uint32_t>(objects * i / parts),
                                     static_cast<std::uint32_t>(objects * (i + 1) / parts))
                              .words());
         divided.part_words = std::max(divided.part_words, static_cast<std::uint32_t>(packed.back().size()));
@@ -133,6 +133,40 @@ ObjectParts divide_objects(const PackedJob& job, std::uint32_t parts) {
         divided.words.insert(divided.words.end(), part.begin(), part.end());
     }
     return divided;
+}
+
+namespace {
+
+constexpr std::uint32_t kMaxDividedLights = 32;  // `meet` marks blocked shadow rays in a word
+
+StoredScene store_in_parts(const PackedJob& job, const RingSettings& settings, const std::string& scene,
+                           std::uint32_t parts) {
+    StoredScene stored;
+    if (parts > 1) stored.parts = divide_objects(job, parts);
+    PeDemand demand = pe_demand(settings, scene, stored.words(job).size());
+    demand.parts = parts;
+    if (stored.parts) demand.part_words = stored.parts->part_words;
+    demand.divisible = parts < settings.mapping.pes && settings.accel.kind == AccelKind::kNone && !settings.dynamic;
+    stored.memory = plan_pe_memory(settings.machine, demand);
+    return stored;
+}
+
+}  // namespace
+
+StoredScene store_scene(const PackedJob& job, const RingSettings& settings, const std::string& scene) {
+    const std::uint32_t pes = settings.mapping.pes, lights = job.header().lights;
+    if (settings.split > 1 && lights > kMaxDividedLights)
+        throw UserError(
+            fmt::format("{}: --split {} with {} lights: at most {} are supported; use --split 1 or fewer "
+                        "lights",
+                        scene, settings.split, lights, kMaxDividedLights));
+    if (settings.split > 0 || settings.accel.kind != AccelKind::kNone || settings.dynamic || lights > kMaxDividedLights)
+        return store_in_parts(job, settings, scene, std::max(settings.split, 1u));
+    for (std::uint32_t parts = 1;; ++parts) try {
+            if (pes % parts == 0) return store_in_parts(job, settings, scene, parts);
+        } catch (const DoesNotFit&) {
+            if (parts == pes) throw;
+        }
 }
 
 Turns::Turns(Kernels& kernels, Communication& communication, const Distribution& pes, std::uint32_t capacity,
@@ -146,24 +180,39 @@ Turns::Turns(Kernels& kernels, Communication& communication, const Distribution&
       advance_(kernels.get<AdvanceKernel>()),
       meet_(kernels.get<MeetKernel>()),
       state_(session_.buffer<std::uint32_t>(
-          "trees in flight", std::size_t{pes.count()} * stride_ * raya_flight_words(options_.bounces))),
-      spent_(session_.buffer<std::uint64_t>("cycles of a step", std::size_t{parts.parts + 1} * pes.count() * options_.group_size)) {}
+          "trees in flight", std::size_t{pes.count()} * stride_ * (raya_flight_words(options_.bounces) + RAYA_EVENTS))),
+      spent_(session_.buffer<std::uint64_t>("cycles of a turn",
+                                            std::size_t{parts.parts + 1} * pes.count() * options_.group_size)) {}
 
-void Turns::load_parts() {
+void Turns::load_parts(std::uint64_t rotations) {
     std::vector<float> blocks;
     blocks.reserve(std::size_t{pes_.count()} * parts_.part_words);
-    for (std::uint32_t slot = 0; slot < pes_.count(); ++slot)
-        for (const std::uint32_t word : parts_.part((pes_.first() + slot) % parts_.parts))
+    const std::uint64_t behind = parts_.parts - rotations % parts_.parts;
+    for (const std::uint32_t pe : pes_.own())
+        for (const std::uint32_t word : parts_.part(static_cast<std::uint32_t>((pe + behind) % parts_.parts)))
             blocks.push_back(std::bit_cast<float>(word));
     session_.write("bus.broadcast parts", ring_.blocks(), blocks);
+}
+
+void Turns::broadcast_parts() {
+    load_parts(0);
+    in_flight_ = false;
     communication_.broadcasts += parts_.parts;
     communication_.broadcast_words += parts_.words.size();
+}
+
+void Turns::visit_state(RenderState& state, std::uint64_t turns) {
+    state.buffer(progress_);
+    state.buffer(state_);
+    if (!state.restores()) return;
+    load_parts(turns * (parts_.parts - 1));
+    in_flight_ = true;
 }
 
 void Turns::warm_up(const Buffer<std::uint32_t>& base, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                     PassCounters& counters) {
     reset_progress("warm-up", 0);
-    load_parts();
+    load_parts(0);
     advance("warm-up", base, {}, RAYA_POINTS_OWN, true, marks, pixels, counters);
     meet("warm-up", base, 1);
 }
@@ -171,19 +220,27 @@ void Turns::warm_up(const Buffer<std::uint32_t>& base, const Buffer<std::uint8_t
 void Turns::trace(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,
                   const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                   const ProgressCallback& progress) {
-    reset_progress(label, range.begin);
-    for (bool fresh = true;; fresh = false) {
+    bool fresh = !std::exchange(in_flight_, false);
+    if (fresh) reset_progress(label, range.begin);
+    for (;; fresh = false) {
+        double done = 0;
         advance(label, base, range, points, fresh, marks, pixels, counters);
-        const LaunchEnd ended = read_progress(label, range, progress);
-        if (ended.truncated) throw truncated_loops_error(label, session_.device().name, "fewer bounces (--bounces)");
-        add_barriers(label, fresh ? 1 : parts_.parts + 1);  // of this launch and of the steps before it
+        const LaunchEnd ended = read_progress(label, range, [&](double fraction) { done = fraction; });
+        if (ended.truncated) throw truncated_loops_error(label, session_.device().name, "a larger --split");
+        if (progress) progress(done);
         const std::vector<std::uint32_t> left = pes_.ranks().all_gather(std::uint32_t{!ended.done});
-        if (std::count(left.begin(), left.end(), 1u) == 0) return;
-        ++turns_;
-        for (std::uint32_t step = 0; step < parts_.parts; ++step) {
+        const bool ends = std::count(left.begin(), left.end(), 1u) == 0;
+        for (std::uint32_t step = 0; step < parts_.parts && !ends; ++step) {
             if (step > 0) ring_.rotate(RingDirection::kUp);
-            meet(label + ".meet", base, step + 1);
+            meet(label, base, step + 1);
         }
+        const std::uint64_t cycles = barrier_cycles(label, ends ? 1 : parts_.parts + 1);
+        if (!ends)
+            counters.turn_cycles.push_back(cycles);
+        else if (!counters.turn_cycles.empty())
+            counters.turn_cycles.back() += cycles;  // the lights of the last hits
+        if (ends) return;
+        if (after_turn_) after_turn_(done);
     }
 }
 
@@ -193,18 +250,17 @@ void Turns::advance(const std::string& label, const Buffer<std::uint32_t>& base,
                     Uint<"window_start">{range.window_start}, Uint<"capacity">{capacity_}, Uint<"end">{range.end},
                     Uint<"points">{points}, Uint<"first_pe">{pes_.first()}, Uint<"slots">{slots_},
                     Uint<"stride">{stride_}, Uint<"fresh">{fresh}, marks, LocalMemory<raya_trace_progress>{1},
-                    LocalMemory<std::uint32_t>{base.size()}, pixels, counters.cycles, counters.events, progress_,
-                    state_, spent_);
+                    local_words(base.size()), pixels, counters.cycles, counters.events, progress_, state_, spent_);
 }
 
 void Turns::meet(const std::string& label, const Buffer<std::uint32_t>& base, std::uint32_t step) {
     session_.launch(label, meet_, pes_.count(), options_.group_size, base, Uint<"word_count">{cl_uint(base.size())},
                     ring_.blocks(), Uint<"part_words_count">{parts_.part_words}, Uint<"slots">{slots_},
-                    Uint<"stride">{stride_}, Uint<"step">{step},
-                    LocalMemory<std::uint32_t>{base.size() + parts_.part_words}, state_, spent_);
+                    Uint<"stride">{stride_}, Uint<"step">{step}, local_words(base.size() + parts_.part_words),
+                    progress_, state_, spent_);
 }
 
-void Turns::add_barriers(const std::string& label, std::uint32_t steps) {
+std::uint64_t Turns::barrier_cycles(const std::string& label, std::uint32_t steps) {
     const std::size_t per_pe = options_.group_size, per_step = pes_.count() * per_pe;
     std::vector<std::uint64_t> spent(steps * per_step), busiest(steps);
     session_.read(label, spent_, spent);
@@ -215,7 +271,7 @@ void Turns::add_barriers(const std::string& label, std::uint32_t steps) {
     }
     const std::vector<std::uint64_t> all = pes_.ranks().all_gather(std::span<const std::uint64_t>(busiest));
     for (std::size_t n = 0; n < all.size(); ++n) busiest[n % steps] = std::max(busiest[n % steps], all[n]);
-    barrier_cycles_ = std::accumulate(busiest.begin(), busiest.end(), barrier_cycles_);
+    return std::accumulate(busiest.begin(), busiest.end(), std::uint64_t{0});
 }
 
 }  // namespace raya

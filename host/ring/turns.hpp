@@ -3,9 +3,13 @@
 // future work.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "host/array/checkpoints.hpp"
 #include "host/ring/bus_and_ring.hpp"
 #include "host/ring/ring_plan.hpp"
 #include "kernels/shared/part.h"
@@ -28,6 +32,19 @@ struct ObjectParts {
 /// objects differ by at most one. A part may be empty.
 ObjectParts divide_objects(const PackedJob& job, std::uint32_t parts);
 
+/// What every PE stores of a scene, and the plan of its memory.
+struct StoredScene {
+    std::optional<ObjectParts> parts;  // if the objects are divided
+    PeMemory memory;
+
+    /// Returns the words that are broadcast to all PEs.
+    const std::vector<std::uint32_t>& words(const PackedJob& job) const { return parts ? parts->base : job.words(); }
+};
+
+/// Divides the objects into settings.split parts or, if it is 0 and the scene does not fit a PE, into the smallest
+/// number of parts that fit. `scene`: name, for messages. Throws DoesNotFit if that number, or no number, fits.
+StoredScene store_scene(const PackedJob& job, const RingSettings& settings, const std::string& scene);
+
 using AdvanceKernel =
     DescribedKernel<"ring/turn.cl", "advance", const Buffer<std::uint32_t>&, Uint<"word_count">, Uint<"window_start">,
                     Uint<"capacity">, Uint<"end">, Uint<"points">, Uint<"first_pe">, Uint<"slots">, Uint<"stride">,
@@ -37,9 +54,9 @@ using AdvanceKernel =
 using MeetKernel =
     DescribedKernel<"ring/turn.cl", "meet", const Buffer<std::uint32_t>&, Uint<"word_count">, const Buffer<float>&,
                     Uint<"part_words_count">, Uint<"slots">, Uint<"stride">, Uint<"step">, LocalMemory<std::uint32_t>,
-                    Buffer<std::uint32_t>&, Buffer<std::uint64_t>&>;
+                    Buffer<raya_trace_progress>&, Buffer<std::uint32_t>&, Buffer<std::uint64_t>&>;
 
-/// Traces the pixels of a share in turns of the objects.
+/// Traces the pixels of a share in turns of the objects. A turn that no PE needs is not made.
 class Turns : public SampleTracer {
   public:
     /// `slots`: number of ray trees that a PE keeps in flight. Other arguments: as of Tracer.
@@ -48,23 +65,29 @@ class Turns : public SampleTracer {
 
     void warm_up(const Buffer<std::uint32_t>& base, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                  PassCounters& counters) override;
+    /// Appends the turns to counters.turn_cycles. After visit_state() has restored trees in flight, continues them.
     void trace(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,
                const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                const ProgressCallback& progress) override;
 
     /// Sends every part to the PEs that start with it: one broadcast over the bus for each part.
-    void load_parts();
+    void broadcast_parts();
 
-    std::uint64_t turns() const { return turns_; }
-    /// Modelled cycles if every step waits for the busiest PE.
-    std::uint64_t barrier_cycles() const { return barrier_cycles_; }
+    /// Sets a function that trace() calls after each turn, with the completed fraction of its range.
+    void after_turn(ProgressCallback function) { after_turn_ = std::move(function); }
+
+    /// Saves or restores the trees in flight. `turns`: number of turns of the render so far.
+    void visit_state(RenderState& state, std::uint64_t turns);
 
   private:
+    /// Gives every PE the part that it holds after `rotations` rotations.
+    void load_parts(std::uint64_t rotations);
     void advance(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,
                  bool fresh, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters);
     void meet(const std::string& label, const Buffer<std::uint32_t>& base, std::uint32_t step);
-    /// Adds the cycles of the busiest PE in each of `steps` steps.
-    void add_barriers(const std::string& label, std::uint32_t steps);
+    /// Returns the sum of the cycles of the busiest PE in each of `steps` steps.
+    std::uint64_t barrier_cycles(const std::string& label, std::uint32_t steps);
+    LocalMemory<std::uint32_t> local_words(std::size_t words) const { return {options_.words_local ? words : 4}; }
 
     const ObjectParts& parts_;
     Communication& communication_;
@@ -72,9 +95,10 @@ class Turns : public SampleTracer {
     Ring ring_;
     AdvanceKernel advance_;
     MeetKernel meet_;
-    Buffer<std::uint32_t> state_;  // [PE][raya_flight_words()][stride]
+    Buffer<std::uint32_t> state_;  // [PE][word][stride]: ray trees in flight (kernels/ring/flight.clh)
     Buffer<std::uint64_t> spent_;  // [G + 1][PE][L]: modelled cycles of each step of a turn
-    std::uint64_t turns_ = 0, barrier_cycles_ = 0;
+    bool in_flight_ = false;       // state_ is restored
+    ProgressCallback after_turn_;
 };
 
 }  // namespace raya

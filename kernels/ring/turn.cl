@@ -19,11 +19,15 @@
 #ifndef RAYA_GROUP
 #define RAYA_GROUP 1  // L: number of work-items in a work-group, 1..1024
 #endif
+#if RAYA_WORDS_LOCAL
 typedef __local const raya_part* part_words;
+#else
+typedef __global const raya_part* part_words;
+#endif
 
 // Cursor at the slots first .. first + V - 1 of this work-group's PE.
 static inline save_cursor open_flight(__global uint* state, uint stride, uint first, int restores) {
-    const size_t words = raya_flight_words(RAYA_BOUNCES);
+    const size_t words = raya_flight_words(RAYA_BOUNCES) + RAYA_EVENTS;
     const save_cursor k = {state + get_group_id(0) * words * stride + first, stride, restores};
     return k;
 }
@@ -96,7 +100,7 @@ void advance(__global const uint* restrict broadcast,  // the job's header and l
              const uint fresh,                         // 1: no trees are in flight yet
              __global const uchar* restrict marks,
              __local raya_trace_progress* shared,
-             __local uint4* memory,                    // word_count words, in whole uint4
+             __local uint4* memory,                    // word_count words, in whole uint4, if RAYA_WORDS_LOCAL is 1
              __global float* restrict pixels,
              __global ulong* restrict cycles,
              __global ulong* restrict events,
@@ -108,13 +112,20 @@ void advance(__global const uint* restrict broadcast,  // the job's header and l
     const uint group = get_group_id(0), item = get_local_id(0);
     if (item == 0) {
         mine->next = progress[group].next;
-        mine->left = mine->cut = 0;
+        mine->left = 0;
+        mine->cut = progress[group].cut;  // of the last turn
     }
-    __local uint* const words_of_job = (__local uint*)memory;
-    for (uint i = item; i < word_count; i += RAYA_GROUP) words_of_job[i] = broadcast[i];
+#if RAYA_WORDS_LOCAL
+    __local uint* const local_words = (__local uint*)memory;
+    for (uint i = item; i < word_count; i += RAYA_GROUP) local_words[i] = broadcast[i];
+    const words scene = local_words;
+#else
+    const words scene = broadcast;
+#endif
+    const uint used_slots = fresh || progress[group].left ? slots : 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     pixel_store store;
-    store.mapping = ((job_words)words_of_job)->mapping;
+    store.mapping = ((job_words)scene)->mapping;
     store.share = raya_share_of(store.mapping, first_pe + group);
     store.window_start = window_start;
     store.end = min(end, raya_share_size(store.share));
@@ -126,7 +137,7 @@ void advance(__global const uint* restrict broadcast,  // the job's header and l
     store.cycles = cycles + (size_t)group * capacity;
     open_store(&store);
     ulong used = 0;
-    if (advance_slots(words_of_job, &store, &mine->next, fresh, slots, stride, state, &used)) atomic_inc(&mine->left);
+    if (advance_slots(scene, &store, &mine->next, fresh, used_slots, stride, state, &used)) atomic_inc(&mine->left);
     __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
     for (uint e = 0; e < RAYA_COUNTED; ++e) counted[e] += sum_of(store.totals[e]);
     spent[group * RAYA_GROUP + item] = used;
@@ -138,75 +149,94 @@ void advance(__global const uint* restrict broadcast,  // the job's header and l
     progress[group].cut = mine->cut;
 }
 
-static inline void count_part_tests(tree* t, mask m, objects_words all) {
-#define RAYA_COUNT_PART(kind, kinds, KIND) count_events(t, RAYA_##KIND##_TESTS, m, all->kinds);
+// Counts the tests of the rays in the lanes `m` against the part's objects. Adds their modelled cycles to *cycles.
+static inline void count_part_tests(job_words job, tree* t, mask m, objects_words all, ulong* cycles) {
+    ulong of_a_ray = job->cycles[RAYA_RESUMED];
+#define RAYA_COUNT_PART(kind, kinds, KIND)                 \
+    count_events(t, RAYA_##KIND##_TESTS, m, all->kinds);   \
+    of_a_ray += (ulong)job->cycles[RAYA_##KIND##_TESTS] * all->kinds;
     RAYA_OBJECT_LIST(RAYA_COUNT_PART)
     count_event(t, RAYA_RESUMED, m);
+    *cycles += of_a_ray * mask_count(m);
 }
 
-// Tests the rays of one batch of slots against the part.
-static inline void meet_part(words scene, part_words part, flight* f) {
+// Tests the current rays of one batch of slots against the part.
+static inline void meet_current_rays(job_words job, words part, flight* f, ulong* cycles) {
+    const objects_words all = &((part_words)part)->objects;
+    const ray r = followed_ray(&f->t);
+    const hit h = closest_hit(part, all, r, 0);
+    count_part_tests(job, &f->t, f->t.active, all, cycles);
+    const index number = h.object + ((part_words)part)->first;
+    const mask tie = (h.distance == f->found.distance) & (number < f->found.object);
+    const mask nearest = f->t.active & (h.object != RAYA_NO_OBJECT) & ((h.distance < f->found.distance) | tie);
+    if (!mask_any(nearest)) return;
+    const hit_place p = find_place(job, part, all, nearest, h, r.origin, r.direction);
+    f->found = nearer(f->found, nearest, h.distance, 0);
+    f->found.object = choose_index(nearest, number, f->found.object);
+    choose_place(&f->place, nearest, &p, surface_colour(part, nearest, &p));
+}
+
+// Tests the shadow rays of the last hits of one batch of slots.
+static inline void meet_shadow_rays(words scene, words part, flight* f, ulong* cycles) {
     const job_words job = (job_words)scene;
-    const objects_words all = &part->objects;
-    if (mask_any(f->t.active)) {
-        const ray r = followed_ray(&f->t);
-        const hit h = closest_hit(scene, all, r, 0);
-        count_part_tests(&f->t, f->t.active, all);
-        const index number = h.object + part->first;
-        const mask tie = (h.distance == f->found.distance) & (number < f->found.object);
-        const mask nearest =
-            f->t.active & (h.object != RAYA_NO_OBJECT) & ((h.distance < f->found.distance) | tie);
-        if (mask_any(nearest)) {
-            const hit_place p = find_place(scene, all, nearest, h, r.origin, r.direction);
-            f->found = nearer(f->found, nearest, h.distance, 0);
-            f->found.object = choose_index(nearest, number, f->found.object);
-            choose_place(&f->place, nearest, &p, surface_colour(scene, nearest, &p));
-        }
-    }
-    for (uint l = 0; l < job->lights && mask_any(f->met.struck); ++l) {
+    const objects_words all = &((part_words)part)->objects;
+    for (uint l = 0; l < job->lights; ++l) {
         const vec arm = arm_to_light(&f->met.lit, scene + job->lights_at + l * RAYA_LIGHT_WORDS);
         const mask faces = faces_light(&f->met.lit, f->met.struck, arm);
         const index bit = (index)(1u << l);
         const mask open = faces & ((f->blocked.all & bit) == (index)(0));
-        count_part_tests(&f->t, faces, all);
+        count_part_tests(job, &f->t, faces, all, cycles);
         if (!mask_any(open)) continue;
-        const hit h = closest_hit(scene, all, shadow_ray(&f->met.lit, open, arm), 1);
+        const hit h = closest_hit(part, all, shadow_ray(&f->met.lit, open, arm), 1);
         f->blocked.all |= choose_index(open & (h.object != RAYA_NO_OBJECT), bit, (index)(0));
     }
 }
 
-RAYA_KERNEL_BODY void meet_slots(words scene, part_words part, uint slots, uint stride, __global uint* state,
+RAYA_KERNEL_BODY void meet_slots(words scene, words part, uint slots, uint stride, __global uint* state,
                                  ulong* cycles) {
     for (uint first = get_local_id(0) * RAYA_LANES; first < slots; first += RAYA_GROUP * RAYA_LANES) {
         flight f;
-        save_cursor from = open_flight(state, stride, first, 1), to = open_flight(state, stride, first, 0);
-        transfer_search(&from, &f);
-        const ulong before = cycles_of_trees((job_words)scene, &f.t);
-        meet_part(scene, part, &f);
-        *cycles += cycles_of_trees((job_words)scene, &f.t) - before;
-        transfer_search(&to, &f);
+        save_cursor from = open_flight(state, stride, first, 1);
+        transfer_rays(&from, &f);
+        if (!mask_any(f.t.active | f.met.struck)) continue;
+        save_cursor to = from;
+        to.restores = 0;
+        transfer_found(&from, &f);
+        if (mask_any(f.t.active)) meet_current_rays((job_words)scene, part, &f, cycles);
+        if (mask_any(f.met.struck)) meet_shadow_rays(scene, part, &f, cycles);
+        transfer_found(&to, &f);
     }
 }
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void meet(__global const uint* restrict broadcast,  // the job's header and lights
           const uint word_count,                    // number of these words
-          __global const uint* restrict parts,      // [PE][part_words]: the part that each PE holds
+          __global const uint* restrict parts,      // [PE][part_words_count]: the part that each PE holds
           const uint part_words_count,              // number of words of the largest part
           const uint slots,
           const uint stride,
           const uint step,                          // number of this launch in the turn, from 1 on
-          __local uint4* memory,                    // word_count + part_words_count words, in whole uint4
+          __local uint4* memory,                    // word_count + part_words_count words, in whole uint4, if
+                                                    // RAYA_WORDS_LOCAL is 1
+          __global raya_trace_progress* progress,   // `left`: 0 if the PE has no rays
           __global uint* restrict state,
           __global ulong* restrict spent)           // [step][PE][work-item]: modelled cycles
 {
     const uint group = get_group_id(0), item = get_local_id(0);
-    __local uint* const all_words = (__local uint*)memory;
-    for (uint i = item; i < word_count; i += RAYA_GROUP) all_words[i] = broadcast[i];
-    for (uint i = item; i < part_words_count; i += RAYA_GROUP)
-        all_words[word_count + i] = parts[(size_t)group * part_words_count + i];
+    __global const uint* const my_part = parts + (size_t)group * part_words_count;
+    const raya_objects objects = ((__global const raya_part*)my_part)->objects;
+    const int needed = progress[group].left > 0 && raya_first_object(objects, RAYA_OBJECT_KINDS) > 0;
+#if RAYA_WORDS_LOCAL
+    __local uint* const local_words = (__local uint*)memory;
+    for (uint i = item; needed && i < word_count; i += RAYA_GROUP) local_words[i] = broadcast[i];
+    for (uint i = item; needed && i < part_words_count; i += RAYA_GROUP) local_words[word_count + i] = my_part[i];
+    const words scene = local_words, part = local_words + word_count;
+#else
+    const words scene = broadcast, part = my_part;
+#endif
     barrier(CLK_LOCAL_MEM_FENCE);
     ulong used = 0;
-    meet_slots(all_words, (part_words)(all_words + word_count), slots, stride, state, &used);
+    meet_slots(scene, part, needed ? slots : 0, stride, state, &used);
     spent[((size_t)step * get_num_groups(0) + group) * RAYA_GROUP + item] = used;
+    if (loops_were_cut(min(word_count, 2u))) atomic_inc(&progress[group].cut);
 }

@@ -3,8 +3,7 @@
 //   raya_part | surfaces | spheres | for each sphere, the offset of its surface | planes | cones | polygons, with their
 //   corners and normals
 //
-// A PE stores the part behind the job's header and lights, and offsets count from the header's first word. A part holds
-// objects of consecutive numbers, and their surfaces.
+// Offsets count from the part's first word. A part holds objects of consecutive numbers, and their surfaces.
 #ifndef RAYA_SHARED_PART_H
 #define RAYA_SHARED_PART_H
 #include "kernels/shared/job.h"
@@ -16,10 +15,13 @@ typedef struct {
 } raya_part;
 RAYA_SHARED_SIZE(raya_part, sizeof(raya_objects) + 4 * 4);
 
-// Returns the number of words that a PE saves for each ray tree in flight (kernels/ring/flight.clh).
+// Returns the number of words of each ray tree in flight (kernels/ring/flight.clh), without its event counts, which a
+// modelled PE does not store: rays, what they have found, the last hit's shading, the tree, its pixel, and its pending
+// rays.
 RAYA_SHARED_FUNCTION raya_u32 raya_flight_words(raya_u32 bounces) {
-    const raya_u32 search = 6 + 2 + 6 + 1 + 2 + 7 + 8, ray = 7, pixel = 7;
-    return search + RAYA_EVENTS + 8 + 1 + 1 + 2 + 3 + pixel + ray * bounces;
+    const raya_u32 vec = 3, rays = 2 + 4 * vec, found = 3 + 2 * vec + 1 + vec + 5, hit = 2 * vec + 3;
+    const raya_u32 tree = 3 + vec, pixel = 4 + vec, pending = 2 * vec + 1;
+    return rays + found + hit + tree + pixel + pending * bounces;
 }
 
 #endif
