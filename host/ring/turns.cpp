@@ -209,9 +209,14 @@ void Turns::visit_state(RenderState& state, std::uint64_t turns) {
     in_flight_ = true;
 }
 
+void Turns::start(const std::string& label, std::uint32_t pixel) {
+    reset_progress(label, pixel);
+    session_.write(label, state_, std::vector<std::uint32_t>(state_.size()));
+}
+
 void Turns::warm_up(const Buffer<std::uint32_t>& base, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
                     PassCounters& counters) {
-    reset_progress("warm-up", 0);
+    start("warm-up", 0);
     load_parts(0);
     advance("warm-up", base, {}, RAYA_POINTS_OWN, true, marks, pixels, counters);
     meet("warm-up", base, 1);
@@ -221,7 +226,7 @@ void Turns::trace(const std::string& label, const Buffer<std::uint32_t>& base, P
                   const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
                   const ProgressCallback& progress) {
     bool fresh = !std::exchange(in_flight_, false);
-    if (fresh) reset_progress(label, range.begin);
+    if (fresh) start(label, range.begin);
     for (;; fresh = false) {
         double done = 0;
         advance(label, base, range, points, fresh, marks, pixels, counters);

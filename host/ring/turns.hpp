@@ -80,6 +80,8 @@ class Turns : public SampleTracer {
     void visit_state(RenderState& state, std::uint64_t turns);
 
   private:
+    /// Sets the next pixel of every PE, without trees in flight.
+    void start(const std::string& label, std::uint32_t pixel);
     /// Gives every PE the part that it holds after `rotations` rotations.
     void load_parts(std::uint64_t rotations);
     void advance(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,

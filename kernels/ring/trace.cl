@@ -104,17 +104,9 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
 #endif
     barrier(CLK_LOCAL_MEM_FENCE);
     pixel_store store;
-    store.mapping = ((job_words)scene)->mapping;
-    store.share = raya_share_of(store.mapping, first_pe + group);
-    store.window_start = window_start;
-    store.end = min(end, raya_share_size(store.share));
+    open_store(&store, (job_words)scene, first_pe, window_start, capacity, end, pixels, marks, cycles);
     store.points = points;
     store.marks_left = work;
-    store.capacity = capacity;
-    store.pixels = pixels + (size_t)group * capacity * 3;
-    store.marks = marks + (size_t)group * capacity;
-    store.cycles = cycles + (size_t)group * capacity;
-    open_store(&store);
     const save_cursor last_state = open_save_cursor(saved, 1), new_state = open_save_cursor(saved, 0);
     if (trace_share(scene, &store, &mine->next, work, last_state, new_state, resumes)) atomic_inc(&mine->left);
     __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;

@@ -77,10 +77,8 @@ RAYA_KERNEL_BODY uint advance_slots(words scene, pixel_store* store, volatile __
     mask any = mask_all(0);
     for (uint first = get_local_id(0) * RAYA_LANES; first < slots; first += RAYA_GROUP * RAYA_LANES) {
         flight f;
-        if (fresh)
-            clear_flight(&f);
-        else
-            transfer_flight(open_flight(state, stride, first, 1), &f);
+        transfer_flight(open_flight(state, stride, first, 1), &f);
+        if (fresh) f.pixels.pixel.all = (index)(RAYA_NO_PIXEL);
         any |= advance_rays(scene, store, next, &f, RAYA_LANE_NUMBERS + first < slots, cycles);
         transfer_flight(open_flight(state, stride, first, 0), &f);
     }
@@ -125,17 +123,9 @@ void advance(__global const uint* restrict broadcast,  // the job's header and l
     const uint used_slots = fresh || progress[group].left ? slots : 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     pixel_store store;
-    store.mapping = ((job_words)scene)->mapping;
-    store.share = raya_share_of(store.mapping, first_pe + group);
-    store.window_start = window_start;
-    store.end = min(end, raya_share_size(store.share));
+    open_store(&store, (job_words)scene, first_pe, window_start, capacity, end, pixels, marks, cycles);
     store.points = points;
     store.marks_left = 0xffffffffu;
-    store.capacity = capacity;
-    store.pixels = pixels + (size_t)group * capacity * 3;
-    store.marks = marks + (size_t)group * capacity;
-    store.cycles = cycles + (size_t)group * capacity;
-    open_store(&store);
     ulong used = 0;
     if (advance_slots(scene, &store, &mine->next, fresh, used_slots, stride, state, &used)) atomic_inc(&mine->left);
     __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
