@@ -19,6 +19,7 @@ constexpr std::uint64_t kPendingRayWords = 7;  // a pending ray on the stack: or
 // State of a ray tree except the stack: ray, hit, normal, mirror direction, tint, sum, counters.
 constexpr std::uint64_t kRayTreeWords = 32;
 constexpr std::uint64_t kPixelBytes = 12;  // three colour components of 4 bytes
+constexpr std::uint32_t kMaxTrees = 1024;  // of a PE with divided objects, so that the device's memory suffices
 
 [[noreturn]] void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes,
                          const std::string& remedy) {
@@ -45,8 +46,9 @@ PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
     if (demand.antialias == AntialiasMethod::kSupersample) memory.marks = demand.share_pixels;
     const std::uint64_t fixed_bytes = memory.bytes();
     fitted_pixels = demand.share_pixels;
+    const std::uint32_t max_trees = divided ? std::min(kMaxTrees, demand.share_pixels) : 1;
     if (!machine.pe_memory_bytes) {
-        if (divided) memory.trees = demand.share_pixels;
+        memory.trees = max_trees;
         return memory;
     }
 
@@ -66,9 +68,8 @@ PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
         const std::uint32_t bands = (demand.share_pixels + fitted_pixels - 1) / fitted_pixels;
         fitted_pixels = (demand.share_pixels + bands - 1) / bands;
     }
-    if (divided)
-        memory.trees = static_cast<std::uint32_t>(
-            std::min<std::uint64_t>(demand.share_pixels, 1 + (limit_bytes - memory.bytes()) / tree_bytes));
+    memory.trees =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(max_trees, 1 + (limit_bytes - memory.bytes()) / tree_bytes));
     return memory;
 }
 

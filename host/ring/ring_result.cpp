@@ -21,7 +21,9 @@ constexpr std::uint64_t kColourBytes = 3 * sizeof(float);
 std::uint64_t launch_bytes(const RingResult& r, const std::string& label) {
     const std::uint64_t words = r.words_local ? r.pe_memory.job_words * r.parts_of_rank : 0;
     const std::uint64_t counters = std::uint64_t{r.parts_of_rank} * r.group_size * RAYA_EVENTS;
-    return r.launches(label) * (sizeof(std::uint32_t) * words + 2 * sizeof(std::uint64_t) * counters);
+    // With divided objects, one launch of each turn reads and writes the counters.
+    const std::uint64_t launches = r.launches(label) / (r.parts > 1 ? r.parts + 1 : 1);
+    return launches * (sizeof(std::uint32_t) * words + 2 * sizeof(std::uint64_t) * counters);
 }
 
 // `pixels`: number of pixels of this rank.
@@ -257,6 +259,7 @@ void add_ring_machine(TraceFile& trace, const RingSettings& settings, const Ring
     RingTimeline timeline(trace, settings.machine, traced_pes(result.load.per_pe, pes));
     timeline.add_common_phase("broadcast", time.objects_ms, {{"words", c.broadcast_words}});
     const bool smoothed = settings.antialias.method != AntialiasMethod::kNone;
+    constexpr std::uint64_t kMaxShown = 4096;  // rotations that are slices of their own
     const MachineClock& clock = settings.machine.clock;
     const auto rotations_of = [&](const Phase& phase) { return phase.turn_cycles.size() * (result.parts - 1); };
     const auto rotation_ms = [&](const Phase& phase) {  // of the parts, without a set-up
@@ -269,7 +272,8 @@ void add_ring_machine(TraceFile& trace, const RingSettings& settings, const Ring
         timeline.add_tracing_phase(phase);
         if (rotations_of(phase))
             timeline.add_common_phase("rotate parts", setup_ms + rotation_ms(phase),
-                                      {{"rotations", rotations_of(phase)}});
+                                      {{"rotations", rotations_of(phase)}},
+                                      rotations_of(phase) <= kMaxShown ? rotations_of(phase) : 1);
     };
     add_tracing(result.phases[0], smoothed ? 0 : other_ms);
     if (smoothed) add_smoothing(timeline, settings, result, other_ms);

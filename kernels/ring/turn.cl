@@ -79,7 +79,12 @@ RAYA_KERNEL_BODY uint advance_slots(words scene, pixel_store* store, volatile __
         flight f;
         transfer_flight(open_flight(state, stride, first, 1), &f);
         if (fresh) f.pixels.pixel.all = (index)(RAYA_NO_PIXEL);
-        any |= advance_rays(scene, store, next, &f, RAYA_LANE_NUMBERS + first < slots, cycles);
+#if RAYA_LANES == 1
+        const mask in_use = mask_all(1);
+#else
+        const mask in_use = RAYA_LANE_NUMBERS + first < slots;
+#endif
+        any |= advance_rays(scene, store, next, &f, in_use, cycles);
         transfer_flight(open_flight(state, stride, first, 0), &f);
     }
     return mask_any(any) ? 1 : 0;

@@ -11,10 +11,8 @@ namespace raya {
 namespace {
 
 RingSettings split_settings(std::uint32_t parts, const std::string& machine = "spa") {
-    RingSettings settings = settings_of({.width = 32, .height = 24, .pes = 24, .machine = machine, .lanes = 4});
-    settings.split = parts;
-    settings.record_costs = true;
-    return settings;
+    return settings_of(
+        {.width = 32, .height = 24, .pes = 24, .machine = machine, .lanes = 4, .record_costs = true, .split = parts});
 }
 
 RingResult rendered(const Scene& scene, const RingSettings& settings) {

@@ -13,7 +13,7 @@ How does a ring render scenes that exceed the memory of a PE, and when is a toru
 - "rays rotate": each PE keeps its part, and the ring passes the rays with what they have found, {ray_words} words each. It is a model on the counted
   figures: the same cycles, G rotations a turn, words of the mean number of rays in flight (lower bound) or of all that fit (upper bound).
 - Torus: {torus_nodes} as many nodes as PEs, each with one voxel and enough memory, overlapped and stepwise. Hybrid: groups of such nodes that share
-  the screen, the best number of groups of 1 to P.
+  the screen, the best number of groups of 1 to P; the time is that of the slower of two of the groups.
 - Intervals: over {views} pictures of 9 scene families, on {family_pes} PEs.
 - Frames: the image of a frame goes to the host (as printed), to a frame memory on the bus (as the paper proposes), or in either way while the next frame
   is traced. A series of many frames, times from Table 2 and from this study.
