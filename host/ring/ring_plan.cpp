@@ -136,9 +136,6 @@ PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::
             .antialias = settings.antialias.method};
 }
 
-namespace {
-
-// Throws UserError if the objects cannot be divided into settings.split parts.
 void check_split(const RingSettings& settings) {
     const std::uint32_t parts = settings.split, pes = settings.mapping.pes;
     if (parts <= 1) return;
@@ -158,8 +155,6 @@ void check_split(const RingSettings& settings) {
                         "cannot request pixels at any time; leave out one of them",
                         parts));
 }
-
-}  // namespace
 
 RingSettings checked_settings(RingSettings settings, const DeviceInfo& device) {
     check_split(settings);

@@ -89,6 +89,9 @@ JobSettings job_settings(const RingSettings& settings, const LengthScale& scale)
 /// `job_words`: number of words of the job.
 PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::uint64_t job_words);
 
+/// Throws UserError if the objects cannot be divided into settings.split parts.
+void check_split(const RingSettings& settings);
+
 /// Returns the settings with the number of lanes and the group size chosen for the device. Throws UserError if the
 /// kernels cannot be built with these settings. Call it before packing the scene, so that raya fails early.
 RingSettings checked_settings(RingSettings settings, const DeviceInfo& device);
