@@ -32,10 +32,10 @@ class RenderState {
         vector(values);
         value = values.front();
     }
-    /// Numbers that all ranks have.
+    /// Numbers that all ranks have. `any_size`: see rank_0().
     template <Sendable T>
-    void vector(std::vector<T>& values) {
-        rank_0(values);
+    void vector(std::vector<T>& values, bool any_size = false) {
+        rank_0(values, any_size);
         if (restores()) pes_.ranks().broadcast(values);
     }
     /// Numbers that only rank 0 has. If `any_size`, the file determines their number.

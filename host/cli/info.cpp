@@ -19,6 +19,7 @@
 #include "host/report/scene_report.hpp"
 #include "host/report/table.hpp"
 #include "host/ring/ring_plan.hpp"
+#include "host/ring/turns.hpp"
 #include "host/scene/scene.hpp"
 #include "host/torus/torus_plan.hpp"
 #include "host/version.hpp"
@@ -76,6 +77,21 @@ const PackedSize& size_of(SceneSizes& sizes, const Scene& scene, const RingSetti
     return size;
 }
 
+// Sets the memory that a PE needs for the scene or, if it does not fit, for a part of it. Throws DoesNotFit.
+void plan_memory(AccelNeed& need, const Scene& scene, const RingSettings& settings, const FormatFit& fit) {
+    if (settings.split <= 1) try {
+            need.pe_bytes = plan_pe_memory(settings.machine, pe_demand(settings, scene.name, need.words)).bytes();
+            return;
+        } catch (const DoesNotFit&) {
+            if (settings.accel.kind != AccelKind::kNone || settings.split == 1) throw;
+        }
+    const PackedJob job = pack_for_ring(scene, settings, fit.scale);
+    const StoredScene stored = store_scene(job, settings, scene.name);
+    need.pe_bytes = stored.memory.bytes();
+    need.words = stored.words(job).size() + stored.parts->words.size();
+    need.parts = stored.parts->parts;
+}
+
 AccelNeed need_of(SceneSizes& sizes, const Scene& scene, const RingSettings& settings, const FormatFit& fit) {
     AccelNeed need;
     need.accel = accel_text(settings.accel);
@@ -86,7 +102,7 @@ AccelNeed need_of(SceneSizes& sizes, const Scene& scene, const RingSettings& set
     need.summary = size.accel;
     need.refusal = size.refusal;
     if (need.refusal.empty()) try {
-            need.pe_bytes = plan_pe_memory(settings.machine, pe_demand(settings, scene.name, size.words)).bytes();
+            plan_memory(need, scene, settings, fit);
         } catch (const DoesNotFit& refusal) {
             set_missing(need, refusal);
         }
@@ -96,6 +112,7 @@ AccelNeed need_of(SceneSizes& sizes, const Scene& scene, const RingSettings& set
 // With the accelerator of --accel or, without --accel, with each of none, bvh and grid.
 MachineNeeds ring_needs(SceneSizes& sizes, const Scene& scene, const RenderOptions& options) {
     RingSettings settings = ring_settings(options, scene);
+    check_split(settings);
     check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
     MachineNeeds machine{.machine = options.machine,
                          .format = format_name(settings.format),
@@ -106,7 +123,8 @@ MachineNeeds ring_needs(SceneSizes& sizes, const Scene& scene, const RenderOptio
     const FormatFit fit = fit_of(sizes, scene, settings.format);
     const std::string default_accel = accel_text(settings.accel);
     std::vector<Accel> accels = {settings.accel};
-    if (options.accel.empty()) accels = {{AccelKind::kNone, {}}, {AccelKind::kBvh, {}}, {AccelKind::kGrid, {}}};
+    if (options.accel.empty() && settings.split <= 1)
+        accels = {{AccelKind::kNone, {}}, {AccelKind::kBvh, {}}, {AccelKind::kGrid, {}}};
     for (const Accel& accel : accels) {
         settings.accel = accel;
         machine.needs.push_back(need_of(sizes, scene, settings, fit));

@@ -160,6 +160,7 @@ std::string command_of(const ExploreCommand& command, const RingSettings& settin
     add("--bounces", o.bounces ? fmt::format("{}", settings.bounces) : "");
     add("--sampling", o.sampling == Sampling::kCorners ? "corners" : "");
     add("--accel", o.accel);
+    add("--split", o.split ? fmt::format("{}", *o.split) : "");
     add("--pe-memory", o.pe_memory ? fmt::format("{}", *o.pe_memory) : "");
     for (const auto& [option, value] : o.view.given_options()) add(option.c_str(), value);
     return text;
@@ -173,6 +174,7 @@ struct Exploration {
     int width = 0, height = 0;  // pixels
     std::string png;
     CostPlanes cost{};
+    std::uint32_t parts = 1;  // of the objects
 };
 
 // The rates from which the page computes modelled times.
@@ -184,7 +186,7 @@ void rate_members(Members& m, const MachineClock& clock) {
     m("rotation_sync_ms", clock.rotation_sync_ms, "Time of the synchronisation before each rotation, ms.");
 }
 
-void machine_members(Members& m, const RingSettings& settings) {
+void machine_members(Members& m, const RingSettings& settings, std::uint32_t parts) {
     const raya_mapping& mapping = settings.mapping;
     const bool has_slots = raya_has_slots(mapping);
     m("name", settings.machine.name, "Name, as given to --machine.");
@@ -197,6 +199,7 @@ void machine_members(Members& m, const RingSettings& settings) {
     m("format", format_name(settings.format), kFormatMeaning);
     m("bounces", settings.bounces, "Maximum number of reflections and refractions after the primary ray.");
     m("accel", accel_text(settings.accel), "Acceleration structure, as given to --accel.");
+    m.when(parts > 1, "parts", parts, "Number of parts of the objects, which rotate on the ring (--split).");
     m("rates",
       "Rates of the machine, from which the page computes modelled times (host/model/machine.hpp, MachineClock).",
       [&](Members& rates) { rate_members(rates, settings.machine.clock); });
@@ -210,7 +213,7 @@ static void members_of(Members& m, const Exploration& e) {
     m("scene", e.scene, kSceneMeaning);
     m("command", e.command, "Command `raya render` of the same picture, without the mapping.");
     m("machine", "Modelled machine that the page shows first.",
-      [&](Members& machine) { machine_members(machine, e.settings); });
+      [&](Members& machine) { machine_members(machine, e.settings, e.parts); });
     m("device", "OpenCL device of the render.", [&](Members& device) { device_members(device, e.device); });
     m("image", "Rendered image at full size.", [&](Members& image) {
         image("width", e.width, "Width in pixels.");
@@ -252,7 +255,7 @@ void explore(const ExploreCommand& command) {
     bar->stage("writing");
     const std::string page = report_page(to_json(
         Exploration{scene_name(command), command_of(command, settings), settings, session.device(), result.image.width,
-                    result.image.height, plain_png(result.image), cost_planes(result.cost().cycles)}));
+                    result.image.height, plain_png(result.image), cost_planes(result.cost().cycles), result.parts}));
     write_whole_file(command.page, page);
     bar.reset();
     if (is_quiet()) return;

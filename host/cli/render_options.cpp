@@ -66,6 +66,16 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
     ring_only(add_value(command, "--pes P", o.pes,
                         "Number P of processing elements, 1..W*H; default: the machine's, or A*B of a grid",
                         "Number of PEs; default: the machine's"));
+    ring_only(in_range(
+        add_value(command, "--split G", o.split,
+                  "Number G of parts of the objects, which rotate on the ring; a divisor of P; 1: every PE stores all "
+                  "objects; default: the smallest number with which the scene fits a PE",
+                  "Parts of the objects, which rotate on the ring"),
+        1));
+    ring_only(in_range(add_value(command, "--display-rate R", o.display_rate,
+                                 "Pixels that the modelled machine displays in a second; default: the machine's",
+                                 "Pixels that the modelled machine displays in a second"),
+                       1));
     ring_only(
         add_value(command, "--offset p", o.offset,
                   "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W) on spa and grande, 0 on "
@@ -224,9 +234,13 @@ RingSettings ring_settings(const RenderOptions& o, const Scene& scene) {
     set_mapping(settings, o, image_size(o, scene));
     settings.bounces = o.bounces.value_or(settings.machine.bounces);
     settings.antialias = antialias_settings(o);
-    // A machine's BVH is left out if the scene has so few objects that it costs more time than it saves.
+    settings.split = o.split.value_or(0);
+    if (o.display_rate) settings.machine.clock.display_pixels_per_s = *o.display_rate;
+    // A machine's BVH is left out if the objects are in parts, or so few that it costs more time than it saves.
     const bool pays = settings.machine.accel.kind != AccelKind::kBvh || bvh_pays(scene, settings.format);
-    settings.accel = !o.accel.empty() ? parse_accel(o.accel) : pays ? settings.machine.accel : Accel{};
+    settings.accel = !o.accel.empty()                   ? parse_accel(o.accel)
+                     : pays && o.split.value_or(0) <= 1 ? settings.machine.accel
+                                                        : Accel{};
     settings.machine.pe_memory_bytes = pe_memory_of(o, settings.machine);
     settings.kernels = kernel_choice(o);
     return settings;

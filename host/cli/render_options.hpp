@@ -22,9 +22,9 @@ struct RenderOptions {
     std::optional<Fold> fold;
     bool strict = false, no_tuned = false;
     ViewOptions view;
-    std::optional<double> threshold;
-    std::optional<std::uint64_t> pe_memory;  // bytes
-    std::optional<std::uint32_t> pes, offset, bounces, lanes, group;
+    std::optional<double> threshold, display_rate;  // display_rate: pixels per second
+    std::optional<std::uint64_t> pe_memory;         // bytes
+    std::optional<std::uint32_t> split, pes, offset, bounces, lanes, group;
 };
 
 /// Marks an option that only ring machines have.

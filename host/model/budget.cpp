@@ -181,6 +181,10 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
      // T805: the primary ray, then its first voxel
      .additions = 8 + 25,
      .multiplications = 12 + 18},
+    // A ray taken up and put back by a ring PE that tests it against a part of the objects. Moves: origin 3, direction
+    // 3,
+    // nearest distance and object number 2, both stored 2. Branches: next ray, done.
+    {.event = RAYA_RESUMED, .moves = 3 + 3 + 2 + 2, .branches = 2},
 }};
 
 constexpr bool budgets_in_order() {

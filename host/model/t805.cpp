@@ -98,11 +98,12 @@ ModelledTime modelled_time(const MachineClock& clock, std::span<const Load> phas
     const Communication& c = communication;
     ModelledTime time;
     time.factor = clock.cycle_factor;
-    std::uint64_t cycles = smoothing.filter + smoothing.compare;
+    std::uint64_t cycles = smoothing.filter + smoothing.compare + smoothing.wait;
     for (const Load& load : phases) cycles += load.max;
     time.compute_ms = compute_ms(clock, number(cycles));
     time.filter_ms = compute_ms(clock, number(smoothing.filter));
     time.compare_ms = compute_ms(clock, number(smoothing.compare));
+    time.wait_ms = compute_ms(clock, number(smoothing.wait));
     time.objects_ms = host_ms(clock, c.broadcast_words, clock.broadcast_words_per_s);
     // In a rotation all P PEs send at the same time, each 1/P of the words. Transfers and broadcasts of PEs go over the
     // bus one at a time, so their words are not divided by P.

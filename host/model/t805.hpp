@@ -94,18 +94,19 @@ struct Load {
 /// Computes the statistics of `per_pe`, which must not be empty.
 Load load_of(std::vector<std::uint64_t> per_pe);
 
-/// Modelled cycles in which the busiest PE filters and compares neighbouring pixels (model/budget.hpp); 0 without
-/// anti-aliasing.
+/// Modelled cycles in which the busiest PE filters and compares neighbouring pixels (model/budget.hpp), 0 without
+/// anti-aliasing; and those for which it waits for other PEs in the turns of divided objects.
 struct SmoothingCycles {
-    std::uint64_t filter = 0, compare = 0;
+    std::uint64_t filter = 0, compare = 0, wait = 0;
 };
 
 /// Modelled times of a render on a ring, in milliseconds.
 struct ModelledTime {
-    double objects_ms = 0;        // broadcast of the scene by the host
-    double compute_ms = 0;        // computation of the PEs: ray tracing, filter_ms and compare_ms
-    double filter_ms = 0;         // part of compute_ms: means of neighbouring pixels
-    double compare_ms = 0;        // part of compute_ms: comparisons with neighbouring pixels
+    double objects_ms = 0;  // broadcast of the scene by the host
+    double compute_ms = 0;  // computation of the PEs: ray tracing, filter_ms, compare_ms and wait_ms
+    double filter_ms = 0;   // part of compute_ms: means of neighbouring pixels
+    double compare_ms = 0;  // part of compute_ms: comparisons with neighbouring pixels
+    double wait_ms = 0;     // part of compute_ms: of the busiest PE, for other PEs in the turns of divided objects
     double communication_ms = 0;  // rotations of the ring; transfers and broadcasts of PEs on the bus
     double image_ms = 0;          // gather of the image by the host
     double display_ms = 0;        // display of the image by the host

@@ -103,9 +103,9 @@ std::string format_text(const FormatFit& f) {
     return text;
 }
 
-// Returns "fits", "needs 12 KB more" or "refused".
+// Returns "fits", "fits in 4 parts", "needs 12 KB more" or "refused".
 std::string verdict(const AccelNeed& need) {
-    if (need.refusal.empty()) return "fits";
+    if (need.refusal.empty()) return need.parts > 1 ? fmt::format("fits in {} parts", need.parts) : "fits";
     if (need.missing_bytes > 0) return fmt::format("needs {} more", required_size_text(need.missing_bytes));
     return "refused";
 }
@@ -152,6 +152,8 @@ void members_of(Members& m, const AccelNeed& n) {
     m("default", n.is_default, "True if this acceleration structure is the machine's default for the scene.");
     m("fits", n.refusal.empty(), "True if the scene can be rendered with this acceleration structure.");
     m("job_words", n.words, "32-bit words of scene and accelerator in each PE, or in the fullest node.");
+    m.when(n.parts > 1, "parts", n.parts,
+           "Parts of the objects, which rotate on the ring; `job_words` has all of them.");
     m("job_bytes", 4 * n.words, "Size of these words in bytes: 4 times `job_words`.");
     m("accel_words", n.summary.words, "Part of `job_words` that belongs to the acceleration structure.");
     m("pe_memory_used_bytes", n.pe_bytes,

@@ -28,6 +28,7 @@ struct AccelNeed {
     std::string accel;                // value of --accel; "voxels" on the torus
     bool is_default = false;          // `accel` is the machine's default for this scene
     std::uint64_t words = 0;          // number of 32-bit words of job and accelerator, or of the fullest node
+    std::uint32_t parts = 1;          // of the objects, which rotate on the ring; `words` is the sum of all parts
     AccelSummary summary;             // size of the grid or BVH
     std::uint64_t pe_bytes = 0;       // bytes that the render would use in a PE; if they exceed the PE's memory, the
                                       // smallest --pe-memory with which raya renders the scene

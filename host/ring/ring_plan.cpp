@@ -10,6 +10,7 @@
 #include "host/model/number_format.hpp"
 #include "host/ring/mapping.hpp"
 #include "kernels/shared/bvh.h"
+#include "kernels/shared/part.h"
 
 namespace raya {
 namespace {
@@ -18,6 +19,7 @@ constexpr std::uint64_t kPendingRayWords = 7;  // a pending ray on the stack: or
 // State of a ray tree except the stack: ray, hit, normal, mirror direction, tint, sum, counters.
 constexpr std::uint64_t kRayTreeWords = 32;
 constexpr std::uint64_t kPixelBytes = 12;  // three colour components of 4 bytes
+constexpr std::uint32_t kMaxTrees = 1024;  // of a PE with divided objects, so that the device's memory suffices
 
 [[noreturn]] void refuse(const Machine& machine, const std::string& what, std::uint64_t bytes,
                          const std::string& remedy) {
@@ -31,7 +33,11 @@ constexpr std::uint64_t kPixelBytes = 12;  // three colour components of 4 bytes
 }  // namespace
 
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
-    PeMemory memory{.job_words = demand.job_words, .tree_words = kRayTreeWords + kPendingRayWords * demand.bounces};
+    const bool divided = demand.parts > 1;
+    PeMemory memory{
+        .job_words = demand.job_words,
+        .part_words = demand.part_words,
+        .tree_words = divided ? raya_flight_words(demand.bounces) : kRayTreeWords + kPendingRayWords * demand.bounces};
     const bool antialiased = demand.antialias != AntialiasMethod::kNone;
     // The number of pixels that is reduced until the PE's memory suffices.
     std::uint32_t& fitted_pixels = antialiased ? memory.band_pixels : memory.block_pixels;
@@ -40,33 +46,44 @@ PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
     if (demand.antialias == AntialiasMethod::kSupersample) memory.marks = demand.share_pixels;
     const std::uint64_t fixed_bytes = memory.bytes();
     fitted_pixels = demand.share_pixels;
-    if (!machine.pe_memory_bytes || memory.bytes() <= *machine.pe_memory_bytes) return memory;
+    const std::uint32_t max_trees = divided ? std::min(kMaxTrees, demand.share_pixels) : 1;
+    if (!machine.pe_memory_bytes) {
+        memory.trees = max_trees;
+        return memory;
+    }
 
-    const std::uint64_t limit_bytes = *machine.pe_memory_bytes;
+    const std::uint64_t limit_bytes = *machine.pe_memory_bytes, tree_bytes = 4 * memory.tree_words;
+    const std::string scene = divided ? fmt::format("{} in {} parts", demand.scene, demand.parts) : demand.scene;
     if (fixed_bytes + kPixelBytes > limit_bytes && antialiased)
-        refuse(machine, fmt::format("{} with --antialias {}", demand.scene, antialias_name(demand.antialias)),
+        refuse(machine, fmt::format("{} with --antialias {}", scene, antialias_name(demand.antialias)),
                fixed_bytes + kPixelBytes, "more PEs, a smaller image or ");
-    if (fixed_bytes + kPixelBytes > limit_bytes) refuse(machine, demand.scene, fixed_bytes + kPixelBytes, "");
+    if (fixed_bytes + kPixelBytes > limit_bytes)
+        refuse(machine, scene, fixed_bytes + kPixelBytes, demand.divisible ? "a larger --split or " : "");
+    // The more ray trees are in flight, the fewer turns a render takes. They get half of the memory that is left, or
+    // what the pixels leave.
+    const std::uint64_t free_bytes = limit_bytes - fixed_bytes, for_pixels = divided ? free_bytes / 2 : free_bytes;
     fitted_pixels = static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(demand.share_pixels, (limit_bytes - fixed_bytes) / kPixelBytes));
+        std::min<std::uint64_t>(demand.share_pixels, std::max<std::uint64_t>(1, for_pixels / kPixelBytes)));
     if (antialiased) {
         const std::uint32_t bands = (demand.share_pixels + fitted_pixels - 1) / fitted_pixels;
         fitted_pixels = (demand.share_pixels + bands - 1) / bands;
     }
+    memory.trees =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(max_trees, 1 + (limit_bytes - memory.bytes()) / tree_bytes));
     return memory;
 }
 
 namespace {
 
-// Returns true if PEs should copy the job's words into local memory in each launch. Returns false if the words do not
-// fit, or if the copying loop could exceed the device's limit of loop iterations. Also returns false for many words
+// Returns true if PEs should copy their `words` words into local memory in each launch. Returns false if the words do
+// not fit, or if the copying loop could exceed the device's limit of loop iterations. Also returns false for many words
 // with an accelerator: the kernel then reads only a few of the words, so the copy takes longer than it saves.
-bool words_local(const PackedJob& job, const DeviceInfo& device, AccelKind accel) {
+bool words_local(std::size_t words, const DeviceInfo& device, AccelKind accel) {
     constexpr std::size_t kMaxCopiedBytes = 64 * 1024;
     constexpr std::size_t kMaxCopiedWords = 4096;
-    if (device.ends_loops_early && job.words().size() > kMaxCopiedWords) return false;
+    if (device.ends_loops_early && words > kMaxCopiedWords) return false;
     // 32 bytes for padding to a multiple of 16 bytes, and for the work-group's own data.
-    const std::size_t bytes = 4 * job.words().size() + 32;
+    const std::size_t bytes = 4 * words + 32;
     return bytes <= device.local_memory_bytes && (accel == AccelKind::kNone || bytes <= kMaxCopiedBytes);
 }
 
@@ -119,7 +136,28 @@ PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::
             .antialias = settings.antialias.method};
 }
 
+void check_split(const RingSettings& settings) {
+    const std::uint32_t parts = settings.split, pes = settings.mapping.pes;
+    if (parts <= 1) return;
+    std::uint32_t divisor = std::min(parts, pes);
+    while (pes % divisor != 0) --divisor;
+    if (divisor != parts)
+        throw UserError(
+            fmt::format("--split {}: must divide the number of PEs, {}; use --split {}", parts, pes, divisor));
+    if (settings.accel.kind != AccelKind::kNone)
+        throw UserError(
+            fmt::format("--split {} with --accel {}: parts have no acceleration structure; leave out one "
+                        "of them, or use --accel none",
+                        parts, accel_text(settings.accel)));
+    if (settings.dynamic)
+        throw UserError(
+            fmt::format("--split {} with a dynamic mapping: PEs that wait for each other after each part "
+                        "cannot request pixels at any time; leave out one of them",
+                        parts));
+}
+
 RingSettings checked_settings(RingSettings settings, const DeviceInfo& device) {
+    check_split(settings);
     check_antialias(settings.antialias.method, settings.mapping, settings.dynamic.has_value());
     settings.kernels =
         chosen_kernels(settings.kernels, device,
@@ -145,9 +183,9 @@ LaunchWork launch_work(const RingSettings& settings, const KernelOptions& option
     return {bounded(std::max(first, least)), bounded(least)};
 }
 
-KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
-                             const DeviceInfo& device) {
-    KernelOptions options = kernel_options(settings, job, words_local(job, device, settings.accel.kind));
+KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, std::size_t pe_words,
+                             const AccelSummary& accel, const DeviceInfo& device) {
+    KernelOptions options = kernel_options(settings, job, words_local(pe_words, device, settings.accel.kind));
     options.accel = static_cast<std::uint32_t>(settings.accel.kind);
     options.stack = (RAYA_BVH_WIDTH - 1) * accel.depth;
     options.packets = settings.packets;
@@ -196,27 +234,31 @@ std::size_t saved_tree_words(const KernelOptions& options, std::uint32_t pes) {
 
 }  // namespace
 
-Tracer::Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity, const LaunchWork& work)
+SampleTracer::SampleTracer(Kernels& kernels, std::string build_options, const Distribution& pes, std::uint32_t capacity)
     : session_(kernels.session()),
       options_(kernels.options()),
+      build_options_(std::move(build_options)),
       pes_(pes),
       capacity_(capacity),
+      progress_(session_.buffer<raya_trace_progress>("progress", pes.count())) {}
+
+Tracer::Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity, const LaunchWork& work)
+    : SampleTracer(kernels, kernels.program(TraceKernel::kFile).options(), pes, capacity),
       work_(work),
-      build_options_(kernels.program(TraceKernel::kFile).options()),
       kernel_(kernels.get<TraceKernel>()),
-      progress_(session_.buffer<raya_trace_progress>("progress", pes.count())),
       saved_trees_(session_.buffer<std::uint32_t>("saved trees", saved_tree_words(options_, pes.count()))) {}
 
-PassCounters Tracer::make_counters(const std::string& pass) const {
+PassCounters SampleTracer::make_counters(const std::string& pass) const {
     const std::size_t costs = options_.packets ? 1 : std::size_t{pes_.count()} * capacity_;  // else not counted
     return {session_.buffer<std::uint64_t>("pixel cycles of " + pass, costs),
             session_.buffer<std::uint64_t>("events of " + pass,
                                            std::size_t{pes_.count()} * options_.group_size * RAYA_EVENTS)};
 }
 
-void Tracer::clear(PassCounters& counters) {
+void SampleTracer::clear(PassCounters& counters) {
     session_.write("clear counters", counters.events, std::vector<std::uint64_t>(counters.events.size()));
     session_.fill("clear counters", counters.cycles, 0);
+    counters.turn_cycles.clear();
 }
 
 void Tracer::warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
@@ -232,26 +274,29 @@ void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, P
     const auto launch_part = [&](std::uint32_t work, bool) {
         launch(label, job, range, points, work, marks, pixels, counters);
     };
-    const auto end = [&] {
-        std::vector<raya_trace_progress> pes(pes_.count());
-        session_.read(label, progress_, pes);
-        LaunchEnd ended;
-        std::uint64_t traced = 0;
-        for (const raya_trace_progress& pe : pes) {
-            ended.done &= pe.left == 0;
-            ended.truncated |= pe.cut > 0;
-            traced += pe.next - range.begin;
-        }
-        if (progress && !ended.truncated)
-            progress(ended.done ? 1 : static_cast<double>(traced) / (1.0 * pes_.count() * (range.end - range.begin)));
-        return ended;
-    };
-    launches_.run(session_, label, progress ? work_.with_progress : work_.first, work_.target_s / (progress ? 2 : 1),
-                  launch_part, end, progress_, saved_trees_, pixels, counters.cycles, counters.events);
+    launches_.run(
+        session_, label, progress ? work_.with_progress : work_.first, work_.target_s / (progress ? 2 : 1), launch_part,
+        [&] { return read_progress(label, range, progress); }, progress_, saved_trees_, pixels, counters.cycles,
+        counters.events);
+}
+
+LaunchEnd SampleTracer::read_progress(const std::string& label, PixelRange range, const ProgressCallback& progress) {
+    std::vector<raya_trace_progress> pes(pes_.count());
+    session_.read(label, progress_, pes);
+    LaunchEnd ended;
+    std::uint64_t traced = 0;
+    for (const raya_trace_progress& pe : pes) {
+        ended.done &= pe.left == 0;
+        ended.truncated |= pe.cut > 0;
+        traced += pe.next - range.begin;
+    }
+    if (progress && !ended.truncated)
+        progress(ended.done ? 1 : static_cast<double>(traced) / (1.0 * pes_.count() * (range.end - range.begin)));
+    return ended;
 }
 
 // Writes the buffer instead of filling it, because Oclgrind reports filled buffers as uninitialised.
-void Tracer::reset_progress(const std::string& label, std::uint32_t pixel) {
+void SampleTracer::reset_progress(const std::string& label, std::uint32_t pixel) {
     session_.write(label, progress_, std::vector<raya_trace_progress>(pes_.count(), {pixel, 0, 0}));
 }
 

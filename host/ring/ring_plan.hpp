@@ -25,15 +25,19 @@ namespace raya {
 
 /// Contents of the memory of each PE. A word has 4 bytes.
 struct PeMemory {
-    std::uint64_t job_words = 0;   // number of words of the job, which are broadcast to all PEs
-    std::uint64_t tree_words = 0;  // number of words of one ray tree's state: the modelled PE traces one ray at a time
+    std::uint64_t job_words = 0;     // number of words of the job or, if the objects are divided, of its base
+    std::uint64_t part_words = 0;    // number of words of a part of divided objects, stored twice: one is in transit
+    std::uint64_t tree_words = 0;    // number of words of one ray tree's state
+    std::uint32_t trees = 1;         // number of ray trees in flight; 1 if each PE has all objects
     std::uint32_t block_pixels = 0;  // number of traced pixels that are not gathered yet, 3 words each
     std::uint32_t sum_pixels = 0;    // number of filter sums, 3 words each
     std::uint32_t band_pixels = 0;   // number of pixels received from another PE, 3 words each
     std::uint32_t marks = 0;         // number of marks for supersampling, one byte each
 
     std::uint64_t bytes() const {
-        return 4 * (job_words + tree_words + 3ull * (block_pixels + sum_pixels + band_pixels)) + marks;
+        return 4 * (job_words + 2 * part_words + tree_words * trees +
+                    3ull * (block_pixels + sum_pixels + band_pixels)) +
+               marks;
     }
 };
 
@@ -41,6 +45,9 @@ struct PeMemory {
 struct PeDemand {
     std::string scene;               // name of the scene, for messages
     std::uint64_t job_words = 0;     // see PeMemory
+    std::uint32_t parts = 1;         // number of parts of the objects
+    std::uint64_t part_words = 0;    // see PeMemory; 0 for one part
+    bool divisible = false;          // the objects may be divided into more parts
     std::uint32_t bounces = 0;       // maximum number of reflections and refractions after the primary ray
     std::uint32_t share_pixels = 0;  // maximum number of pixels that a PE owns
     AntialiasMethod antialias = AntialiasMethod::kNone;
@@ -49,7 +56,8 @@ struct PeDemand {
 /// Plans the memory of each PE. Without anti-aliasing, block_pixels is the whole share if the share fits. Otherwise it
 /// is the number of pixels that fit, and the image is gathered block by block. (The paper's run on one PE, 256 x 256
 /// pixels with 32 KB, requires this.) With anti-aliasing, each PE holds its whole share with sums or marks, and
-/// band_pixels is the number of pixels that fit, reduced so that all bands have about the same length. Throws
+/// band_pixels is the number of pixels that fit, reduced so that all bands have about the same length. With divided
+/// objects, the rest holds as many ray trees in flight as fit, at most one for each pixel of the share. Throws
 /// DoesNotFit, with the required and available bytes and a remedy, if not even one pixel of the block or band fits.
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand);
 
@@ -66,6 +74,9 @@ struct RingSettings : RenderSettings {
     // Maximum number of pixels of all PEs that the device holds at a time, 20 bytes each. With anti-aliasing the device
     // holds all pixels.
     std::uint64_t device_pixels = 1 << 22;
+    // Number of parts G of the objects, which rotate on the ring; a divisor of the number of PEs. 1: every PE stores
+    // all objects; 0: the smallest number with which the scene fits a PE.
+    std::uint32_t split = 0;
 };
 
 /// Sets settings.packets if that is possible: in fp32 with a BVH, if the mapping is tiles, so that the lanes hold
@@ -77,6 +88,9 @@ JobSettings job_settings(const RingSettings& settings, const LengthScale& scale)
 /// Returns the properties of a render that determine a PE's memory. `scene`: name of the scene, for messages.
 /// `job_words`: number of words of the job.
 PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::uint64_t job_words);
+
+/// Throws UserError if the objects cannot be divided into settings.split parts.
+void check_split(const RingSettings& settings);
 
 /// Returns the settings with the number of lanes and the group size chosen for the device. Throws UserError if the
 /// kernels cannot be built with these settings. Call it before packing the scene, so that raya fails early.
@@ -94,9 +108,10 @@ struct LaunchWork {
 LaunchWork launch_work(const RingSettings& settings, const KernelOptions& options, std::size_t objects,
                        std::uint32_t pes);
 
-/// Returns the kernel options for the packed job. `accel`: summary of the accelerator that settings.accel selects.
-KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, const AccelSummary& accel,
-                             const DeviceInfo& device);
+/// Returns the kernel options for the packed job. `pe_words`: number of its words that a PE stores at a time; `accel`:
+/// summary of the accelerator that settings.accel selects.
+KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, std::size_t pe_words,
+                             const AccelSummary& accel, const DeviceInfo& device);
 
 /// What is known of a packed job besides its words.
 struct JobFigures {
@@ -129,6 +144,8 @@ RingJob make_ring_job(const Session& session, const Scene& scene, const RingSett
 struct PassCounters {
     Buffer<std::uint64_t> cycles;  // [PE][capacity]: modelled cycles of each pixel
     Buffer<std::uint64_t> events;  // [PE][L][RAYA_EVENTS]; L: work-items of a PE
+    // With divided objects: modelled cycles of each turn, if each step of a turn waits for the busiest PE of all ranks.
+    std::vector<std::uint64_t> turn_cycles{};
 };
 
 /// Pixels begin .. end - 1 of each PE's share. `window_start`: index in the share of the first pixel that is in
@@ -144,47 +161,67 @@ using TraceKernel =
                     Buffer<float>&, Buffer<std::uint64_t>&, Buffer<std::uint64_t>&, Buffer<raya_trace_progress>&,
                     Buffer<std::uint32_t>&>;
 
-class Tracer {
+/// Traces sample points of the pixels of all PEs on a device.
+class SampleTracer {
   public:
-    /// `pes`: PEs on this device; `capacity`: number of pixels of each PE in the device buffers.
-    Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity, const LaunchWork& work);
+    virtual ~SampleTracer() = default;
 
     /// Allocates the counters of a pass.
     PassCounters make_counters(const std::string& pass) const;
     void clear(PassCounters& counters);
 
-    /// Launches the kernel once without pixels, so that its compilation, which PoCL does at the first launch, counts as
-    /// build time.
-    void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
-                 PassCounters& counters);
+    /// Launches the kernels once without pixels, so that their compilation, which PoCL does at the first launch, counts
+    /// as build time.
+    virtual void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
+                         PassCounters& counters) = 0;
 
     /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; supersampling points only of the marked
     /// pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of work,
     /// so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Throws DeviceError if the
     /// device ends loops early even in the smallest launch.
-    void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
-               const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-               const ProgressCallback& progress = {});
+    virtual void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
+                       const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
+                       const ProgressCallback& progress) = 0;
 
     const KernelOptions& options() const { return options_; }
     const std::string& build_options() const { return build_options_; }
+
+  protected:
+    /// `pes`: PEs on this device; `capacity`: number of pixels of each PE in the device buffers.
+    SampleTracer(Kernels& kernels, std::string build_options, const Distribution& pes, std::uint32_t capacity);
+
+    /// Sets the next pixel of every PE to index `pixel` of its share.
+    void reset_progress(const std::string& label, std::uint32_t pixel);
+    /// Reads the progress of all PEs in `range`, and calls `progress` if it is not empty.
+    LaunchEnd read_progress(const std::string& label, PixelRange range, const ProgressCallback& progress);
+
+    Session& session_;
+    KernelOptions options_;
+    std::string build_options_;
+    Distribution pes_;
+    std::uint32_t capacity_;
+    Buffer<raya_trace_progress> progress_;  // [PE]
+};
+
+/// Traces with the whole job in every PE (kernels/ring/trace.cl).
+class Tracer : public SampleTracer {
+  public:
+    Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity, const LaunchWork& work);
+
+    void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
+                 PassCounters& counters) override;
+    void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
+               const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
+               const ProgressCallback& progress) override;
 
   private:
     /// Launches the kernel for those pixels of the range that have not been traced.
     void launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
                 std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters);
-    /// Sets the next pixel of every PE to index `pixel` of its share.
-    void reset_progress(const std::string& label, std::uint32_t pixel);
 
-    Session& session_;
-    KernelOptions options_;
-    Distribution pes_;
-    std::uint32_t capacity_;
     LaunchWork work_;
-    std::string build_options_;
     TraceKernel kernel_;
-    Buffer<raya_trace_progress> progress_;  // [PE]
-    Buffer<std::uint32_t> saved_trees_;     // unfinished ray trees, which the next launch continues
+    Buffer<std::uint32_t> saved_trees_;  // unfinished ray trees, which the next launch continues
     LaunchLoop<raya_trace_progress, std::uint32_t, float, std::uint64_t, std::uint64_t> launches_{
         "fewer tests of a ray (--accel bvh or grid), other --lanes or --group"};
 };

@@ -51,11 +51,12 @@ RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSetti
       settings_(checked_settings(settings, session.device())),
       pes_(Distribution(settings_.mapping.pes, ranks)),
       job_(make_ring_job(session, scene, settings_, ranks, packed)),
+      stored_(store_scene(job_.job, settings_, scene.name)),
       share_pixels_(largest_share(settings_.mapping)),
-      memory_(plan_pe_memory(settings_.machine, pe_demand(settings_, scene.name, job_.job.words().size()))),
+      memory_(stored_.memory),
       window_(device_window(memory_, settings_)),
       bus_(session, communication_, pes_),
-      broadcast_(session.buffer_of("broadcast words", std::span(job_.job.words()))),
+      broadcast_(session.buffer_of("broadcast words", std::span(stored_.words(job_.job)))),
       pixels_(session.buffer<float>("pixel blocks", 3ull * pes_.count() * window_)),
       no_marks_(session.buffer<std::uint8_t>("no marks", 1)) {
     ranks_.one_rank_per_host_first([this] { build(); });
@@ -65,12 +66,19 @@ void RingRenderer::build() {
     const SpanLog::Span building = session_.span("set up device");
     const std::jthread notice = session_.compile_notice();
     const Clock::time_point start = Clock::now();
-    const KernelOptions options = kernel_options(settings_, job_.job, job_.accel, session_.device());
+    const KernelOptions options =
+        kernel_options(settings_, job_.job, memory_.job_words + memory_.part_words, job_.accel, session_.device());
     Kernels kernels(session_, options, settings_.kernels.sources);
-    tracer_ =
-        std::make_unique<Tracer>(kernels, pes_, window_, launch_work(settings_, options, job_.objects, pes_.count()));
+    if (stored_.parts) {
+        auto turns = std::make_unique<Turns>(kernels, communication_, pes_, window_, *stored_.parts, memory_.trees);
+        turns_ = turns.get();
+        tracer_ = std::move(turns);
+    } else {
+        tracer_ = std::make_unique<Tracer>(kernels, pes_, window_,
+                                           launch_work(settings_, options, job_.objects, pes_.count()));
+    }
     counters_.push_back(tracer_->make_counters(kTracePass));
-    bus_.broadcast(broadcast_, job_.job.words());
+    bus_.broadcast(broadcast_, stored_.words(job_.job));
     tracer_->clear(counters_.front());
     tracer_->warm_up(broadcast_, no_marks_, pixels_, counters_.front());
     if (settings_.antialias.method != AntialiasMethod::kNone) build_exchange(options);
@@ -102,7 +110,8 @@ RingResult RingRenderer::render(const ProgressCallback& progress, const Checkpoi
     const RankTraffic traffic_before = ranks_.traffic();
     RingResult result;
     prepare(result);
-    bus_.broadcast(broadcast_, job_.job.words());
+    bus_.broadcast(broadcast_, stored_.words(job_.job));
+    if (turns_) turns_->broadcast_parts();
     if (checkpointing) resume(result);
     for (std::uint32_t block_begin = 0; block_begin < share_pixels_; block_begin += memory_.block_pixels)
         render_block(block_begin, result, progress);
@@ -160,6 +169,13 @@ void RingRenderer::trace(std::uint32_t pass, PixelRange range, RingResult& resul
     if (resumed_ && position_.pass > pass) return;
     if (resumed_ && position_.pass == pass) range.begin = std::max(range.begin, position_.next);
     PixelRange band = range;
+    const auto save = [&](std::uint32_t next, double done) {
+        position_ = {pass, range.window_start, next};
+        const double fraction = (pass + done / share_pixels_) / static_cast<double>(counters_.size());
+        checkpoints_->save_if_due(fraction, [&](RenderState& state) { visit_state(state, result); });
+    };
+    if (turns_)  // saves after turns instead of bands, which would empty the PEs
+        turns_->after_turn([&](double done) { save(range.begin, range.begin + done * (range.end - range.begin)); });
     const auto report = [&](double done) {
         ranks_.poll_failures();
         const double pixels = band.begin + done * (band.end - band.begin);
@@ -167,17 +183,16 @@ void RingRenderer::trace(std::uint32_t pass, PixelRange range, RingResult& resul
     };
     for (; band.begin < range.end; band.begin = band.end) {
         const Clock::time_point start = Clock::now();
-        band.end = checkpoints_->active() ? band.begin + std::min(band_, range.end - band.begin) : range.end;
+        const bool has_bands = checkpoints_->active() && !turns_;
+        band.end = has_bands ? band.begin + std::min(band_, range.end - band.begin) : range.end;
         tracer_->trace(label, broadcast_, band, pass == 0 ? raya_u32{RAYA_POINTS_OWN} : settings_.antialias.points,
                        pass == 0 ? no_marks_ : contrast_->marks(), pixels_, counters_[pass],
                        progress || polls_failures() ? report : ProgressCallback{});
-        if (!checkpoints_->active()) continue;
+        if (!has_bands) continue;
         // The next band must have the same length in all ranks, so the slowest rank determines it.
         const std::vector<double> seconds = ranks_.all_gather(seconds_since(start));
         band_ = next_band(band_, *std::max_element(seconds.begin(), seconds.end()), checkpoints_->band_s());
-        position_ = {pass, range.window_start, band.end};
-        const double fraction = (pass + 1.0 * band.end / share_pixels_) / static_cast<double>(counters_.size());
-        checkpoints_->save_if_due(fraction, [&](RenderState& state) { visit_state(state, result); });
+        save(band.end, band.end);
     }
 }
 
@@ -194,6 +209,7 @@ void RingRenderer::describe(RingResult& result) {
     result.scale = job_.scale;
     result.communication = communication_;
     result.pe_memory = memory_;
+    if (stored_.parts) result.parts = stored_.parts->parts;
     if (settings_.accel.kind != AccelKind::kNone) result.accel = job_.accel;
     result.words_local = tracer_->options().words_local;
     result.first_pe = pes_.first();
@@ -226,8 +242,20 @@ StateSettings RingRenderer::state_settings() const {
             {"--accel", accel_text(settings_.accel)},
             {"--cost or --mapping dynamic", records_costs() ? "yes" : "no"},
             {"a device window of", fmt::format("{} pixels", window_)},
+            {"--split", std::to_string(stored_.parts ? stored_.parts->parts : 1)},
+            {"memory of a PE for", fmt::format("{} rays", memory_.trees)},
             {"another scene, camera or light", words_hash(job_.job.words())}};
 }
+
+namespace {
+
+std::uint64_t turn_count(const std::vector<PassCounters>& passes) {
+    std::uint64_t turns = 0;
+    for (const PassCounters& pass : passes) turns += pass.turn_cycles.size();
+    return turns;
+}
+
+}  // namespace
 
 void RingRenderer::visit_state(RenderState& state, RingResult& result) {
     for (std::uint32_t* number : {&position_.pass, &position_.window, &position_.next}) state.value(*number);
@@ -248,7 +276,9 @@ void RingRenderer::visit_state(RenderState& state, RingResult& result) {
         for (std::size_t n = 0; n < sums.size(); ++n) counts[n / RAYA_EVENTS * pe_counts + n % RAYA_EVENTS] = sums[n];
         if (state.restores()) session_.write("resume", counters_[i].events, counts);
         if (auto& cost = result.phases[i].recorded_cost) state.rank_0(cost->cycles);
+        if (turns_) state.vector(counters_[i].turn_cycles, true);
     }
+    if (turns_) turns_->visit_state(state, turn_count(counters_));
     if (result.sum_cost) state.rank_0(result.sum_cost->cycles);
 }
 
@@ -375,6 +405,7 @@ void RingRenderer::collect_events(RingResult& result) {
             loads[pe] += cycles[event] * counts[n];
         }
         result.phases[i].rank_events = events;
+        result.phases[i].turn_cycles = counters_[i].turn_cycles;
         if (i == 0) check_all_traced(events, settings_.mapping, pes_, session_.device());
         add_events(ranks_.all_gather(events), result.phases[i].events, result.events);
         loads = pes_.gather(std::move(loads), 1);

@@ -11,6 +11,7 @@
 #include "host/ring/bus_and_ring.hpp"
 #include "host/ring/ring_plan.hpp"
 #include "host/ring/ring_result.hpp"
+#include "host/ring/turns.hpp"
 #include "host/scene/scene.hpp"
 
 namespace raya {
@@ -56,6 +57,7 @@ class RingRenderer {
     RingSettings settings_;  // with lanes and group size chosen
     Distribution pes_;
     RingJob job_;
+    StoredScene stored_;
     std::uint32_t share_pixels_ = 0;  // maximum number of pixels that a PE owns
     PeMemory memory_;
     // Number of pixels of each PE on the device at a time: a block (PeMemory) or a part of a block.
@@ -66,7 +68,8 @@ class RingRenderer {
     Buffer<std::uint32_t> broadcast_;  // words of the job
     Buffer<float> pixels_;             // [PE][3][window]
     Buffer<std::uint8_t> no_marks_;    // dummy argument of the first pass, which has no marks
-    std::unique_ptr<Tracer> tracer_;
+    std::unique_ptr<SampleTracer> tracer_;
+    Turns* turns_ = nullptr;              // tracer_, if the objects are divided
     std::vector<PassCounters> counters_;  // one for each pass
     std::unique_ptr<NeighbourExchange> exchange_;
     std::unique_ptr<RingFilter> filter_;

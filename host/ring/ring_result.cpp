@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <stdexcept>
 
 #include "host/model/budget.hpp"
@@ -18,9 +19,11 @@ constexpr std::uint64_t kColourBytes = 3 * sizeof(float);
 // Returns the bytes of all launches with this label, except those of pixels: the job's words, if PEs copy them, and the
 // counters, which are read and written.
 std::uint64_t launch_bytes(const RingResult& r, const std::string& label) {
-    const std::uint64_t words = r.words_local ? r.communication.broadcast_words * r.parts_of_rank : 0;
+    const std::uint64_t words = r.words_local ? r.pe_memory.job_words * r.parts_of_rank : 0;
     const std::uint64_t counters = std::uint64_t{r.parts_of_rank} * r.group_size * RAYA_EVENTS;
-    return r.launches(label) * (sizeof(std::uint32_t) * words + 2 * sizeof(std::uint64_t) * counters);
+    // With divided objects, one launch of each turn reads and writes the counters.
+    const std::uint64_t launches = r.launches(label) / (r.parts > 1 ? r.parts + 1 : 1);
+    return launches * (sizeof(std::uint32_t) * words + 2 * sizeof(std::uint64_t) * counters);
 }
 
 // `pixels`: number of pixels of this rank.
@@ -72,6 +75,26 @@ const CostImage& Phase::cost() const {
     return *recorded_cost;
 }
 
+std::uint64_t Phase::barrier_cycles() const {
+    return turn_cycles.empty() ? load.max : std::accumulate(turn_cycles.begin(), turn_cycles.end(), std::uint64_t{0});
+}
+
+std::uint64_t RingResult::turns() const {
+    std::uint64_t turns = 0;
+    for (const Phase& phase : phases) turns += phase.turn_cycles.size();
+    return turns;
+}
+
+ModelledTime ring_time(const RingSettings& settings, const RingResult& result) {
+    std::vector<Load> loads;
+    SmoothingCycles cycles = smoothing_cycles(settings.antialias.method, largest_share(settings.mapping));
+    for (const Phase& phase : result.phases) {
+        loads.push_back(phase.load);
+        cycles.wait += phase.barrier_cycles() - phase.load.max;
+    }
+    return modelled_time(settings.machine.clock, loads, result.communication, cycles);
+}
+
 double trace_seconds(const RingResult& result) {
     double ns = 0;
     for (const LabelSummary& command : result.commands)
@@ -97,14 +120,6 @@ std::vector<KernelWork> ring_kernel_work(const RingSettings& settings, const Rin
 }
 
 namespace {
-
-/// Returns the modelled time of a render.
-ModelledTime ring_time(const RingSettings& settings, const RingResult& result) {
-    std::vector<Load> loads;
-    for (const Phase& phase : result.phases) loads.push_back(phase.load);
-    return modelled_time(settings.machine.clock, loads, result.communication,
-                         smoothing_cycles(settings.antialias.method, largest_share(settings.mapping)));
-}
 
 constexpr TraceTrack kPhases = {kTraceMachine, 1};
 constexpr std::array<const char*, RAYA_SIDES> kSides = {"left", "right", "above", "below"};
@@ -134,27 +149,38 @@ class RingTimeline {
         }
     }
 
-    // Adds a phase in which each PE computes for its own number of cycles, then waits for the busiest PE.
-    void add_compute_phase(const std::string& name, const Load& load) {
+    // Adds a phase in which each PE computes for its own number of cycles, then waits for the busiest PE. `turns`: the
+    // cycles of the phase's turns, if its objects are divided: then all PEs wait for each other after each part.
+    void add_compute_phase(const std::string& name, const Load& load, const std::vector<std::uint64_t>& turns = {}) {
         const double begin = now_ms_;
         const auto busiest = std::max_element(load.per_pe.begin(), load.per_pe.end()) - load.per_pe.begin();
         const Json arguments = {
             {"u", load.imbalance}, {"mean_cycles", load.mean}, {"max_cycles", load.max}, {"busiest", busiest}};
         trace_.counter(kTraceMachine, "u", nanoseconds(begin), {{"u", load.imbalance}});
-        add_phase(name, cycle_ms_ * static_cast<double>(load.max), arguments);
-        const std::string wait = fmt::format("wait for PE {}", busiest);
+        const std::uint64_t all =
+            turns.empty() ? load.max : std::accumulate(turns.begin(), turns.end(), std::uint64_t{0});
+        add_phase(name, cycle_ms_ * static_cast<double>(all), arguments);
+        double turn_begin = begin;
+        for (std::size_t i = 0; i < turns.size(); ++i) {
+            const double turn_end = turn_begin + cycle_ms_ * static_cast<double>(turns[i]);
+            trace_.slice(kPhases, fmt::format("turn {}", i + 1), nanoseconds(turn_begin),
+                         std::min(nanoseconds(turn_end), nanoseconds(now_ms_)), {{"cycles", turns[i]}});
+            turn_begin = turn_end;
+        }
+        const std::string wait = turns.empty() ? fmt::format("wait for PE {}", busiest) : "wait for other PEs";
         for (const TracedPe& p : pes_) {
             const std::uint64_t cycles = load.per_pe[p.pe];
             const std::uint64_t done = nanoseconds(begin + cycle_ms_ * static_cast<double>(cycles));
             if (cycles > 0) trace_.slice(track_of(p), name, nanoseconds(begin), done, {{"cycles", cycles}});
-            if (cycles < load.max)
-                trace_.slice(track_of(p), wait, done, nanoseconds(now_ms_), {{"cycles", load.max - cycles}});
+            if (cycles < all) trace_.slice(track_of(p), wait, done, nanoseconds(now_ms_), {{"cycles", all - cycles}});
         }
     }
 
     // Adds a tracing phase with a counter of live rays. A PE of this machine traces one ray at a time, so the number of
-    // live rays is the number of PEs that are tracing. The counter has at most kMaxPoints points after the first point.
-    void add_tracing_phase(const std::string& name, const Load& load) {
+    // live rays is the number of PEs that are tracing; with divided objects, of PEs that would be without waiting. The
+    // counter has at most kMaxPoints points after the first point.
+    void add_tracing_phase(const Phase& phase) {
+        const Load& load = phase.load;
         constexpr std::size_t kMaxPoints = 512;
         std::vector<std::uint64_t> ends = load.per_pe;
         std::sort(ends.begin(), ends.end());
@@ -164,7 +190,7 @@ class RingTimeline {
             const std::size_t last = std::min(i + step, ends.size()) - 1;
             if (ends[last] > 0) add_live_rays(ends[last], static_cast<double>(ends.size() - 1 - last));
         }
-        add_compute_phase(name, load);
+        add_compute_phase(phase.name, load, phase.turn_cycles);
     }
 
   private:
@@ -232,10 +258,26 @@ void add_ring_machine(TraceFile& trace, const RingSettings& settings, const Ring
     const ModelledTime time = ring_time(settings, result);
     RingTimeline timeline(trace, settings.machine, traced_pes(result.load.per_pe, pes));
     timeline.add_common_phase("broadcast", time.objects_ms, {{"words", c.broadcast_words}});
-    timeline.add_tracing_phase(result.phases[0].name, result.phases[0].load);
-    if (settings.antialias.method != AntialiasMethod::kNone)
-        add_smoothing(timeline, settings, result, time.communication_ms);
-    if (result.phases.size() > 1) timeline.add_tracing_phase(result.phases[1].name, result.phases[1].load);
+    const bool smoothed = settings.antialias.method != AntialiasMethod::kNone;
+    constexpr std::uint64_t kMaxShown = 4096;  // rotations that are slices of their own
+    const MachineClock& clock = settings.machine.clock;
+    const auto rotations_of = [&](const Phase& phase) { return phase.turn_cycles.size() * (result.parts - 1); };
+    const auto rotation_ms = [&](const Phase& phase) {  // of the parts, without a set-up
+        const auto words = static_cast<double>(rotations_of(phase) * result.pe_memory.part_words);
+        return rotations_of(phase) ? exchange_ms(clock, rotations_of(phase), words) - clock.setup_ms : 0;
+    };
+    double other_ms = time.communication_ms;
+    for (const Phase& phase : result.phases) other_ms -= rotation_ms(phase);
+    const auto add_tracing = [&](const Phase& phase, double setup_ms) {
+        timeline.add_tracing_phase(phase);
+        if (rotations_of(phase))
+            timeline.add_common_phase("rotate parts", setup_ms + rotation_ms(phase),
+                                      {{"rotations", rotations_of(phase)}},
+                                      rotations_of(phase) <= kMaxShown ? rotations_of(phase) : 1);
+    };
+    add_tracing(result.phases[0], smoothed ? 0 : other_ms);
+    if (smoothed) add_smoothing(timeline, settings, result, other_ms);
+    if (result.phases.size() > 1) add_tracing(result.phases[1], 0);
     timeline.add_common_phase("gather", time.image_ms, {{"words", c.gather_words}});
     if (time.display_ms > 0) timeline.add_common_phase("display", time.display_ms, Json::object());
     trace.metadata()["machine"] = {{"name", settings.machine.name},
@@ -278,6 +320,20 @@ void communication_members(Members& m, const Communication& c) {
     m("gather_words", c.gather_words, "Number of words in these gathers.");
 }
 
+void split_members(Members& m, const RingResult& result) {
+    m("parts", result.parts, "Number G of parts. PE i starts with part i mod G.");
+    m("part_words", result.pe_memory.part_words, "Number of words of the largest part.");
+    m("trees", result.pe_memory.trees,
+      "Number of ray trees that fit a PE's memory; each has at most one ray in flight, "
+      "and the shadow rays of one hit.");
+    m("turns", result.turns(),
+      "Number of turns. In a turn the parts rotate G - 1 times, and each ray meets each part.");
+    m("resumed", result.events[RAYA_RESUMED], "Number of rays that PEs took up to test a part.");
+    std::uint64_t cycles = 0;
+    for (const Phase& phase : result.phases) cycles += phase.barrier_cycles();
+    m("barrier_cycles", cycles, "Modelled cycles of all turns, if each step of a turn waits for the busiest PE.");
+}
+
 void accel_members(Members& m, const std::optional<AccelSummary>& accel) {
     const AccelSummary a = accel.value_or(AccelSummary{});
     const bool grid = a.kind == AccelKind::kGrid, bvh = a.kind == AccelKind::kBvh;
@@ -311,6 +367,8 @@ void time_members(Members& m, const ModelledTime& time) {
     m("compute", time.compute_ms, "Computation time of the busiest PE, summed over the phases, ms.");
     m("filter", time.filter_ms, "Part of `compute` in which the PEs average neighbouring pixels, ms.");
     m("compare", time.compare_ms, "Part of `compute` in which the PEs compare neighbouring pixels, ms.");
+    m.when(time.wait_ms > 0, "wait", time.wait_ms,
+           "Part of `compute` in which the busiest PE waits for other PEs after each part of divided objects, ms.");
     m("communication", time.communication_ms,
       "Time of the rotations of the ring and of the transfers and broadcasts between PEs over the bus, ms.");
     m("image", time.image_ms, "Time of the transfer of the image to the host, ms.");
@@ -336,6 +394,14 @@ std::string antialias_lines(const RingSettings& settings, const RingResult& resu
         return text + fmt::format("bus     {} by PEs, {} words\n", counted(c.pe_broadcasts, "broadcast"),
                                   c.pe_broadcast_words);
     return text + fmt::format("ring    {}, {} words\n", counted(c.rotations, "rotation"), c.rotation_words);
+}
+
+std::string split_line(const RingSettings& settings, const RingResult& r) {
+    if (r.parts == 1) return {};
+    return fmt::format("split   {} parts of at most {} words{}, {} of {}, {} in flight in each PE\n", r.parts,
+                       r.pe_memory.part_words, settings.split ? "" : " (the fewest that fit)",
+                       counted(r.turns(), "turn"), counted(r.parts - 1, "rotation"),
+                       counted(r.pe_memory.trees, "tree"));
 }
 
 std::string model_line(const ModelledTime& t, const std::string& machine) {
@@ -370,14 +436,16 @@ MachineReport ring_report(const RingSettings& settings, const RingResult& result
     Members members(Members::Mode::kWrite);
     ring_members(members, settings, result, time);
     return {.json = members.json(),
-            .lines = antialias_lines(settings, result) + (all_counted ? model_line(time, settings.machine.name) : "") +
-                     accel_line(result, all_counted)};
+            .lines = split_line(settings, result) + antialias_lines(settings, result) +
+                     (all_counted ? model_line(time, settings.machine.name) : "") + accel_line(result, all_counted)};
 }
 
 void ring_members(Members& m, const RingSettings& settings, const RingResult& result, const ModelledTime& time) {
     m("accel", "Ring machines: acceleration structure.", [&](Members& accel) { accel_members(accel, result.accel); });
     m("antialias", "Ring machines: anti-aliasing between neighbouring pixels.",
       [&](Members& antialias) { antialias_members(antialias, settings, result); });
+    m.when(result.parts > 1, "split", "Ring machines: objects in parts that rotate on the ring (--split).",
+           [&](Members& split) { split_members(split, result); });
     m("communication",
       "Ring machines: transfers over bus and ring, counted when raya executes them. A word has 32 bits; a number "
       "takes "

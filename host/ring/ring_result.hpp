@@ -24,9 +24,12 @@ struct Phase {
     EventCounts events{}, rank_events{};     // of all ranks; of this rank
     Load load;                               // modelled cycles of each PE, from the PE's counters
     std::optional<CostImage> recorded_cost;  // only with RingSettings::record_costs
+    std::vector<std::uint64_t> turn_cycles;  // of each turn, see PassCounters
 
     /// Modelled cycles of each pixel. Throws std::logic_error if they were not recorded.
     const CostImage& cost() const;
+    /// Modelled cycles of the phase: of the busiest PE or, with divided objects, of the busiest PE in each step.
+    std::uint64_t barrier_cycles() const;
 };
 
 struct RingResult : RenderResult {
@@ -38,6 +41,7 @@ struct RingResult : RenderResult {
     std::optional<std::uint64_t> requests;  // number of requests in a simulated dynamic distribution
     Communication communication;
     PeMemory pe_memory;
+    std::uint32_t parts = 1;            // number G of parts of the objects
     std::optional<AccelSummary> accel;  // summary of the grid or BVH
     bool words_local = true;            // in each launch the PEs copied the job's words into local memory
     std::uint32_t first_pe = 0;         // of this rank
@@ -45,7 +49,12 @@ struct RingResult : RenderResult {
 
     /// Modelled cycles of each pixel in all phases. Throws std::logic_error if they were not recorded.
     const CostImage& cost() const { return sum_cost ? *sum_cost : phases.front().cost(); }
+    /// Number of turns of divided objects.
+    std::uint64_t turns() const;
 };
+
+/// Returns the modelled time of a render.
+ModelledTime ring_time(const RingSettings& settings, const RingResult& result);
 
 /// Returns the device time, in seconds, of all commands that trace rays; render_s if the device does not time its
 /// commands.

@@ -47,12 +47,14 @@ struct Rendering {
     Injection inject = Injection::kAll;
     std::uint32_t queue = 0;     // capacity of the queues of the torus, packets; 0: default
     std::uint32_t pe_bytes = 0;  // memory of a PE of the ring; 0: no limit
+    std::uint32_t split = 1;     // RingSettings::split
     bool history = false;        // record the cycles of each packet and check their sum in each node
     bool global_words = false;   // job words are in global memory, as if local memory were too small
     bool fallback_code = false;  // as if the device did not round division, square root and fma correctly, and the
                                  // compiler had none of the builtins that raya uses
 
-    /// Returns the name of the renderer with its accelerator or torus, such as "ring", "bvh" or "torus2d 3x2x2 root".
+    /// Returns the name of the renderer with its accelerator, parts or torus, such as "ring", "bvh", "2 parts" or
+    /// "torus2d 3x2x2 root".
     /// It is the key in StoredImage::counts: renderings of an image by the same renderer have equal counts.
     std::string check_kind() const;
 
@@ -66,6 +68,7 @@ std::string mapping_name(const MappingRule& mapping) {
 }
 
 std::string Rendering::check_kind() const {
+    if (split > 1) return fmt::format("{} parts", split);
     if (renderer != kTorus) return std::array{"ring", "grid", "bvh", "packets"}[static_cast<std::size_t>(renderer)];
     return fmt::format("{} {}{}{}", links_name(links), sides_text(nodes), inject == Injection::kRoot ? " root" : "",
                        queue ? fmt::format(", queue {}", queue) : "");
@@ -74,7 +77,7 @@ std::string Rendering::check_kind() const {
 std::string Rendering::name() const {
     std::string text = check_kind();
     if (renderer != kTorus)
-        text = fmt::format("{} on {}{}", mapping_name(mapping), pes, renderer == Renderer::kRing ? "" : ", " + text);
+        text = fmt::format("{} on {}{}", mapping_name(mapping), pes, text == "ring" ? "" : ", " + text);
     if (mapping.kind == RAYA_FOLD_BLOCK) text += ", block fold";
     if (work_per_launch) text += ", launches of " + counted(work_per_launch, renderer == kTorus ? "unit" : "test");
     if (pe_bytes) text += fmt::format(", PEs of {} bytes", pe_bytes);
@@ -115,6 +118,14 @@ std::vector<Rendering> standard_renderings() {
         {.image = "glass fp32", .fallback_code = true},
         {.image = "glass fp32", .lanes = 1, .group_size = 1, .pes = 1},
         {.image = "glass fp32", .lanes = 4, .group_size = 32, .mapping = random_mapping(1), .pes = 5},
+        {.image = "glass fp32", .depth = kQuick, .split = 5},
+        {.image = "glass fp32 axes",
+         .depth = kQuick,
+         .mapping = rows_mapping(),
+         .pes = 10,
+         .pe_bytes = 5000,
+         .split = 2},
+        {.image = "ties fp32", .depth = kQuick, .pe_bytes = 2000, .split = kReferenceSide},
         {.image = "ties fp32",
          .depth = kQuick,
          .mapping = blocks_mapping(),
@@ -171,6 +182,7 @@ std::vector<Rendering> standard_renderings() {
         {.image = "mirrors spa22", .fallback_code = true},
         {.image = "polygons spa22", .renderer = kTorus, .fallback_code = true},
         {.image = "mirrors spa22 axes", .mapping = cyclic_mapping(3), .pes = 100},
+        {.image = "mirrors spa22", .split = kReferenceSide, .global_words = true},
         {.image = "planes fp32 corners", .renderer = kGrid},
         {.image = "spheres e8m12t", .depth = kQuick},
         {.image = "glass e8m21"},
@@ -242,6 +254,7 @@ Rendered render_on_ring(const KernelChoice& kernels, Session& session, const Ren
     const bool is_plain = r.renderer == Renderer::kRing, packets = r.renderer == kPackets;
     settings.accel.kind = is_plain ? AccelKind::kNone : r.renderer == kGrid ? AccelKind::kGrid : AccelKind::kBvh;
     settings.work_per_launch = r.work_per_launch;
+    settings.split = r.split;
     settings.kernels = kernels_for(kernels, r);
     settings.packets = packets;
     settings.record_costs = !packets;
@@ -249,6 +262,12 @@ Rendered render_on_ring(const KernelChoice& kernels, Session& session, const Ren
     RingResult result = RingRenderer(session, scene_of(image), settings).render();
     std::vector<std::pair<const char*, std::uint64_t>> cycles = {{"cycles", sum(result.load.per_pe)}};
     if (!packets) cycles.emplace_back("pixel_cycles", sum(result.cost().cycles));
+    if (r.split > 1) {
+        std::uint64_t barrier_cycles = 0;
+        for (const Phase& phase : result.phases) barrier_cycles += phase.barrier_cycles();
+        cycles.insert(cycles.end(),
+                      {{"rotations", result.communication.rotations}, {"barrier_cycles", barrier_cycles}});
+    }
     const std::string counts = counts_text(result.events, cycles);
     return {std::move(result.image), result.build_options, counts};
 }

@@ -8,7 +8,7 @@
 //     copy the job's words to local memory, barrier
 //     while a lane has a pixel:
 //         a lane whose tree is done adds the tree's sum to its pixel; after the last point the lane stores the pixel
-//             and takes the PE's next one; then it makes the primary ray of the next point (ring/pixel_store.clh)
+//             and takes the PE's next one; then it makes the primary ray of the next point (ring/points.clh)
 //         test all objects for the rays of all lanes                                       (geometry/)
 //         add the background if nothing was hit; else add the ambient term, push the refracted ray on the stack, and
 //             add each light that a shadow ray reaches                                     (shading/)
@@ -20,6 +20,7 @@
 //
 // Limits: a PE's share < 2^32 pixels; modelled cycles of one pixel < 2^64; events of each kind of one pixel < 2^32.
 #include "kernels/geometry/ray.clh"
+#include "kernels/ring/points.clh"
 #include "kernels/ring/saved_trees.clh"
 #include "kernels/shading/shade.clh"
 #include "kernels/shared/loop_canary.clh"
@@ -27,34 +28,6 @@
 #ifndef RAYA_GROUP
 #define RAYA_GROUP 1  // L: number of work-items in a work-group, 1..1024
 #endif
-
-// In the lanes `started`, starts the ray tree of the point that lies `row` pixels below and `column` pixels to the
-// right of the sample point of row 0, column 0.
-static inline void start_tree(words scene, tree* t, mask started, real row, real column) {
-    const job_words job = (job_words)scene;
-    const vec zero = vec_of(num_const(0.0f), num_const(0.0f), num_const(0.0f));
-    set_lanes(&t->ray.origin, started, vec_all(job->eye));
-    set_lanes(&t->ray.direction, started, primary_direction(job, row, column));
-    t->ray.weight.all = choose(started, num_const(1.0f), t->ray.weight.all);
-    t->level = choose_index(started, (index)(0), t->level);
-    t->sum = vec_choose(started, zero, t->sum);
-    t->active |= started;
-    count_event(t, RAYA_PRIMARY, started);
-}
-
-// In lanes whose tree is done, starts the tree of the pixel's next point or, after the last point, stores the pixel and
-// takes the PE's next one.
-static inline void next_points(words scene, tree* t, pixel_store* store, tree_pixels* p, volatile __local uint* next) {
-    const mask idle = mask_not(t->active), traced = idle & (p->pixel.all != RAYA_NO_PIXEL);
-    add_points(t, store, p, traced);
-    p->point.all = choose_index(traced, p->point.all + 1u, p->point.all);
-    const mask done = traced & (p->point.all == raya_points(store->points));
-    if (mask_any(done)) store_pixels((job_words)scene, t, store, p, done);
-    take_pixels(store, p, next, done | (idle & mask_not(traced)));
-    const mask started = idle & (p->pixel.all != RAYA_NO_PIXEL);
-    if (!mask_any(started)) return;
-    start_tree(scene, t, started, point_rows(store, p), point_columns(store, p));
-}
 
 // Traces the trees until no pixels are left or a lane has done `work` tests and steps. Returns 1 if trees are
 // unfinished or the PE has pixels that no work-item has taken; else 0.
@@ -66,7 +39,7 @@ static inline int trace_trees(words scene, pixel_store* store, tree* t, tree_pix
     const uint refill = RAYA_MAKES_PACKETS ? RAYA_LANES : 1;
     for (;;) {
         const uint idle = popcount(mask_bits(mask_not(t->active)));
-        if (idle >= refill) next_points(scene, t, store, pixels, next);
+        if (idle >= refill) next_points(scene, t, store, pixels, next, mask_not(t->active));
         if (!mask_any(t->active)) return !store->drained;
         if (mask_any(pool.spent >= (index)(work))) return 1;
         follow_trees(scene, t, &pool);
@@ -131,17 +104,9 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
 #endif
     barrier(CLK_LOCAL_MEM_FENCE);
     pixel_store store;
-    store.mapping = ((job_words)scene)->mapping;
-    store.share = raya_share_of(store.mapping, first_pe + group);
-    store.window_start = window_start;
-    store.end = min(end, raya_share_size(store.share));
+    open_store(&store, (job_words)scene, first_pe, window_start, capacity, end, pixels, marks, cycles);
     store.points = points;
     store.marks_left = work;
-    store.capacity = capacity;
-    store.pixels = pixels + (size_t)group * capacity * 3;
-    store.marks = marks + (size_t)group * capacity;
-    store.cycles = cycles + (size_t)group * capacity;
-    open_store(&store);
     const save_cursor last_state = open_save_cursor(saved, 1), new_state = open_save_cursor(saved, 0);
     if (trace_share(scene, &store, &mine->next, work, last_state, new_state, resumes)) atomic_inc(&mine->left);
     __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;

@@ -21,7 +21,8 @@
     EVENT(RAYA_HIGHLIGHTS, "highlights", "shading.highlights") /* highlights; each takes one num_power() */        \
     EVENT(RAYA_WALKS, "walks", "walks")    /* rays that entered the grid's box or traversed the BVH */             \
     EVENT(RAYA_STEPS, "steps", "steps")    /* voxels or BVH nodes that rays entered */                             \
-    EVENT(RAYA_DISCARDED, "discarded", "") /* primary rays that a torus node made for another one */
+    EVENT(RAYA_DISCARDED, "discarded", "") /* primary rays that a torus node made for another one */               \
+    EVENT(RAYA_RESUMED, "resumed", "")     /* rays that a PE took up to test a part of the objects */
 
 #define RAYA_EVENT_ENUMERATOR(enumerator, name, member) enumerator,
 enum {

@@ -56,11 +56,17 @@ std::vector<Build> builds_in(const std::string& format, const KernelOptions& gen
     KernelOptions refined = single_item;
     refined.exact_divide = refined.exact_fma = false;
     std::vector<Build> builds = {
-        {"ring/trace.cl", format, general},         {"ring/trace.cl", format + " spheres", spheres},
-        {"ring/filter.cl", format, general},        {"ring/contrast.cl", format, general},
-        {"torus/inject.cl", format, general},       {"torus/trace_voxel.cl", format, general},
-        {"torus/compose.cl", format, single_item},  {"number/operations.cl", format, general},
-        {"checks/numbers.cl", format, single_item}, {"checks/numbers.cl", format + " refined", refined},
+        {"ring/trace.cl", format, general},
+        {"ring/trace.cl", format + " spheres", spheres},
+        {"ring/turn.cl", format, general},
+        {"ring/filter.cl", format, general},
+        {"ring/contrast.cl", format, general},
+        {"torus/inject.cl", format, general},
+        {"torus/trace_voxel.cl", format, general},
+        {"torus/compose.cl", format, single_item},
+        {"number/operations.cl", format, general},
+        {"checks/numbers.cl", format, single_item},
+        {"checks/numbers.cl", format + " refined", refined},
     };
     for (const auto& [suffix, accel] : kAccelerators) {
         builds.push_back({"ring/trace.cl", format + suffix, with_accel(general, accel)});

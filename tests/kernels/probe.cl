@@ -15,7 +15,7 @@ void find_places(__global const uint* restrict job,    // the job's words (kerne
     const objects_words all = &((job_words)job)->objects;
     const hit h = closest_hit(job, all, r, 0);
     const mask struck = h.object != RAYA_NO_OBJECT;
-    const hit_place p = find_place(job, all, struck, h, r.origin, r.direction);
+    const hit_place p = find_place((job_words)job, job, all, struck, h, r.origin, r.direction);
     store_index(leaving + first, 1, choose_index(p.leaving, (index)(1), (index)(0)));
     __global float* to = places + first * 18;
     store_vec(to, 18, p.point);

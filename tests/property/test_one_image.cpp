@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "host/error.hpp"
@@ -44,13 +45,14 @@ struct Build {
     bool packets = false;  // rays descend through the BVH together
     bool plain = false;    // replacement code: words in global memory, emulated arithmetic, no filters
     std::vector<std::string> options{};
+    bool divides = false;  // the objects may be in parts
 };
 const Build kRingBuilds[] = {{"fp32", AccelKind::kNone, 4, 1},
-                             {"spa22", AccelKind::kNone, 4, 1},
-                             {"fp32", AccelKind::kNone, 16, 3},
+                             {"spa22", AccelKind::kNone, 4, 1, false, false, {}, true},
+                             {"fp32", AccelKind::kNone, 16, 3, false, false, {}, true},
                              {"spa22", AccelKind::kNone, 16, 3},
                              {"fp32", AccelKind::kNone, 1, 1, false, false, {"-cl-opt-disable"}},
-                             {"spa22", AccelKind::kNone, 4, 3, false, true},
+                             {"spa22", AccelKind::kNone, 4, 3, false, true, {}, true},
                              {"fp32", AccelKind::kGrid, 4, 3},
                              {"spa22", AccelKind::kGrid, 4, 3},
                              {"fp32", AccelKind::kBvh, 4, 1},
@@ -130,6 +132,10 @@ RingSettings random_ring(SplitMix& random, const Build& build) {
         s.accel.divisions = {1 + random_below(random, 9), 1 + random_below(random, 9), 1 + random_below(random, 9)};
     if (!smoothed && !build.packets && random.next() % 3 == 0)
         s.dynamic = DynamicPlan{1 + random_below(random, 9), random_below(random, 500), random.uniform(0, 1)};
+    if (build.divides && !s.dynamic && random.next() % 2) {
+        const std::uint32_t divisor = 1 + random_below(random, s.mapping.pes);  // of a multiple, which s.split divides
+        s.split = std::gcd(divisor * 12, s.mapping.pes);
+    }
     s.record_costs = !build.packets && random.next() % 4 > 0;
     if (random.next() % 2) s.work_per_launch = 1 + random_below(random, 2000);
     if (!smoothed && random.next() % 2) s.device_pixels = 1 + random_below(random, s.mapping.width * s.mapping.height);
@@ -150,10 +156,14 @@ RingSettings simplest(const RingSettings& s) {
     return simple;
 }
 
-/// Limits the PEs' memory so that a random number of pixels fits.
+/// Limits the PEs' memory so that a random number of pixels and of ray trees fits.
 void limit_memory(SplitMix& random, RingSettings& s, const PeMemory& known) {
-    const PeMemory whole = plan_pe_memory(s.machine, pe_demand(s, "random", known.job_words));
-    s.machine.pe_memory_bytes = whole.bytes() - 12ull * random_below(random, largest_share(s.mapping));
+    PeDemand demand = pe_demand(s, "random", known.job_words);
+    demand.parts = std::max(1u, s.split);
+    if (s.split > 1) demand.part_words = known.job_words;  // more than the words of a part
+    const PeMemory whole = plan_pe_memory(s.machine, demand);
+    s.machine.pe_memory_bytes = whole.bytes() - 12ull * random_below(random, largest_share(s.mapping)) -
+                                4 * whole.tree_words * random_below(random, whole.trees);
 }
 
 void compare_images(Findings& f, Session& session, const Scene& scene, const RingSettings& s, const RingResult& result,
@@ -177,6 +187,10 @@ void compare_images(Findings& f, Session& session, const Scene& scene, const Rin
     }
 }
 
+std::uint64_t total(const std::vector<std::uint64_t>& cycles) {
+    return std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0});
+}
+
 /// `simple`: result without an accelerator; `counted`: result with the accelerator of `s`, on which the counts of tests
 /// and steps depend.
 void compare_counts(Findings& f, const RingSettings& s, const RingResult& result, const RingResult& simple,
@@ -186,11 +200,20 @@ void compare_counts(Findings& f, const RingSettings& s, const RingResult& result
         const EventCounts &events = result.phases[i].events, &expected = counted.phases[i].events;
         for (std::size_t e = 0; e < RAYA_EVENTS; ++e) {
             const bool is_ray_event = e < RAYA_SPHERE_TESTS;
+            if (e == RAYA_RESUMED && s.split > 1) continue;
             f.expect(events[e] == (s.packets && !is_ray_event ? 0 : expected[e]), "event " + std::to_string(e));
             f.expect(!is_ray_event || expected[e] == simple.phases[i].events[e], "accel's event " + std::to_string(e));
         }
         if (s.packets) continue;  // costs are not counted
         const CostImage& cost = counted.phases[i].cost();
+        if (s.split > 1) {
+            const std::uint64_t expected_cycles =
+                total(cost.cycles) + cycles_of_events()[RAYA_RESUMED] * events[RAYA_RESUMED];
+            if (s.record_costs) f.expect(total(result.phases[i].cost().cycles) == expected_cycles, "cost with parts");
+            f.expect(total(result.phases[i].load.per_pe) == expected_cycles, "load with parts");
+            f.expect(result.phases[i].barrier_cycles() >= result.phases[i].load.max, "cycles of turns");
+            continue;
+        }
         if (s.record_costs) f.expect(result.phases[i].cost().cycles == cost.cycles, "cost");
         f.expect(
             result.phases[i].load.per_pe ==
@@ -203,9 +226,12 @@ void compare_counts(Findings& f, const RingSettings& s, const RingResult& result
     f.expect(c.gather_words == 3ull * pixels, "gather words");
     f.expect(c.gathers == (share + memory.block_pixels - 1) / memory.block_pixels, "gathers");
     if (s.machine.pe_memory_bytes) f.expect(memory.bytes() <= *s.machine.pe_memory_bytes, "memory");
-    if (s.antialias.method == AntialiasMethod::kNone) return;
+    const std::uint64_t turn_rotations = result.turns() * (result.parts - 1);
+    f.expect(c.rotation_words >= turn_rotations * s.mapping.pes * memory.part_words, "words of parts");
+    if (s.antialias.method == AntialiasMethod::kNone) return f.expect(c.rotations == turn_rotations, "rotations");
     const std::uint64_t bands = (share + memory.band_pixels - 1) / memory.band_pixels;
-    f.expect(c.rotations + c.transfers + c.pe_broadcasts == bands * sum_of(smoothing_moves(s.antialias, s.mapping)),
+    f.expect(c.rotations + c.transfers + c.pe_broadcasts ==
+                 turn_rotations + bands * sum_of(smoothing_moves(s.antialias, s.mapping)),
              "moves");
 }
 
@@ -233,10 +259,10 @@ std::string check_ring(Session& session, std::uint64_t seed, Seen& seen, const B
     ProgressCallback progress;
     int calls = 0;
     if (random.next() % 2 || !patches.empty()) progress = [&](double) { limit_calls(calls, patches); };
-    INFO(fmt::format("{}x{}, {} on {} PEs of {} bytes, {} by {}, work {}, device pixels {}", s.mapping.width,
+    INFO(fmt::format("{}x{}, {} on {} PEs of {} bytes, {} parts, {} by {}, work {}, device pixels {}", s.mapping.width,
                      s.mapping.height, mapping_text(s.mapping), s.mapping.pes, s.machine.pe_memory_bytes.value_or(0),
-                     antialias_name(s.antialias.method), exchange_name(s.antialias.exchange), s.work_per_launch,
-                     s.device_pixels));
+                     s.split, antialias_name(s.antialias.method), exchange_name(s.antialias.exchange),
+                     s.work_per_launch, s.device_pixels));
     const RingResult result = render_in_parts(random, seen, [&](const Checkpointing* checkpointing) {
         if (s.packets) checkpointing = nullptr;  // the program combines checkpoints only with counts
         RingRenderer renderer(session, scene, s);
@@ -255,6 +281,8 @@ std::string check_ring(Session& session, std::uint64_t seed, Seen& seen, const B
     seen["broadcasts"] += result.communication.pe_broadcasts > 0;
     seen["bands"] += result.pe_memory.band_pixels > 0 && result.pe_memory.band_pixels < result.pe_memory.block_pixels;
     seen["blocks"] += result.communication.gathers > 1;
+    seen["parts"] += result.turns() > 2 && result.parts > 2;
+    seen["few trees"] += result.turns() > 0 && result.pe_memory.trees < largest_share(s.mapping) / 2;
     seen["launches"] += s.work_per_launch > 0 && result.launches(kTracePass) > 2;
     seen["schedules"] += s.dynamic.has_value();
     return f.wrong;
@@ -409,6 +437,11 @@ TEST_CASE("an injected fault gives another image or count", "[property][faults]"
          ring},
         {{"ring/saved_trees.clh", "transfer_index(k, &t->events[e].all)", ""}, ring},
         {{"ring/saved_trees.clh", "    transfer_vec(k, &p->colour);\n", ""}, ring},
+        {kLostPartFault, kRingBuilds[1]},
+        {kPartTwiceFault, kRingBuilds[1]},
+        {kRotationFault, kRingBuilds[1]},
+        {{"ring/flight.clh", "    transfer_real(k, &f->place.surface.transmit);\n", ""}, kRingBuilds[1]},
+        {{"ring/turn.cl", "(number < f->found.object)", "(number > f->found.object)"}, kRingBuilds[1]},
         {{"ring/trace.cl", "const int resumes = progress[group].left > 0;", "const int resumes = 0;"}, ring},
         {{"ring/trace.cl", "progress[group].left = mine->left;", "progress[group].left = 0;"}, ring},
         {{"bvh/boxes.clh", "inverse < 0.0f, (index)((RAYA_BVH_HIGH", "inverse < 2.0f, (index)((RAYA_BVH_HIGH"}, bvh},

@@ -19,6 +19,7 @@ inline void check_same(const RingResult& single, const RingResult& distributed) 
     for (std::size_t i = 0; i < single.phases.size(); ++i) {
         CHECK(single.phases[i].events == distributed.phases[i].events);
         CHECK(single.phases[i].load.per_pe == distributed.phases[i].load.per_pe);
+        CHECK(single.phases[i].turn_cycles == distributed.phases[i].turn_cycles);
         CHECK(single.phases[i].cost().cycles == distributed.phases[i].cost().cycles);
     }
     const Communication &a = single.communication, &b = distributed.communication;

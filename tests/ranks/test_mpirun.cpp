@@ -61,6 +61,7 @@ TEST_CASE("mpirun: the files of any number of ranks are those of a single proces
     for (const Arguments& options :
          {Arguments{"--pes", "13", "--antialias", "supersample", "--mask", folder / "m.pfm", "--cost", folder / "c.pfm",
                     "--accel", "bvh", "--from", "3,-6,4", "--light", "5,5,9", "--size", "40x24"},
+          Arguments{"--pes", "15", "--split", "5", "--size", "20"},
           Arguments{"--machine", "torus", "--nodes", "3x2x2", "--size", "16"}}) {
         Arguments render = common;
         render.insert(render.end(), options.begin(), options.end());

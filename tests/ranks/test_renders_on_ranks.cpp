@@ -1,6 +1,7 @@
 // Renders distributed over ranks, also if they stop at a checkpoint and resume on another number of ranks: images,
 // counts, loads, traffic and packets equal those of a single rank.
 #include <catch2/catch.hpp>
+#include <numeric>
 
 #include "host/torus/torus_result.hpp"
 #include "tests/base/test_checkpointing.hpp"
@@ -85,7 +86,9 @@ TEST_CASE("random rings: image, loads and counts are the same on 1 to 8 ranks", 
         settings.device_pixels = random.next() % 3 ? 1 << 22 : 1 + random_below(random, 60);
         if (random.next() % 4 == 0) settings.machine.pe_memory_bytes = std::uint64_t{1} << 20;
         const std::uint32_t pes = settings.mapping.pes;
-        CAPTURE(kSeed, i, scene.name, pes, settings.mapping.width, settings.mapping.height, settings.mapping.kind);
+        if (settings.accel.kind == AccelKind::kNone) settings.split = std::gcd(pes, 6u);
+        CAPTURE(kSeed, i, scene.name, pes, settings.split, settings.mapping.width, settings.mapping.height,
+                settings.mapping.kind);
         const std::uint32_t count = check_ranks(random, pes, [&](Ranks& ranks, const Checkpointing* checkpointing) {
             Session session(choose_device(""));
             RingSettings own_settings = settings;

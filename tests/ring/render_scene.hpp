@@ -27,6 +27,7 @@ struct RingCase {
     std::vector<std::string> more_options{};
     Antialias antialias{};
     bool record_costs = false;
+    std::uint32_t split = 0;
 };
 
 inline RingSettings settings_of(const RingCase& c) {
@@ -37,6 +38,7 @@ inline RingSettings settings_of(const RingCase& c) {
     settings.sampling = c.sampling;
     settings.antialias = c.antialias;
     settings.record_costs = c.record_costs;
+    settings.split = c.split;
     settings.format = parse_format(c.format);
     settings.kernels.filter = c.filter;
     settings.kernels.lanes = c.lanes;

@@ -34,6 +34,17 @@ inline const SourcePatch kExchangeFault{"torus/exchange.cl", "target[i] = source
 inline const SourcePatch kResumedLaunchFault{"torus/accept.cl", "already_sent = !resume && (root",
                                              "already_sent = (root"};
 
+/// PEs of a ring with divided objects lose a part, test a part twice, or hold the part of a neighbour because the parts
+/// have rotated once too often.
+inline const SourcePatch kLostPartFault{"ring/turn.cl", "needed ? slots : 0", "needed && step != 2u ? slots : 0"};
+inline const SourcePatch kPartTwiceFault{
+    "ring/turn.cl", "    ulong used = 0;\n    meet_slots(scene, part, needed",
+    "    ulong used = 0;\n    if (step == 2u) meet_slots(scene, part, needed ? slots "
+    ": 0u, stride, state, &used);\n    meet_slots(scene, part, needed"};
+inline const SourcePatch kRotationFault{
+    "ring/turn.cl", "parts + (size_t)group * part_words_count",
+    "parts + (size_t)((group + (step > 2u)) % get_num_groups(0)) * part_words_count"};
+
 /// A fault at a place where a kernel counts an event: the kernel counts another event, nothing, or the event twice.
 struct CountFault {
     const char* event;  // name of the counter in raya verify

@@ -61,7 +61,7 @@ class SpaRun:
 
 def run_on_spa(lab, scene, size, pes, offset, antialias="none"):
     """Renders on PEs of the SPA; returns a SpaRun."""
-    options = dict(size=size, pes=pes, offset=offset, antialias=antialias, format=format_for(scene), accel="none",
+    options = dict(size=size, pes=pes, offset=offset, antialias=antialias, format=format_for(scene), accel="none", split=1,
                    cost=True)
     try:
         result = lab.render(scene, machine="spa", **options)

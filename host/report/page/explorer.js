@@ -229,5 +229,7 @@ function showExplorer(r) {
       `From one render: ${str(r, "machine.name")}, ${str(r, "machine.format")}, ${
         num(r, "machine.bounces")} bounces, accelerator ${str(r, "machine.accel")}. ` +
       `All figures are computed from the counted cycles of each pixel, ${
-        grouped(sum(explorer.costs))} in all.`)));
+        grouped(sum(explorer.costs))} in all.` +
+      (r.machine.parts ? ` The objects rotate in ${r.machine.parts} parts; the time to trace is without the waits ` +
+        "after each part, the time to rotate without the parts." : ""))));
 }

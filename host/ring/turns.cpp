@@ -1,0 +1,282 @@
+#include "host/ring/turns.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "host/error.hpp"
+
+namespace raya {
+namespace {
+
+constexpr std::uint32_t kSlotAlignment = 16;  // maximum number of lanes
+
+using Words = std::vector<std::uint32_t>;
+
+// Packs one part of a job's objects.
+class PartPacker {
+  public:
+    PartPacker(const PackedJob& job, std::uint32_t begin, std::uint32_t end) : job_(job), begin_(begin), end_(end) {
+        words_.resize(kWordsOf<raya_part>);
+        for (std::uint32_t object = begin; object < end; ++object) append_surface(surface_of(object));
+        fill_row();
+        append_spheres();
+        append_kind(RAYA_PLANE, RAYA_PLANE_WORDS, part_.objects.planes, part_.objects.planes_at);
+#define RAYA_APPEND_FIXED(kind, kinds, KIND) \
+    append_kind(RAYA_##KIND, RAYA_##KIND##_WORDS, part_.objects.kinds, part_.objects.kinds##_at);
+        RAYA_FIXED_LIST(RAYA_APPEND_FIXED)
+        const std::size_t polygons = words_.size();
+        append_kind(RAYA_POLYGON, RAYA_POLYGON_WORDS, part_.objects.polygons, part_.objects.polygons_at);
+        append_outlines(polygons);
+        fill_row();
+        part_.first = begin;
+        put_record(words_, 0, part_);
+    }
+
+    Words words() && { return std::move(words_); }
+
+  private:
+    struct Range {
+        std::uint32_t begin, end;
+        std::uint32_t size() const { return end - begin; }
+    };
+
+    const raya_objects& all() const { return job_.header().objects; }
+    // The part's objects of a kind.
+    Range range(std::uint32_t kind) const {
+        const std::uint32_t first = raya_first_object(all(), kind), last = raya_first_object(all(), kind + 1);
+        const std::uint32_t begin = std::clamp(begin_, first, last);
+        return {begin, std::max(begin, std::clamp(end_, first, last))};
+    }
+    std::uint32_t offset() const { return static_cast<std::uint32_t>(words_.size()); }
+    void fill_row() { words_.resize(padded_to_rows(words_.size())); }
+    void append(std::uint32_t at, std::size_t count) {
+        const auto from = job_.words().begin() + at;
+        words_.insert(words_.end(), from, from + static_cast<std::ptrdiff_t>(count));
+    }
+    std::uint32_t surface_of(std::uint32_t object) const {
+        return object < all().spheres ? job_.words()[raya_sphere_surfaces_at(all().spheres_at, all().spheres) + object]
+                                      : job_.object(object)[RAYA_OBJECT_SURFACE_AT];
+    }
+    void append_surface(std::uint32_t at) {
+        if (surfaces_.try_emplace(at, offset()).second) append(at, RAYA_SURFACE_WORDS);
+    }
+
+    void append_spheres() {
+        const Range spheres = range(RAYA_SPHERE);
+        part_.objects.spheres = spheres.size();
+        part_.objects.spheres_at = offset();
+        append(all().spheres_at + spheres.begin * RAYA_SPHERE_WORDS, std::size_t{spheres.size()} * RAYA_SPHERE_WORDS);
+        for (std::uint32_t i = spheres.begin; i < spheres.end; ++i) words_.push_back(surfaces_.at(surface_of(i)));
+    }
+
+    void append_kind(std::uint32_t kind, std::uint32_t words, std::uint32_t& count, std::uint32_t& at) {
+        const Range objects = range(kind);
+        count = objects.size();
+        at = offset();
+        for (std::uint32_t i = objects.begin; i < objects.end; ++i) {
+            const std::uint32_t* const object = job_.object(i);
+            words_.insert(words_.end(), object, object + words);
+            words_[words_.size() - words + RAYA_OBJECT_SURFACE_AT] = surfaces_.at(surface_of(i));
+        }
+    }
+
+    // Appends corners and normals of the polygons, whose records start at words_[record].
+    void append_outlines(std::size_t record) {
+        for (std::uint32_t i = 0; i < part_.objects.polygons; ++i, record += RAYA_POLYGON_WORDS) {
+            const std::uint32_t corners_at = words_[record + RAYA_POLYGON_CORNERS_AT],
+                                normals_at = words_[record + RAYA_POLYGON_NORMALS_AT];
+            words_[record + RAYA_POLYGON_CORNERS_AT] = offset();
+            append(corners_at, std::size_t{words_[record + RAYA_POLYGON_CORNERS]} * RAYA_CORNER_WORDS);
+            if (normals_at == 0) continue;
+            words_[record + RAYA_POLYGON_NORMALS_AT] = offset();
+            append(normals_at, RAYA_PATCH_WORDS);
+        }
+    }
+
+    const PackedJob& job_;
+    std::uint32_t begin_, end_;
+    raya_part part_{};
+    Words words_;
+    std::map<std::uint32_t, std::uint32_t> surfaces_;  // offset in the job -> offset in the part
+};
+
+Words base_of(const PackedJob& job) {
+    raya_job header = job.header();
+    const auto lights = job.words().begin() + header.lights_at;
+    Words base(kWordsOf<raya_job>);
+    header.lights_at = kWordsOf<raya_job>;
+    base.insert(base.end(), lights, lights + std::ptrdiff_t{header.lights} * RAYA_LIGHT_WORDS);
+    base.resize(padded_to_rows(base.size()));
+    put_record(base, 0, header);
+    return base;
+}
+
+}  // namespace
+
+ObjectParts divide_objects(const PackedJob& job, std::uint32_t parts) {
+    ObjectParts divided{.base = base_of(job), .words = {}, .parts = parts};
+    const std::uint64_t objects = raya_first_object(job.header().objects, RAYA_OBJECT_KINDS);
+    std::vector<Words> packed;
+    for (std::uint64_t i = 0; i < parts; ++i) {
+        packed.push_back(PartPacker(job, static_cast<std::uint32_t>(objects * i / parts),
+                                    static_cast<std::uint32_t>(objects * (i + 1) / parts))
+                             .words());
+        divided.part_words = std::max(divided.part_words, static_cast<std::uint32_t>(packed.back().size()));
+    }
+    for (Words& part : packed) {
+        part.resize(divided.part_words);
+        divided.words.insert(divided.words.end(), part.begin(), part.end());
+    }
+    return divided;
+}
+
+namespace {
+
+constexpr std::uint32_t kMaxDividedLights = 32;  // `meet` marks blocked shadow rays in a word
+
+StoredScene store_in_parts(const PackedJob& job, const RingSettings& settings, const std::string& scene,
+                           std::uint32_t parts) {
+    StoredScene stored;
+    if (parts > 1) stored.parts = divide_objects(job, parts);
+    PeDemand demand = pe_demand(settings, scene, stored.words(job).size());
+    demand.parts = parts;
+    if (stored.parts) demand.part_words = stored.parts->part_words;
+    demand.divisible = parts < settings.mapping.pes && settings.accel.kind == AccelKind::kNone && !settings.dynamic;
+    stored.memory = plan_pe_memory(settings.machine, demand);
+    return stored;
+}
+
+}  // namespace
+
+StoredScene store_scene(const PackedJob& job, const RingSettings& settings, const std::string& scene) {
+    const std::uint32_t pes = settings.mapping.pes, lights = job.header().lights;
+    if (settings.split > 1 && lights > kMaxDividedLights)
+        throw UserError(
+            fmt::format("{}: --split {} with {} lights: at most {} are supported; use --split 1 or fewer "
+                        "lights",
+                        scene, settings.split, lights, kMaxDividedLights));
+    if (settings.split > 0 || settings.accel.kind != AccelKind::kNone || settings.dynamic || lights > kMaxDividedLights)
+        return store_in_parts(job, settings, scene, std::max(settings.split, 1u));
+    for (std::uint32_t parts = 1;; ++parts) try {
+            if (pes % parts == 0) return store_in_parts(job, settings, scene, parts);
+        } catch (const DoesNotFit&) {
+            if (parts == pes) throw;
+        }
+}
+
+Turns::Turns(Kernels& kernels, Communication& communication, const Distribution& pes, std::uint32_t capacity,
+             const ObjectParts& parts, std::uint32_t slots)
+    : SampleTracer(kernels, kernels.program(AdvanceKernel::kFile).options(), pes, capacity),
+      parts_(parts),
+      communication_(communication),
+      slots_(slots),
+      stride_((slots + kSlotAlignment - 1) / kSlotAlignment * kSlotAlignment),
+      ring_(session_, communication, pes, 1, parts.part_words),
+      advance_(kernels.get<AdvanceKernel>()),
+      meet_(kernels.get<MeetKernel>()),
+      state_(session_.buffer<std::uint32_t>(
+          "trees in flight", std::size_t{pes.count()} * stride_ * (raya_flight_words(options_.bounces) + RAYA_EVENTS))),
+      spent_(session_.buffer<std::uint64_t>("cycles of a turn",
+                                            std::size_t{parts.parts + 1} * pes.count() * options_.group_size)) {}
+
+void Turns::load_parts(std::uint64_t rotations) {
+    std::vector<float> blocks;
+    blocks.reserve(std::size_t{pes_.count()} * parts_.part_words);
+    const std::uint64_t behind = parts_.parts - rotations % parts_.parts;
+    for (const std::uint32_t pe : pes_.own())
+        for (const std::uint32_t word : parts_.part(static_cast<std::uint32_t>((pe + behind) % parts_.parts)))
+            blocks.push_back(std::bit_cast<float>(word));
+    session_.write("bus.broadcast parts", ring_.blocks(), blocks);
+}
+
+void Turns::broadcast_parts() {
+    load_parts(0);
+    in_flight_ = false;
+    communication_.broadcasts += parts_.parts;
+    communication_.broadcast_words += parts_.words.size();
+}
+
+void Turns::visit_state(RenderState& state, std::uint64_t turns) {
+    state.buffer(progress_);
+    state.buffer(state_);
+    if (!state.restores()) return;
+    load_parts(turns * (parts_.parts - 1));
+    in_flight_ = true;
+}
+
+void Turns::start(const std::string& label, std::uint32_t pixel) {
+    reset_progress(label, pixel);
+    session_.write(label, state_, std::vector<std::uint32_t>(state_.size()));
+}
+
+void Turns::warm_up(const Buffer<std::uint32_t>& base, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
+                    PassCounters& counters) {
+    start("warm-up", 0);
+    load_parts(0);
+    advance("warm-up", base, {}, RAYA_POINTS_OWN, true, marks, pixels, counters);
+    meet("warm-up", base, 1);
+}
+
+void Turns::trace(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,
+                  const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
+                  const ProgressCallback& progress) {
+    bool fresh = !std::exchange(in_flight_, false);
+    if (fresh) start(label, range.begin);
+    for (;; fresh = false) {
+        double done = 0;
+        advance(label, base, range, points, fresh, marks, pixels, counters);
+        const LaunchEnd ended = read_progress(label, range, [&](double fraction) { done = fraction; });
+        if (ended.truncated) throw truncated_loops_error(label, session_.device().name, "a larger --split");
+        if (progress) progress(done);
+        const std::vector<std::uint32_t> left = pes_.ranks().all_gather(std::uint32_t{!ended.done});
+        const bool ends = std::count(left.begin(), left.end(), 1u) == 0;
+        for (std::uint32_t step = 0; step < parts_.parts && !ends; ++step) {
+            if (step > 0) ring_.rotate(RingDirection::kUp);
+            meet(label, base, step + 1);
+        }
+        const std::uint64_t cycles = barrier_cycles(label, ends ? 1 : parts_.parts + 1);
+        if (!ends)
+            counters.turn_cycles.push_back(cycles);
+        else if (!counters.turn_cycles.empty())
+            counters.turn_cycles.back() += cycles;  // the lights of the last hits
+        if (ends) return;
+        if (after_turn_) after_turn_(done);
+    }
+}
+
+void Turns::advance(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,
+                    bool fresh, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters) {
+    session_.launch(label, advance_, pes_.count(), options_.group_size, base, Uint<"word_count">{cl_uint(base.size())},
+                    Uint<"window_start">{range.window_start}, Uint<"capacity">{capacity_}, Uint<"end">{range.end},
+                    Uint<"points">{points}, Uint<"first_pe">{pes_.first()}, Uint<"slots">{slots_},
+                    Uint<"stride">{stride_}, Uint<"fresh">{fresh}, marks, LocalMemory<raya_trace_progress>{1},
+                    local_words(base.size()), pixels, counters.cycles, counters.events, progress_, state_, spent_);
+}
+
+void Turns::meet(const std::string& label, const Buffer<std::uint32_t>& base, std::uint32_t step) {
+    session_.launch(label, meet_, pes_.count(), options_.group_size, base, Uint<"word_count">{cl_uint(base.size())},
+                    ring_.blocks(), Uint<"part_words_count">{parts_.part_words}, Uint<"slots">{slots_},
+                    Uint<"stride">{stride_}, Uint<"step">{step}, local_words(base.size() + parts_.part_words),
+                    progress_, state_, spent_);
+}
+
+std::uint64_t Turns::barrier_cycles(const std::string& label, std::uint32_t steps) {
+    const std::size_t per_pe = options_.group_size, per_step = pes_.count() * per_pe;
+    std::vector<std::uint64_t> spent(steps * per_step), busiest(steps);
+    session_.read(label, spent_, spent);
+    for (std::size_t n = 0; n < spent.size(); n += per_pe) {
+        const auto first = spent.begin() + static_cast<std::ptrdiff_t>(n);
+        std::uint64_t& most = busiest[n / per_step];
+        most = std::max(most, std::accumulate(first, first + static_cast<std::ptrdiff_t>(per_pe), std::uint64_t{0}));
+    }
+    const std::vector<std::uint64_t> all = pes_.ranks().all_gather(std::span<const std::uint64_t>(busiest));
+    for (std::size_t n = 0; n < all.size(); ++n) busiest[n % steps] = std::max(busiest[n % steps], all[n]);
+    return std::accumulate(busiest.begin(), busiest.end(), std::uint64_t{0});
+}
+
+}  // namespace raya
