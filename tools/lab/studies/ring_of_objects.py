@@ -68,7 +68,7 @@ def figures(result, pes):
 
 def torus_figures(lab, scene, size, pes):
     runs = {}
-    for groups in powers_of_two(pes)[::2]:
+    for groups in powers_of_two(pes)[::4]:
         nodes = near_cube(pes // groups)
         runs[groups] = max(run_on_torus(lab, scene, size, nodes, near_cube(pes), queue=256, pixels=(groups, g)).overlapped_ms for g in {0, groups // 2})
     whole = run_on_torus(lab, scene, size, near_cube(pes), near_cube(pes), queue=256)
