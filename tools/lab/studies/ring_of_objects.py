@@ -137,8 +137,8 @@ def frames_of(compute_ms):
 
 
 def break_even(rows, column):
-    """Returns the least N from which on the torus is faster; None if there is none."""
-    faster = tail_where(rows["N"], rows["time (ms)"] > rows[column])
+    """Returns the least N from which on the torus is faster, or the scene fits the ring in no number of parts; None if there is none."""
+    faster = tail_where(rows["N"], ~(rows["time (ms)"] <= rows[column]))
     return int(faster.iloc[0]) if len(faster) else None
 
 
