@@ -68,7 +68,7 @@ def figures(result, pes):
 
 def torus_figures(lab, scene, size, pes):
     runs = {}
-    for groups in powers_of_two(pes)[::2]:
+    for groups in powers_of_two(pes)[::4]:
         nodes = near_cube(pes // groups)
         runs[groups] = max(run_on_torus(lab, scene, size, nodes, near_cube(pes), queue=256, pixels=(groups, g)).overlapped_ms for g in {0, groups // 2})
     whole = run_on_torus(lab, scene, size, near_cube(pes), near_cube(pes), queue=256)
@@ -137,8 +137,8 @@ def frames_of(compute_ms):
 
 
 def break_even(rows, column):
-    """Returns the least N from which on the torus is faster; None if there is none."""
-    faster = tail_where(rows["N"], rows["time (ms)"] > rows[column])
+    """Returns the least N from which on the torus is faster, or the scene fits the ring in no number of parts; None if there is none."""
+    faster = tail_where(rows["N"], ~(rows["time (ms)"] <= rows[column]))
     return int(faster.iloc[0]) if len(faster) else None
 
 
