@@ -24,11 +24,12 @@ std::string user_name(uid_t user) {
     return entry != nullptr ? entry->pw_name : std::to_string(user);
 }
 
-/// Returns true if a user other than `owner` and root is a member of the group.
+/// Returns true if a user other than `owner` and root is a member of the group, or if the group has no name here.
 bool has_other_members(gid_t group, uid_t owner) {
     const std::string name = user_name(owner);
     const ::group* const entry = ::getgrgid(group);
-    for (char** member = entry != nullptr ? entry->gr_mem : nullptr; member != nullptr && *member != nullptr; ++member)
+    if (entry == nullptr) return true;
+    for (char** member = entry->gr_mem; *member != nullptr; ++member)
         if (*member != name) return true;
     bool has_other = false;
     ::setpwent();

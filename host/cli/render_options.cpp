@@ -73,9 +73,8 @@ void add_render_options(CLI::App& command, RenderOptions& o, bool antialiasing) 
                   "Parts of the objects, which rotate on the ring"),
         1));
     ring_only(in_range(add_value(command, "--display-rate R", o.display_rate,
-                                 "Pixels that the modelled machine displays in a second; default: the machine's",
-                                 "Pixels that the modelled machine displays in a second"),
-                       1));
+                                 "Pixels that the modelled machine displays in a second; default: the machine's"),
+                       1, 1e12));
     ring_only(
         add_value(command, "--offset p", o.offset,
                   "Offset p of the cyclic mapping in pixels, 0..W-1; default: 16 (modulo W) on spa and grande, 0 on "

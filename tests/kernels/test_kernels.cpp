@@ -20,7 +20,7 @@ struct ParameterName {
 };
 template <FixedText Name>
 struct ParameterName<Uint<Name>> {
-    static constexpr const char* kText = Uint<Name>::kName;
+    static constexpr const char* kText = Name.text;
 };
 
 // Returns the names of the parameters in the kernel's file.

@@ -282,7 +282,6 @@ std::string check_ring(Session& session, std::uint64_t seed, Seen& seen, const B
     seen["bands"] += result.pe_memory.band_pixels > 0 && result.pe_memory.band_pixels < result.pe_memory.block_pixels;
     seen["blocks"] += result.communication.gathers > 1;
     seen["parts"] += result.turns() > 2 && result.parts > 2;
-    seen["few trees"] += result.turns() > 0 && result.pe_memory.trees < largest_share(s.mapping) / 2;
     seen["launches"] += s.work_per_launch > 0 && result.launches(kTracePass) > 2;
     seen["schedules"] += s.dynamic.has_value();
     return f.wrong;

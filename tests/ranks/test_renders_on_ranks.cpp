@@ -52,17 +52,24 @@ std::uint32_t check_ranks(SplitMix& random, std::uint32_t max_ranks, const Rende
     const auto ranks = [&] { return 1 + random_below(random, std::min(max_ranks, 8u)); };
     const auto single = render(Ranks::single(), nullptr);
     const std::uint32_t count = ranks();
-    check_same_output(single, render_on(count, render));
+    {
+        INFO(count << " ranks");
+        check_same_output(single, render_on(count, render));
+    }
     TestCheckpointing whole;
     check_same(single.result, render_on(ranks(), render, whole.checkpointing()).result);
-    std::string state;
+    std::string state, history;
     for (int stops = 0; stops < 2 && whole.count() > 2; ++stops) {
         TestCheckpointing part(1 + static_cast<int>(random_below(random, (whole.count() - 1) / 2)), state);
-        CHECK_THROWS_AS(render_on(ranks(), render, part.checkpointing()), Stopped);
+        const std::uint32_t some = ranks();
+        history += "stopped on " + std::to_string(some) + " ranks; ";
+        CHECK_THROWS_AS(render_on(some, render, part.checkpointing()), Stopped);
         state = part.saved();
     }
+    const std::uint32_t last = ranks();
+    INFO(history << "ended on " << last << " ranks");
     TestCheckpointing rest(1 << 30, state);
-    check_same(single.result, render_on(ranks(), render, rest.checkpointing()).result);
+    check_same(single.result, render_on(last, render, rest.checkpointing()).result);
     return count;
 }
 

@@ -90,7 +90,7 @@ TEST_CASE("the smallest number of parts that fits a PE is chosen", "[ring][split
 }
 
 TEST_CASE("the parts hold every object once, in the order of their numbers", "[ring][split]") {
-    for (const std::string& name : project_scenes()) {
+    for (const std::string& name : project_scenes(3)) {
         const PackedJob job = job_of(project_scene(name), split_settings(1));
         const raya_objects& all = job.header().objects;
         const std::uint32_t objects = raya_first_object(all, RAYA_OBJECT_KINDS);

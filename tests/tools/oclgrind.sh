@@ -76,7 +76,7 @@ check_fault() {  # check_fault FILE FIND REPLACE REPORT OPTION...
     grep -qF -- "$4" "$scratch/log" || fail "with '$3' instead of '$2' Oclgrind does not report '$4'"
 }
 
-check_fault ring/trace.cl "pixels + (size_t)group * capacity * 3" "pixels + (size_t)group * capacity * 4" "Invalid write" --pes 2
+check_fault ring/pixel_store.clh "pixels + 3 * first" "pixels + 4 * first" "Invalid write" --pes 2
 if [[ -n $thorough ]]; then
     check_fault ring/trace.cl $'barrier(CLK_LOCAL_MEM_FENCE);\n    pixel_store store;' "pixel_store store;" "data race" --pes 2
     check_fault ring/pixel_store.clh "store->totals[e].all = (wide_count)(0);" ";" "Uninitialized value" --pes 2
