@@ -12,7 +12,6 @@
 #include <cstdio>
 #include <map>
 #include <mutex>
-#include <random>
 #include <system_error>
 #include <utility>
 
@@ -123,13 +122,21 @@ Target checked_target(const fs::path& path) {
     return {S_ISREG(status.st_mode) ? fs::canonical(path) : path, !S_ISREG(status.st_mode)};
 }
 
+/// Not std::random_device, which needs glibc 2.36, newer than that of many systems on which tools/bundle's program
+/// runs.
+std::uint32_t random_number() {
+    std::uint32_t number = 0;
+    if (::getentropy(&number, sizeof number) != 0) number = static_cast<std::uint32_t>(::getpid());
+    return number;
+}
+
 /// A new file in the folder of the target. Unless it is renamed, the destructor or an interruption deletes it. Its name
 /// does not contain the target's name, so that it cannot exceed the maximum length of a file name.
 class TemporaryFile {
   public:
     /// Throws UserError, which names `named_path`, if the file cannot be created.
     TemporaryFile(const fs::path& target, const fs::path& named_path)
-        : path_(folder_of(target) / fmt::format(".raya-{:08x}.tmp", std::random_device()())), in_progress_(path_) {
+        : path_(folder_of(target) / fmt::format(".raya-{:08x}.tmp", random_number())), in_progress_(path_) {
         constexpr mode_t kMode = 0666;  // before the user's umask applies
         out.number = open_file(path_, O_WRONLY | O_CREAT | O_EXCL, kMode);
         if (out.number < 0) refuse_to_write(named_path, errno);

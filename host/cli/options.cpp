@@ -158,9 +158,7 @@ void add_to(CLI::App& command, bool is_first_rank) {
         };
     };
     command.add_flag_function("-q,--quiet", change(-1), "Print no summary, no progress; twice: no warnings");
-    command.add_flag_function(
-        "-v,--verbose", change(1),
-        "Log the host's steps on stderr; twice: also kernels' builds");
+    command.add_flag_function("-v,--verbose", change(1), "Log steps on stderr; twice: also kernels' builds");
     for (CLI::App* subcommand : command.get_subcommands([](const CLI::App* c) { return !c->get_prefix_command(); }))
         add_to(*subcommand, is_first_rank);
 }

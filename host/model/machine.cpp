@@ -51,8 +51,8 @@ std::vector<Fact> ring_facts(const Machine& m, const std::string& mapping, const
     return facts;
 }
 
-// Kohata & Ito 1993. The clock is derived from the printed times in Tables 2 to 4, each rounded to 1 ms; docs/architecture.md
-// has the derivation.
+// Kohata & Ito 1993. The clock is derived from the printed times in Tables 2 to 4, each rounded to 1 ms;
+// docs/architecture.md has the derivation.
 MachineClock spa_clock() {
     constexpr double kRotationMs = (12. - 2) / (34 - 2);  // Table 4: exchanges with 34 and 2 rotations
     constexpr double kColumnWords = 256 * 3, kImageWords = 256 * kColumnWords;

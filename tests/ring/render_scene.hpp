@@ -54,8 +54,8 @@ inline RingResult render_scene(const Scene& scene, const RingCase& c) {
 
 inline Scene project_scene(const std::string& name) { return read_nff(RAYA_SOURCE_DIR "/scenes/" + name + ".nff"); }
 
-/// Returns the first `few` of the scenes in scenes/, or all if thorough(). They contain every kind of object and surface;
-/// the kernels of the first four differ.
+/// Returns the first `few` of the scenes in scenes/, or all if thorough(). They contain every kind of object and
+/// surface; the kernels of the first four differ.
 inline std::vector<std::string> project_scenes(std::size_t few) {
     return quick<std::string>(few, {"planes", "glass", "cones", "polygons", "centre", "spheres", "mirrors"});
 }

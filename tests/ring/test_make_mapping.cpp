@@ -1,4 +1,5 @@
-// Mappings of an image onto PEs: parameters and text of a mapping. Invalid mappings: tests/cli/transcripts/refusals.txt.
+// Mappings of an image onto PEs: parameters and text of a mapping. Invalid mappings:
+// tests/cli/transcripts/refusals.txt.
 #include <catch2/catch.hpp>
 #include <cstdint>
 

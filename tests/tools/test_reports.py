@@ -89,6 +89,7 @@ class Reports:
         render(spheres, *ring, "--antialias", "filter", "--exchange", "bus", "--exposure", "1", "--fold", "block")
         render(spheres, *ring, "--antialias", "supersample", "--points", "diagonals")
         render(spheres, *ring, "--mapping", "dynamic:4")
+        render(spheres, *ring, "--split", "4")
         render(spheres, *ring, "--mapping", "hybrid:4,10,0.5", "--exposure", "-1")
         for accel in ("grid", "bvh"):
             render(spheres, "--accel", accel, "--machine", "grande")
@@ -104,9 +105,10 @@ class Reports:
         scene = SCENES / "spheres.nff"
         quick_options = ["--format", "fp32", "--size", "16", "--lanes", "4", "--bounces", "4", "--samples", "1", "--report"]
         self.make("bench", "bench", scene, *quick_options, "base.json", file="base.json")
+        self.make("bench", "bench", scene, "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *quick_options, "r.json")
+        self.make("bench", "bench", scene, "--variants", "none,grid,bvh,torus", *quick_options, "r.json")
         hashes = {row["hash"] for row in self.made[-1][2]["rows"]}
         assert len(hashes) == 1, hashes  # all variants render the same image
-        self.make("bench", "bench", scene, "--variants", "none", "--compare", "base.json", "--tolerance", "100", "--page", "b.html", *quick_options, "r.json")
         # Exit code 4: a build took longer than --limit.
         self.make("bench", "bench", scene, "--build", "--variants", "none", "--limit", "0.001", *quick_options, "r.json", code=4)
         builds = self.made[-1][2]["builds"]
@@ -119,11 +121,13 @@ class Reports:
         self.run(self.patch_kernels, "kernels", *FAULT)
         self.make("verify", *check, "--kernel-dir", "kernels", code=4)
         mesh = self.file("odd.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n")  # with a face without area
-        for arguments in (("odd.nff", "--accel", "grid"), (mesh,), (SCENES / "centre.nff", "--offset", "3")):
+        many = self.folder / "many.nff"  # more than a PE of the SPA holds
+        self.run(self.raya, "generate", "uniform", "2000", "--voxels", "2x2x2", "-o", many)
+        for arguments in (("odd.nff", "--accel", "grid"), (mesh,), (SCENES / "centre.nff", "--offset", "3"), (many,)):
             self.add_report("info", f"info {arguments[0]}", self.run(self.raya, "info", *arguments, "--json", stdout=subprocess.PIPE))
         self.gpu_day()
-        for mapping in ("cyclic:3", "rows"):
-            self.run(self.raya, "explore", scene, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "4", "--format", "fp32", "-o", "e.html")
+        for mapping, explored in (("cyclic:3", scene), ("rows", many)):
+            self.run(self.raya, "explore", explored, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "4", "--format", "fp32", "-o", "e.html")
             self.add_report("explore", "raya explore", re.search(r'<pre id="report".*?>(.*?)</pre>', (self.folder / "e.html").read_text(), re.S)[1])
         for study in ("table2", "table4", "fig8"):
             self.make("study", "study", study, "--size", "32", "--views", "20", "-o", "study", file=f"study/{study}.json")

@@ -61,33 +61,35 @@ R each(F f, A... a) {
     return r;
 }
 template <int Bytes>
-using Truth = std::conditional_t<Bytes == 1, char, std::conditional_t<Bytes == 2, short, std::conditional_t<Bytes == 4, int, long>>>;
+using Truth = std::conditional_t<Bytes == 1, char,
+                                 std::conditional_t<Bytes == 2, short, std::conditional_t<Bytes == 4, int, long>>>;
 
-#define OPERATOR(op)                                                        \
-    template <class T, int N>                                               \
-    Vec<T, N> operator op(Vec<T, N> a, Vec<T, N> b) {                       \
+#define OPERATOR(op)                                                                   \
+    template <class T, int N>                                                          \
+    Vec<T, N> operator op(Vec<T, N> a, Vec<T, N> b) {                                  \
         return each<Vec<T, N>>([](T x, T y) { return static_cast<T>(x op y); }, a, b); \
     }
-OPERATOR(&) OPERATOR(|) OPERATOR(^) OPERATOR(<<) OPERATOR(>>) OPERATOR(/) OPERATOR(%)
+OPERATOR(&)
+OPERATOR(|) OPERATOR(^) OPERATOR(<<) OPERATOR(>>) OPERATOR(/) OPERATOR(%)
 #undef OPERATOR
 // Sums and products of ushort in unsigned arithmetic: those of int overflow.
-#define ARITHMETIC(op)                                                                                       \
-    template <class T, int N>                                                                                \
-    Vec<T, N> operator op(Vec<T, N> a, Vec<T, N> b) {                                                        \
+#define ARITHMETIC(op)                                                                                                 \
+    template <class T, int N>                                                                                          \
+    Vec<T, N> operator op(Vec<T, N> a, Vec<T, N> b) {                                                                  \
         using W = std::conditional_t<std::is_floating_point_v<T>, T, std::conditional_t<sizeof(T) == 8, ulong, uint>>; \
-        return each<Vec<T, N>>([](T x, T y) { return static_cast<T>(static_cast<W>(x) op static_cast<W>(y)); }, a, b);  \
+        return each<Vec<T, N>>([](T x, T y) { return static_cast<T>(static_cast<W>(x) op static_cast<W>(y)); }, a, b); \
     }
-ARITHMETIC(+) ARITHMETIC(-) ARITHMETIC(*)
+    ARITHMETIC(+) ARITHMETIC(-) ARITHMETIC(*)
 #undef ARITHMETIC
-#define COMPARE(op)                                                                                     \
-    template <class T, int N>                                                                           \
-    Vec<Truth<sizeof(T)>, N> operator op(Vec<T, N> a, Vec<T, N> b) {                                    \
-        return each<Vec<Truth<sizeof(T)>, N>>([](T x, T y) { return x op y ? -1 : 0; }, a, b);          \
+#define COMPARE(op)                                                                            \
+    template <class T, int N>                                                                  \
+    Vec<Truth<sizeof(T)>, N> operator op(Vec<T, N> a, Vec<T, N> b) {                           \
+        return each<Vec<Truth<sizeof(T)>, N>>([](T x, T y) { return x op y ? -1 : 0; }, a, b); \
     }
-COMPARE(<) COMPARE(<=) COMPARE(==) COMPARE(!=)
+        COMPARE(<) COMPARE(<=) COMPARE(==) COMPARE(!=)
 #undef COMPARE
-template <class T, int N>
-Vec<T, N> operator~(Vec<T, N> a) {
+            template <class T, int N>
+            Vec<T, N> operator~(Vec<T, N> a) {
     return each<Vec<T, N>>([](T x) { return static_cast<T>(~x); }, a);
 }
 template <class T, int N>
@@ -141,29 +143,40 @@ R safe(A a) {
     return each<R>([](float x) { return std::fabs(x) >= 0x1p-60f && std::fabs(x) <= 0x1p60f ? x : 1.0f; }, a);
 }
 
-#define WIDTH(type, n)                                                                                          \
-    using type##n = Vec<type, n>;                                                                               \
+#define WIDTH(type, n)            \
+    using type##n = Vec<type, n>; \
     TYPE(type##n, type)
-#define TYPE(name, element)                                                                                     \
-    template <class A>                                                                                          \
-    name as_##name(A a) { return bits_as<name>(a); }                                                            \
-    template <class A>                                                                                          \
-    name convert_##name(A a) { return each<name>([](auto x) { return static_cast<element>(x); }, a); }          \
-    template <class A>                                                                                          \
-    name convert_##name##_sat(A a) { return each<name>([](auto x) { return saturated<element>(x); }, a); }
+#define TYPE(name, element)                                                   \
+    template <class A>                                                        \
+    name as_##name(A a) {                                                     \
+        return bits_as<name>(a);                                              \
+    }                                                                         \
+    template <class A>                                                        \
+    name convert_##name(A a) {                                                \
+        return each<name>([](auto x) { return static_cast<element>(x); }, a); \
+    }                                                                         \
+    template <class A>                                                        \
+    name convert_##name##_sat(A a) {                                          \
+        return each<name>([](auto x) { return saturated<element>(x); }, a);   \
+    }
 #define TYPES(type) TYPE(type, type) WIDTH(type, 2) WIDTH(type, 3) WIDTH(type, 4) WIDTH(type, 8) WIDTH(type, 16)
-TYPES(char) TYPES(uchar) TYPES(short) TYPES(ushort) TYPES(int) TYPES(uint) TYPES(long) TYPES(ulong)
+TYPES(char)
+TYPES(uchar) TYPES(short) TYPES(ushort) TYPES(int) TYPES(uint) TYPES(long) TYPES(ulong)
 #undef TYPE
-#define TYPE(name, element)                                                                                     \
-    template <class A>                                                                                          \
-    name as_##name(A a) { return bits_as<name>(a); }                                                            \
-    template <class A>                                                                                          \
-    name convert_##name(A a) { return each<name>([](auto x) { return static_cast<float>(x); }, a); }            \
+#define TYPE(name, element)                                                 \
+    template <class A>                                                      \
+    name as_##name(A a) {                                                   \
+        return bits_as<name>(a);                                            \
+    }                                                                       \
+    template <class A>                                                      \
+    name convert_##name(A a) {                                              \
+        return each<name>([](auto x) { return static_cast<float>(x); }, a); \
+    }                                                                       \
     inline name safe_##name(name a) { return safe<name>(a); }
-TYPES(float)
+    TYPES(float)
 
-template <class A>
-A select(A a, A b, Wide<Truth<sizeof(Element<A>)>, kWidth<A>> c) {
+        template <class A>
+        A select(A a, A b, Wide<Truth<sizeof(Element<A>)>, kWidth<A>> c) {
     return each<A>([](auto x, auto y, auto z) { return z < 0 ? y : x; }, a, b, c);
 }
 template <class T, int N>
@@ -179,15 +192,27 @@ int any(Vec<T, N> a) {
     return r;
 }
 
-#define FUNCTION1(name, body)                                                      \
-    template <class A>                                                             \
-    A name(A a) {                                                                  \
-        return each<A>([](auto x) { using T = decltype(x); (void)sizeof(T); body }, a); \
+#define FUNCTION1(name, body)          \
+    template <class A>                 \
+    A name(A a) {                      \
+        return each<A>(                \
+            [](auto x) {               \
+                using T = decltype(x); \
+                (void)sizeof(T);       \
+                body                   \
+            },                         \
+            a);                        \
     }
-#define FUNCTION2(name, body)                                                      \
-    template <class A>                                                             \
-    A name(A a, A b) {                                                             \
-        return each<A>([](auto x, auto y) { using T = decltype(x); (void)sizeof(T); body }, a, b); \
+#define FUNCTION2(name, body)          \
+    template <class A>                 \
+    A name(A a, A b) {                 \
+        return each<A>(                \
+            [](auto x, auto y) {       \
+                using T = decltype(x); \
+                (void)sizeof(T);       \
+                body                   \
+            },                         \
+            a, b);                     \
     }
 template <class T>
 T product_high(T x, T y) {
@@ -213,31 +238,41 @@ FUNCTION2(min, return y < x ? y : x;)
 FUNCTION2(max, return x < y ? y : x;)
 FUNCTION1(abs, return static_cast<T>(x < 0 ? T(0) - static_cast<std::make_unsigned_t<T>>(x) : x);)
 FUNCTION2(abs_diff, using U = std::make_unsigned_t<T>; return static_cast<T>(x > y ? U(x) - U(y) : U(y) - U(x));)
-FUNCTION2(add_sat, T r; return __builtin_add_overflow(x, y, &r) ? (y < 0 ? T(T(1) << (8 * sizeof(T) - 1)) : std::is_signed_v<T> ? T(~T(T(1) << (8 * sizeof(T) - 1))) : T(~T(0))) : r;)
-FUNCTION2(sub_sat, T r; return __builtin_sub_overflow(x, y, &r) ? (!std::is_signed_v<T> ? T(0) : y > 0 ? T(T(1) << (8 * sizeof(T) - 1)) : T(~T(T(1) << (8 * sizeof(T) - 1)))) : r;)
+FUNCTION2(add_sat, T r; return __builtin_add_overflow(x, y, &r)
+                                   ? (y < 0                 ? T(T(1) << (8 * sizeof(T) - 1))
+                                      : std::is_signed_v<T> ? T(~T(T(1) << (8 * sizeof(T) - 1)))
+                                                            : T(~T(0)))
+                                   : r;)
+FUNCTION2(sub_sat, T r; return __builtin_sub_overflow(x, y, &r) ? (!std::is_signed_v<T> ? T(0)
+                                                                   : y > 0              ? T(T(1) << (8 * sizeof(T) - 1))
+                                                                           : T(~T(T(1) << (8 * sizeof(T) - 1))))
+                                                                : r;)
 FUNCTION2(mul_hi, return product_high(x, y);)
 FUNCTION2(hadd, return static_cast<T>((x >> 1) + (y >> 1) + (x & y & 1));)
 FUNCTION2(rhadd, return static_cast<T>((x >> 1) + (y >> 1) + ((x | y) & 1));)
-FUNCTION2(rotate, using U = std::make_unsigned_t<T>; constexpr int kBits = 8 * sizeof(T); const int n = static_cast<int>(U(y) & (kBits - 1));
+FUNCTION2(rotate, using U = std::make_unsigned_t<T>; constexpr int kBits = 8 * sizeof(T);
+          const int n = static_cast<int>(U(y) & (kBits - 1));
           return static_cast<T>(n ? U(U(x) << n) | U(U(x) >> (kBits - n)) : U(x));)
 FUNCTION1(clz, return static_cast<T>(leading_zeros(x));)
-FUNCTION1(popcount, int n = 0; for (unsigned bit = 0; bit < 8 * sizeof(T); ++bit) n += static_cast<int>(x >> bit & 1); return static_cast<T>(n);)
+FUNCTION1(popcount, int n = 0; for (unsigned bit = 0; bit < 8 * sizeof(T); ++bit) n += static_cast<int>(x >> bit & 1);
+          return static_cast<T>(n);)
 template <class A>
 A bitselect(A a, A b, A c) {
     return each<A>([](auto x, auto y, auto z) { return (x & ~z) | (y & z); }, a, b, c);
 }
-#define FLOAT1(name)                                                                    \
-    template <int N>                                                                    \
-    Vec<float, N> name(Vec<float, N> a) {                                               \
-        return each<Vec<float, N>>([](float x) { return std::name(x); }, a);            \
+#define FLOAT1(name)                                                         \
+    template <int N>                                                         \
+    Vec<float, N> name(Vec<float, N> a) {                                    \
+        return each<Vec<float, N>>([](float x) { return std::name(x); }, a); \
     }
-#define FLOAT2(name)                                                                    \
-    template <int N>                                                                    \
-    Vec<float, N> name(Vec<float, N> a, Vec<float, N> b) {                              \
+#define FLOAT2(name)                                                                        \
+    template <int N>                                                                        \
+    Vec<float, N> name(Vec<float, N> a, Vec<float, N> b) {                                  \
         return each<Vec<float, N>>([](float x, float y) { return std::name(x, y); }, a, b); \
     }
-FLOAT1(fabs) FLOAT1(floor) FLOAT1(ceil) FLOAT1(trunc) FLOAT1(rint) FLOAT2(fmin) FLOAT2(fmax) FLOAT2(copysign)
-using std::fmin, std::fmax, std::fabs, std::floor, std::ceil, std::trunc, std::rint, std::copysign, std::fma;
+FLOAT1(fabs)
+FLOAT1(floor) FLOAT1(ceil) FLOAT1(trunc) FLOAT1(rint) FLOAT2(fmin) FLOAT2(fmax) FLOAT2(copysign) using std::fmin,
+    std::fmax, std::fabs, std::floor, std::ceil, std::trunc, std::rint, std::copysign, std::fma;
 template <int N>
 Vec<float, N> fma(Vec<float, N> a, Vec<float, N> b, Vec<float, N> c) {
     return each<Vec<float, N>>([](float x, float y, float z) { return std::fma(x, y, z); }, a, b, c);
@@ -309,11 +344,12 @@ static void run_item() {
 }
 
 /// Runs the kernel and prints the words of `out` and the counters.
-static void run_kernel(KernelEntry kernel, uint groups, uint size, uint words, uint element_bytes, int exponents, int fractions,
-                       int truncate, const std::vector<uint>& in) {
+static void run_kernel(KernelEntry kernel, uint groups, uint size, uint words, uint element_bytes, int exponents,
+                       int fractions, int truncate, const std::vector<uint>& in) {
     std::vector<uint> out(words), counters(12);
     std::vector<uchar> elements(element_bytes + 128);
-    entry = kernel, group_size = size, kernel_in = in.data(), kernel_out = out.data(), kernel_counters = counters.data();
+    entry = kernel, group_size = size, kernel_in = in.data(), kernel_out = out.data(),
+    kernel_counters = counters.data();
     kernel_elements = elements.data() + (128 - reinterpret_cast<std::size_t>(elements.data()) % 128);
     exponent_bits = exponents, fraction_bits = fractions, truncates = truncate;
     for (current_group = 0; current_group < groups; ++current_group) {
