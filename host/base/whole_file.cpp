@@ -163,14 +163,13 @@ class TemporaryFile {
     bool exists_ = false;
 };
 
-/// Writes all pieces to the descriptor and closes it. Returns 0 or the errno of the failed call.
-int write_and_close(Descriptor& out, const std::function<std::string_view()>& next_piece, bool direct) {
-    for (std::string_view bytes = next_piece(); !bytes.empty(); bytes = next_piece())
-        while (!bytes.empty()) {
-            const ssize_t written = TEMP_FAILURE_RETRY(::write(out.number, bytes.data(), bytes.size()));
-            if (written < 0) return errno;
-            bytes.remove_prefix(static_cast<std::size_t>(written));
-        }
+/// Writes the bytes to the descriptor and closes it. Returns 0 or the errno of the failed call.
+int write_and_close(Descriptor& out, std::string_view bytes, bool direct) {
+    while (!bytes.empty()) {
+        const ssize_t written = TEMP_FAILURE_RETRY(::write(out.number, bytes.data(), bytes.size()));
+        if (written < 0) return errno;
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
     if (!direct && TEMP_FAILURE_RETRY(::fsync(out.number)) != 0) return errno;
     return out.close();
 }
@@ -207,10 +206,10 @@ int take_stdout() {
     return descriptor;
 }
 
-void write_direct(const fs::path& path, const std::function<std::string_view()>& next_piece) {
+void write_direct(const fs::path& path, std::string_view bytes) {
     Descriptor out{is_standard_stream(path) ? take_stdout() : open_file(path, O_WRONLY)};  // waits for a pipe's reader
     if (out.number < 0) refuse_to_write(path, errno);
-    if (const int error = write_and_close(out, next_piece, true)) refuse_to_write(path, error);
+    if (const int error = write_and_close(out, bytes, true)) refuse_to_write(path, error);
 }
 
 }  // namespace
@@ -274,18 +273,14 @@ void check_writable(const fs::path& path) {
 }
 
 void write_whole_file(const fs::path& path, std::string_view bytes) {
-    write_whole_file(path, [left = bytes]() mutable { return std::exchange(left, {}); });
-}
-
-void write_whole_file(const fs::path& path, const std::function<std::string_view()>& next_piece) {
     const Target target = checked_target(path);
-    if (target.direct) return write_direct(path, next_piece);
+    if (target.direct) return write_direct(path, bytes);
     {
         const std::lock_guard lock(used_files().mutex);
         used_files().refuse_input(file_identity(target.file), path.string());
     }
     TemporaryFile temporary(target.file, path);
-    if (const int error = write_and_close(temporary.out, next_piece, false)) refuse_to_write(path, error);
+    if (const int error = write_and_close(temporary.out, bytes, false)) refuse_to_write(path, error);
     if (const int error = temporary.rename_to(target.file)) refuse_to_write(path, error);
 }
 

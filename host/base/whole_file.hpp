@@ -2,7 +2,6 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -47,10 +46,6 @@ void check_writable(const std::filesystem::path& path);
 /// replaced. Writes directly to a device, a pipe (`/dev/stdout`) or stdout ("-"). Throws UserError with file, reason
 /// and remedy, also if the file is an input. Failures and interruptions (interruption.hpp) leave no temporary file.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
-
-/// Writes a file in the same way, but in pieces, so that the whole file need not be in memory. `next_piece` returns one
-/// piece per call, valid until the following call, and an empty piece at the end.
-void write_whole_file(const std::filesystem::path& path, const std::function<std::string_view()>& next_piece);
 
 // "-" as a file name: stdin or stdout.
 

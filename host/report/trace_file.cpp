@@ -31,11 +31,11 @@ void TraceFile::name_track(TraceTrack track, const std::string& name) {
     open_[track];
 }
 
-// Returns true and counts `events` events as written if they do not exceed the limit; otherwise returns false and
-// counts them as left out.
-bool TraceFile::reserve(std::size_t events) {
-    const bool fits = events <= max_events_ - events_;
-    (fits ? events_ : left_out_) += events;
+// Returns true and counts an event as written if it does not exceed the limit; otherwise returns false and counts it as
+// left out.
+bool TraceFile::reserve() {
+    const bool fits = events_ < max_events_;
+    ++(fits ? events_ : left_out_);
     return fits;
 }
 
@@ -49,7 +49,7 @@ void TraceFile::add(const std::string& event) { text_ += event + ",\n"; }
 void TraceFile::slice(TraceTrack track, const std::string& name, std::uint64_t start, std::uint64_t end,
                       const Json& arguments) {
     check_named(track);
-    if (!reserve(1)) return;
+    if (!reserve()) return;
     std::vector<std::uint64_t>& ends = open_.at(track);
     while (!ends.empty() && ends.back() <= start) ends.pop_back();
     std::uint64_t& last = last_start_[track];
@@ -64,7 +64,7 @@ void TraceFile::slice(TraceTrack track, const std::string& name, std::uint64_t s
 
 void TraceFile::counter(std::uint32_t process, const std::string& name, std::uint64_t at_ns,
                         const std::vector<std::pair<std::string, double>>& values) {
-    if (!reserve(1)) return;
+    if (!reserve()) return;
     Json arguments = Json::object();
     for (const auto& [series, value] : values) {
         if (!std::isfinite(value)) throw std::logic_error(fmt::format("trace: counter '{}' is {}", name, value));
@@ -72,21 +72,6 @@ void TraceFile::counter(std::uint32_t process, const std::string& name, std::uin
     }
     add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{}}})", json_dump(name), process,
                     microseconds(at_ns), json_dump(arguments)));
-}
-
-void TraceFile::flow(const std::string& name, TraceTrack start_track, std::uint64_t start_ns, TraceTrack end_track,
-                     std::uint64_t end_ns) {
-    check_named(start_track);
-    check_named(end_track);
-    if (end_ns < start_ns) throw std::logic_error(fmt::format("trace: flow '{}' goes back in time", name));
-    if (!reserve(2)) return;
-    ++flows_;
-    const auto add_end = [&](const char* phase, TraceTrack track, std::uint64_t at_ns) {
-        add(fmt::format(R"({{"ph":{},"cat":"flow","name":{},"id":{},"pid":{},"tid":{},"ts":{}}})", phase,
-                        json_dump(name), flows_, track.process, track.thread, microseconds(at_ns)));
-    };
-    add_end(R"("s")", start_track, start_ns);
-    add_end(R"("f","bp":"e")", end_track, end_ns);
 }
 
 void TraceFile::add(const Part& part) {

@@ -1,8 +1,7 @@
 // Writes a trace in Chrome's Trace Event Format (JSON), which Perfetto and chrome://tracing display.
 //
 // The format requires: the identifiers of processes and tracks are integers, and records before all events give their
-// names; times are microseconds (TraceFile writes three decimals); two slices of a track are nested or disjoint; both
-// ends of a flow are in slices.
+// names; times are microseconds (TraceFile writes three decimals); two slices of a track are nested or disjoint.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -35,7 +34,7 @@ inline std::uint64_t nanoseconds(double ms) { return static_cast<std::uint64_t>(
 /// another slice of its track.
 class TraceFile {
   public:
-    /// `max_events`: maximum number of events (slices, counters and ends of flows). Further events are counted, but not
+    /// `max_events`: maximum number of events (slices and counters). Further events are counted, but not
     /// written.
     explicit TraceFile(std::size_t max_events) : max_events_(max_events) {}
 
@@ -51,15 +50,10 @@ class TraceFile {
     void counter(std::uint32_t process, const std::string& name, std::uint64_t at_ns,
                  const std::vector<std::pair<std::string, double>>& values);
 
-    /// Adds an arrow from the slice at time `start_ns` on `start_track` to the slice at time `end_ns` on `end_track`.
-    void flow(const std::string& name, TraceTrack start_track, std::uint64_t start_ns, TraceTrack end_track,
-              std::uint64_t end_ns);
-
     /// Member "otherData" of the trace.
     Json& metadata() { return metadata_; }
 
-    /// Contents of a trace, to be added to another trace. The two traces must not have processes or tracks in common,
-    /// and the part must not contain flows.
+    /// Contents of a trace, to be added to another trace. The two traces must not have processes or tracks in common.
     struct Part {
         std::string names, text;
         std::uint64_t events = 0, left_out = 0;
@@ -75,11 +69,11 @@ class TraceFile {
     std::string finish(bool compressed) const;
 
   private:
-    bool reserve(std::size_t events);
+    bool reserve();
     void check_named(TraceTrack track) const;
     void add(const std::string& event);
 
-    std::size_t max_events_, events_ = 0, left_out_ = 0, flows_ = 0;
+    std::size_t max_events_, events_ = 0, left_out_ = 0;
     // [track]: end times of the open slices, outer slices first.
     std::map<TraceTrack, std::vector<std::uint64_t>> open_;
     std::map<TraceTrack, std::uint64_t> last_start_;  // [track]: start of the slice added last

@@ -13,7 +13,7 @@ class Generator {
 
     RandomKernel kernel() {
         kernel_.group_size = one_of<std::uint32_t>({1, 2, 3, 4, 5, 7, 8, 12, 16});
-        kernel_.groups = 1 + below(4);
+        kernel_.groups = static_cast<std::uint32_t>(1 + below(4));
         kernel_.format = one_of<NumberFormat>({{}, {6, 15}, {5, 10}, {8, 7}, {6, 15, true}, {7, 12}});
         for (const auto space : {MemoryObject::kPrivate, MemoryObject::kLocal, MemoryObject::kGlobal}) {
             if (chance(0.3)) continue;

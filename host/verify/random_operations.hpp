@@ -73,8 +73,8 @@ struct Operands {
     const NumberFormat& format;
 };
 
-/// `text`: "+" for a + b modulo 2^bits, or a pattern with the arguments {0}, {1}, {2}, the type {T}, its unsigned type
-/// {U}, its number of bits {BITS} and largest signed value {MAX}. `apply`: an element of the result.
+/// `text`: "+" for a + b modulo 2^bits, or a pattern with the arguments {0}, {1}, {2}, the type {T},
+/// its number of bits {BITS} and largest signed value {MAX}. `apply`: an element of the result.
 struct KernelOperation {
     Group group;
     const char* text;

@@ -108,7 +108,6 @@ class Printer {
         std::string all = text;
         for (const auto& [mark, value] :
              {std::pair<const char*, std::string>{"{T}", name_of(type)},
-              {"{U}", name_of({with_sign(type.scalar, false), type.width})},
               {"{BITS}", std::to_string(bits_of(type.scalar))},
               {"{MAX}", fmt::format("0x{:x}{}", mask_of(type.scalar) >> 1, is_long ? "L" : "")}})
             all = replaced(all, mark, value);

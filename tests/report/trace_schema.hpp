@@ -37,19 +37,12 @@ class TraceSchema {
             }
         }
         for (auto& [track, slices] : slices_) check_nesting(slices);
-        for (const auto& [id, begin] : begins_)
-            if (!ends_.contains(id) || ends_[id].name != begin.name || ends_[id].start < begin.start)
-                faults_.push_back("flow " + std::to_string(id) + " has no end, or another one");
-        if (ends_.size() > begins_.size()) faults_.emplace_back("flows have no beginning");
-        for (const auto* flow_ends : {&begins_, &ends_})
-            for (const auto& [id, end] : *flow_ends) check_in_slice(end);
         if (trace.at("otherData").at("events") != events) faults_.emplace_back("otherData does not count the events");
     }
 
     const std::vector<std::string>& faults() const { return faults_; }
     const std::map<Track, std::vector<Slice>>& slices() const { return slices_; }
     const std::map<Track, std::string>& tracks() const { return tracks_; }
-    std::size_t flows() const { return begins_.size(); }
 
     /// Returns the slices in all tracks of a process.
     std::vector<Slice> slices_of(std::int64_t pid) const {
@@ -60,12 +53,6 @@ class TraceSchema {
     }
 
   private:
-    struct FlowEnd {
-        Track track;
-        std::int64_t start;
-        std::string name;
-    };
-
     void fault(const std::string& rule, const Document& event) { faults_.push_back(rule + ": " + event.dump()); }
 
     std::int64_t time_of(const Document& event, const char* member) {
@@ -88,14 +75,7 @@ class TraceSchema {
         for (const char* kind : {"process_name", "process_sort_index", "thread_name", "thread_sort_index"})
             if (!named_.contains({kind, pid, kind[0] == 'p' ? 0 : track.second})) fault("no name", event);
         const std::int64_t start = time_of(event, "ts");
-        if (phase == "X") {
-            slices_[track].push_back({start, start + time_of(event, "dur"), name});
-        } else {
-            if (phase == "f" && event.at("bp") != "e") fault("a flow's end that binds to the next slice", event);
-            auto& flow_ends = phase == "s" ? begins_ : ends_;
-            if (!flow_ends.try_emplace(event.at("id"), FlowEnd{track, start, name}).second)
-                fault("a flow with two beginnings or two ends", event);
-        }
+        slices_[track].push_back({start, start + time_of(event, "dur"), name});
     }
 
     void read_name(const Document& event, const std::string& kind, const Track& track) {
@@ -121,17 +101,10 @@ class TraceSchema {
         }
     }
 
-    void check_in_slice(const FlowEnd& end) {
-        const std::vector<Slice>& slices = slices_[end.track];
-        if (std::ranges::none_of(slices, [&](const Slice& s) { return s.start <= end.start && end.start <= s.end; }))
-            faults_.push_back("flow " + end.name + " has an end outside all slices");
-    }
-
     std::vector<std::string> faults_;
     std::set<std::tuple<std::string, std::int64_t, std::int64_t>> named_;  // kind of name, process ID, thread ID
     std::map<Track, std::string> tracks_;
     std::map<Track, std::vector<Slice>> slices_;
-    std::map<std::int64_t, FlowEnd> begins_, ends_;  // [flow ID]
 };
 
 inline Document json_of(const TraceFile& trace) { return Document::parse(trace.finish(false)); }

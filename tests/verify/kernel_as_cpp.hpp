@@ -70,7 +70,8 @@ using Truth = std::conditional_t<Bytes == 1, char,
         return each<Vec<T, N>>([](T x, T y) { return static_cast<T>(x op y); }, a, b); \
     }
 OPERATOR(&)
-OPERATOR(|) OPERATOR(^) OPERATOR(<<) OPERATOR(>>) OPERATOR(/) OPERATOR(%)
+OPERATOR(|)
+OPERATOR(^) OPERATOR(<<) OPERATOR(>>) OPERATOR(/) OPERATOR(%)
 #undef OPERATOR
 // Sums and products of ushort in unsigned arithmetic: those of int overflow.
 #define ARITHMETIC(op)                                                                                                 \
@@ -161,19 +162,12 @@ R safe(A a) {
     }
 #define TYPES(type) TYPE(type, type) WIDTH(type, 2) WIDTH(type, 3) WIDTH(type, 4) WIDTH(type, 8) WIDTH(type, 16)
 TYPES(char)
-TYPES(uchar) TYPES(short) TYPES(ushort) TYPES(int) TYPES(uint) TYPES(long) TYPES(ulong)
+TYPES(uchar) TYPES(short) TYPES(ushort) TYPES(int) TYPES(uint) TYPES(long) TYPES(ulong) TYPES(float)
 #undef TYPE
-#define TYPE(name, element)                                                 \
-    template <class A>                                                      \
-    name as_##name(A a) {                                                   \
-        return bits_as<name>(a);                                            \
-    }                                                                       \
-    template <class A>                                                      \
-    name convert_##name(A a) {                                              \
-        return each<name>([](auto x) { return static_cast<float>(x); }, a); \
-    }                                                                       \
+#define TYPE(name, element) \
     inline name safe_##name(name a) { return safe<name>(a); }
-    TYPES(float)
+    TYPE(float, float) TYPE(float2, ) TYPE(float3, ) TYPE(float4, ) TYPE(float8, ) TYPE(float16, )
+#undef TYPE
 
         template <class A>
         A select(A a, A b, Wide<Truth<sizeof(Element<A>)>, kWidth<A>> c) {
@@ -271,8 +265,9 @@ A bitselect(A a, A b, A c) {
         return each<Vec<float, N>>([](float x, float y) { return std::name(x, y); }, a, b); \
     }
 FLOAT1(fabs)
-FLOAT1(floor) FLOAT1(ceil) FLOAT1(trunc) FLOAT1(rint) FLOAT2(fmin) FLOAT2(fmax) FLOAT2(copysign) using std::fmin,
-    std::fmax, std::fabs, std::floor, std::ceil, std::trunc, std::rint, std::copysign, std::fma;
+FLOAT1(floor)
+FLOAT1(ceil) FLOAT1(trunc) FLOAT1(rint) FLOAT2(fmin) FLOAT2(fmax) FLOAT2(copysign) using std::fmin, std::fmax,
+    std::fabs, std::floor, std::ceil, std::trunc, std::rint, std::copysign, std::fma;
 template <int N>
 Vec<float, N> fma(Vec<float, N> a, Vec<float, N> b, Vec<float, N> c) {
     return each<Vec<float, N>>([](float x, float y, float z) { return std::fma(x, y, z); }, a, b, c);
