@@ -17,7 +17,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-KEPT = ("ASAN_", "LD_LIBRARY_PATH", "OCL_", "POCL_", "UBSAN_")  # beginnings of the environment variables that the commands inherit
+KEPT = ("ASAN_", "LD_", "OCL_", "POCL_", "RAYA_FAULT", "UBSAN_")  # beginnings of the environment variables that the commands inherit
 
 
 def mask(text, device, folder):

@@ -9,6 +9,7 @@
 #include "tests/cli/refusals.hpp"
 #include "tests/document.hpp"
 #include "tests/paths.h"
+#include "tests/thorough.hpp"
 
 #if RAYA_STUDIES
 namespace raya {
@@ -22,7 +23,7 @@ Arguments study_arguments(const std::string& name, const ScratchFolder& outputs,
 }
 
 TEST_CASE("study: a study of raya or of the user writes figures, tables, JSON and a document", "[cli]") {
-    for (const std::string name : {"fig8", RAYA_SOURCE_DIR "/docs/my_study.py"}) {
+    for (const std::string& name : quick<std::string>(1, {RAYA_SOURCE_DIR "/docs/my_study.py", "fig8"})) {
         const ScratchFolder outputs;
         const RunOutcome run = run_raya(study_arguments(name, outputs, {"--size", "32"}));
         INFO(run.describe());
