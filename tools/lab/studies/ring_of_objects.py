@@ -14,14 +14,15 @@ How does a ring render scenes that exceed the memory of a PE, and when is a toru
   figures: the same cycles, G rotations a turn, words of the mean number of rays in flight (lower bound) or of all that fit (upper bound).
 - Torus: {torus_nodes} as many nodes as PEs, each with one voxel and enough memory, overlapped and stepwise. Hybrid: groups of such nodes that share
   the screen, the best number of groups of 1 to P; the time is that of the slower of two of the groups.
-- Intervals: over {views} pictures of 9 scene families, on {family_pes} PEs.
+- Intervals: over {views} pictures of 9 scene families, on {family_pes} PEs. The break-even of ring and torus is found for {views_even} views each of
+  even and random spheres: the number of objects at which both take the same time, between two of {counts} (interpolated in logarithms).
 - Frames: the image of a frame goes to the host (as printed), to a frame memory on the bus (as the paper proposes), or in either way while the next frame
   is traced. A series of many frames, times from Table 2 and from this study.
 """
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Series, Table, estimate, papers, series_by, study, tail_where
+from raya.lab import Page, Plot, Series, Table, estimate, papers, proportion, series_by, study, tail_where
 from raya.lab.families import FAMILIES, view_of
 from raya.lab.laboratory import SPA, format_for
 from raya.lab.spa import CLOCK as RING_CLOCK
@@ -31,6 +32,8 @@ PROCESSORS = (64, 256, 1024)
 EVEN = (30, 120, 480, 1920, 7680, 61440)
 RAY_WORDS = 32  # of a ray in flight: the ray, the shadow rays' point, and what both have found (kernels/ring/flight.clh)
 FAMILY_PES, VIEWS_EACH, FAMILY_PARTS = 64, 3, (1, 4, 16)
+FAMILY_MEMORIES = (1024, 1280)  # bytes: less than most pictures of the families need in one part
+VIEWS_EVEN, COUNTS = 4, (8, 30, 120, 480, 1920)
 MEMORIES = [kilobytes * 1024 for kilobytes in (8, 16, 32, 64)]
 UNLIMITED = 1 << 40
 
@@ -129,6 +132,49 @@ def family_estimates(rows):
     return table
 
 
+def best_parts(lab, size):
+    """Returns a row for each picture of the families and memory of a PE in which the scene does not fit in one part, but in several."""
+    rows, pes = [], FAMILY_PES
+    for family, make in FAMILIES.items():
+        for view in range(VIEWS_EACH):
+            scene = make(lab.seed + view)
+            for memory in FAMILY_MEMORIES:
+                results = {parts: render(lab, scene, size, pes, parts, memory) for parts in powers_of_two(pes)}
+                times = {parts: figures(result, pes)["time (ms)"] for parts, result in results.items() if result}
+                if times and 1 not in times:
+                    fewest, best = min(times), min(times, key=times.get)
+                    rows.append({"family": family, "view": view, "memory (bytes)": memory, "fewest parts": fewest, "best G": best,
+                                 "time, fewest / best": times[fewest] / times[best]})
+    return pd.DataFrame(rows)
+
+
+def crossing(counts, ratios):
+    """Returns the number of objects at which the ratio ring / torus becomes 1, interpolated in logarithms; the first or last count if it is 1 nowhere
+    between the counts."""
+    logs = np.log(ratios)
+    above = next((i for i, value in enumerate(logs) if value > 0), len(logs))
+    if above in (0, len(logs)):
+        return counts[0 if above == 0 else -1]
+    return float(np.exp(np.interp(0, logs[above - 1:above + 1], np.log(counts[above - 1:above + 1]))))
+
+
+def break_evens(lab, size):
+    """Returns a row for each view of even and random spheres: the break-even numbers of objects of the ring with PEs of 32 KB and the torus."""
+    rows, pes = [], FAMILY_PES
+    for kind, make in (("even", lambda count, seed: even_scene(count)), ("random", raya.generate.random)):
+        for seed in range(lab.seed, lab.seed + VIEWS_EVEN):
+            times = []
+            for count in COUNTS:
+                scene = view_of(make(count, seed))(seed)
+                fitting = (render(lab, scene, size, pes, parts, SPA["pe_memory_bytes"]) for parts in parts_to_try(pes))
+                ring = min(figures(result, pes)["time (ms)"] for result in fitting if result)
+                torus = run_on_torus(lab, scene, size, near_cube(pes), near_cube(pes), queue=256)
+                times.append((ring, torus.overlapped_ms, torus.stepwise_ms))
+            ring, overlapped, stepwise = np.array(times).T
+            rows.append({"spheres": kind, "view": seed, "overlapped": crossing(COUNTS, ring / overlapped), "stepwise": crossing(COUNTS, ring / stepwise)})
+    return pd.DataFrame(rows)
+
+
 def frames_of(compute_ms):
     """Returns the time of a frame in a series of frames: (label, ms). compute_ms: tracing of a frame."""
     image, display = papers.IMAGE_MS, papers.DISPLAY_MS
@@ -158,16 +204,21 @@ def ring_of_objects(lab, scenes):
     memory = pd.DataFrame([row for scene in evens[-3:-1] or evens for row in best_for_memory(lab, scene, size, 256)])
     families = family_rows(lab, size)
     estimated = family_estimates(families)
+    fewest, crossings = best_parts(lab, size), break_evens(lab, size)
     frames = pd.DataFrame([{"frames": name, "ms": ms, "frames a second": 1e3 / ms} for name, ms in frames_of(papers.COMPUTE_MS).items()])
     evens_of = {pes: {bound: break_even(group, f"torus, {bound} (ms)") for bound in ("overlapped", "stepwise")}
                 for pes, group in against.groupby("P")}
     shown = pd.DataFrame([{key: value if key == "G" else value.text() for key, value in row.items()} for row in estimated])
-    return Page({"size": size, "processors": ", ".join(map(str, PROCESSORS)), "views": len(FAMILIES) * VIEWS_EACH, "family_pes": FAMILY_PES},
-                findings_of(rows, memory, estimated, evens_of, frames),
+    answers = answers_of(estimated, fewest, crossings)
+    return Page({"size": size, "processors": ", ".join(map(str, PROCESSORS)), "views": len(FAMILIES) * VIEWS_EACH, "family_pes": FAMILY_PES,
+                 "views_even": VIEWS_EVEN, "counts": ", ".join(map(str, COUNTS))},
+                answers + findings_of(rows, memory, estimated, evens_of, frames),
                 tables=[Table("ring-of-objects", "The ring with 1 to P parts", rows), Table("ring-of-objects-torus", "Ring, torus and hybrid", against),
                         Table("ring-of-objects-memory", "The best number of parts for a memory", memory),
                         Table("ring-of-objects-families", "Means and 95 % intervals over the families", shown),
                         Table("ring-of-objects-pictures", "The pictures of the families", families, on_page=False),
+                        Table("ring-of-objects-fewest", "The best and the fewest parts, pictures of the families", fewest, on_page=False),
+                        Table("ring-of-objects-break-even", "Objects from which on the torus is faster", crossings),
                         Table("ring-of-objects-frames", "A frame of a series, scene and times of Table 2", frames)],
                 plots=[Plot("ring-of-objects", "Time against the number of parts, 256 PEs", "parts G", "time without display (modelled ms)",
                             series_by(rows[rows["P"] == 256], "scene", "G", "time (ms)"), "xy"),
@@ -175,8 +226,23 @@ def ring_of_objects(lab, scenes):
                             [Series(name, against[against["P"] == 256]["N"], against[against["P"] == 256][column]) for name, column in (
                                 ("ring", "time (ms)"), ("ring, enough memory", "enough memory (ms)"), ("torus, overlapped", "torus, overlapped (ms)"),
                                 ("torus, stepwise", "torus, stepwise (ms)"), ("hybrid, overlapped", "hybrid, overlapped (ms)"))], "xy")],
-                news=[f"A ring whose objects rotate renders scenes larger than a PE: {rows[rows['fits'] == 'yes']['N'].max()} objects on PEs of 32 KB."],
+                news=[f"A ring whose objects rotate renders scenes larger than a PE: {rows[rows['fits'] == 'yes']['N'].max()} objects on PEs of 32 KB.", *answers],
                 clock=RING_CLOCK, placeholders={"ray_words": RAY_WORDS, "torus_nodes": "a 3-D torus of"})
+
+
+def answers_of(estimated, fewest, crossings):
+    """Returns the answers to the study's questions, with 95 % intervals."""
+    logs = {bound: estimate(np.log(crossings[bound]), crossings["spheres"].tolist()) for bound in ("overlapped", "stepwise")}
+    evens = {bound: f"{np.exp(log.mean):.0f} ({np.exp(log.low):.0f} .. {np.exp(log.high):.0f})" for bound, log in logs.items()}
+    holds = fewest["best G"] == fewest["fewest parts"]
+    split = estimated[-1]
+    return [f"On {FAMILY_PES} processors the torus is faster than a ring of objects from {evens['overlapped']} spheres on if it waits for nothing, and from "
+            f"{evens['stepwise']} on step by step.",
+            f"The fewest parts that fit are the best in {int(holds.sum())} of {len(holds)} pictures that do not fit in one part (95 %: "
+            f"{proportion(holds, 0.5).interval}); they take at most {fewest['time, fewest / best'].max():.2f} times as long as the best.",
+            f"The cyclic mapping still pays with G = {split['G']}: with p = 0 computing takes {split['computing time, p = 0 / cyclic'].text(2)} times as long.",
+            f"With G = {split['G']} a bus instead of the ring makes the whole {1 + split['extra time over the bus'].mean:.1f} +- "
+            f"{split['extra time over the bus'].half:.1f} times as long."]
 
 
 def findings_of(rows, memory, estimated, evens_of, frames):
