@@ -107,11 +107,7 @@ py::dict schedule(const py::array& costs, const std::string& plan, const py::kwa
 // offset p > 0, successive rows miss different pairs; for p = 0, all rows miss the same pair.
 std::uint64_t neighbour_rotations(raya_mapping mapping) {
     if (raya_has_slots(mapping) && mapping.pes <= mapping.width) mapping.height = std::min(mapping.height, 2u);
-    std::uint64_t rotations = 0;
-    for (raya_u32 side = 0; side < RAYA_SIDES; ++side)
-        for (const Leg& leg : shortest_route(mapping.pes, neighbour_distances(mapping, side)))
-            rotations += leg.rotations();
-    return rotations;
+    return sum_of(exchange_moves(mapping, ExchangeMethod::kRing, false));
 }
 
 // Computes modelled times of the SPA for every offset of the cyclic mapping: the time of the busiest PE in each pass,

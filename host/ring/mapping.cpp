@@ -95,9 +95,6 @@ std::uint32_t largest_share(const raya_mapping& mapping) {
 
 namespace {
 
-// Names of the methods, in the order of ExchangeMethod.
-constexpr std::array<const char*, 3> kExchangeNames = {"ring", "bus", "bus-broadcast"};
-
 std::uint64_t moves_of_side(const raya_mapping& mapping, ExchangeMethod method, raya_u32 side) {
     const std::vector<std::uint32_t> distances = neighbour_distances(mapping, side);
     const auto distant_count = static_cast<std::uint64_t>(
@@ -150,7 +147,9 @@ std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32
     return legs;
 }
 
-std::string exchange_name(ExchangeMethod method) { return kExchangeNames.at(static_cast<std::size_t>(method)); }
+std::string exchange_name(ExchangeMethod method) {
+    return std::array{"ring", "bus", "bus-broadcast"}.at(static_cast<std::size_t>(method));
+}
 
 MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool any_order) {
     MovesOfSides moves{};
