@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
@@ -78,9 +79,8 @@ py::dict root_times(const Result& r) {
 }
 
 double work_ms(const Result& r) {
-    std::uint64_t sum = 0;
-    for (const std::uint64_t load : torus_of(*r, "work_ms").load.per_pe) sum += load;
-    return t805_ms(sum);
+    const std::vector<std::uint64_t>& loads = torus_of(*r, "work_ms").load.per_pe;
+    return t805_ms(std::accumulate(loads.begin(), loads.end(), std::uint64_t{0}));
 }
 
 py::dict node_memory(const Result& r) {

@@ -80,7 +80,7 @@ CostImage cost_image_of(const py::array& cost) {
         throw py::value_error("cost: must be an integer array [height, width] of modelled cycles");
     if (type_kind == 'i' && cost.size() > 0 && cost.attr("min")().cast<std::int64_t>() < 0)
         throw py::value_error("cost: modelled cycles must not be negative");
-    const CostArray array(cost);
+    const py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast> array(cost);
     CostImage image{static_cast<std::uint32_t>(array.shape(1)), static_cast<std::uint32_t>(array.shape(0)), {}};
     image.cycles.assign(array.data(), array.data() + array.size());
     std::uint64_t sum = 0;  // of all PEs
@@ -116,15 +116,9 @@ cl::Device choose_device_with_stacks(const std::string& name) {
     ::pthread_attr_init(&large_stack);
     ::pthread_attr_setstacksize(&large_stack, std::size_t{128} << 20);
     ::pthread_setattr_default_np(&large_stack);
-    const auto restore = [&] { ::pthread_setattr_default_np(&saved_attributes); };
-    try {
-        cl::Device device = choose_device(name);
-        restore();
-        return device;
-    } catch (...) {
-        restore();
-        throw;
-    }
+    const auto restore = [](const pthread_attr_t* saved) { ::pthread_setattr_default_np(saved); };
+    const std::unique_ptr<pthread_attr_t, decltype(restore)> end(&saved_attributes, restore);
+    return choose_device(name);
 }
 
 RenderCommand parse_options(CLI::App& program, const py::dict& options) {
@@ -159,15 +153,16 @@ PixelSubset pop_pixels(py::dict& options) {
     return {stride, first};
 }
 
-}  // namespace
-
-void PythonSession::check_process() {
+// Throws DeviceError in a process that was forked from the first one.
+void check_process() {
     static const pid_t first = ::getpid();
     if (::getpid() != first)
         throw DeviceError(
             "OpenCL does not work in a process that was forked after raya had opened a device; remedy: start it with "
             "multiprocessing.get_context('spawn')");
 }
+
+}  // namespace
 
 PythonSession::PythonSession(const std::string& device)
     : device_(choose_device_with_stacks(device)), session_(device_) {}

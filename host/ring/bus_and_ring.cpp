@@ -12,7 +12,7 @@ namespace raya {
 namespace {
 
 // Returns the layout of the words in a buffer whose first PE is `first_pe`.
-Session::Blocks rows_of(const PeWords& words, std::size_t first_pe) {
+Session::Blocks layout_of(const PeWords& words, std::size_t first_pe) {
     return {words.offset, words.pitch, (words.pe - first_pe) * words.rows * words.pitch};
 }
 
@@ -30,14 +30,14 @@ void Bus::send(const Buffer<float>& pe_memory, PeWords source, Buffer<float>& bl
     communication_.transfer_words += source.rows * words;
     const bool sends = pes_.has(source.pe), receives = pes_.has(target.pe);
     if (sends && receives)
-        return session_.copy_blocks("bus.send", pe_memory, rows_of(source, pes_.first()), blocks,
-                                    rows_of(target, pes_.first()), words, source.rows);
+        return session_.copy_blocks("bus.send", pe_memory, layout_of(source, pes_.first()), blocks,
+                                    layout_of(target, pes_.first()), words, source.rows);
     if (sends)
         pes_.ranks().send(pes_.rank_of(target.pe), std::span<const float>(read("bus.send", pe_memory, source, words)));
     if (receives) {
         std::vector<float> received(target.rows * words);
         pes_.ranks().receive(pes_.rank_of(source.pe), std::span(received));
-        write("bus.send", blocks, rows_of(target, pes_.first()), target.rows, received);
+        write("bus.send", blocks, layout_of(target, pes_.first()), target.rows, received);
     }
 }
 
@@ -46,13 +46,13 @@ void Bus::broadcast_from(const Buffer<float>& pe_memory, PeWords source, Buffer<
     communication_.pe_broadcasts += 1;
     communication_.pe_broadcast_words += source.rows * words;
     if (pes_.count() == pes_.all())
-        return session_.copy_blocks("bus.broadcast_from", pe_memory, rows_of(source, 0), all_blocks, rows_of(target, 0),
-                                    words, source.rows);
+        return session_.copy_blocks("bus.broadcast_from", pe_memory, layout_of(source, 0), all_blocks,
+                                    layout_of(target, 0), words, source.rows);
     std::vector<float> sent;
     if (pes_.has(source.pe)) sent = read("bus.broadcast_from", pe_memory, source, words);
     std::vector<std::size_t> sizes(pes_.ranks().count());
     sizes[pes_.rank_of(source.pe)] = source.rows * words;
-    write("bus.broadcast_from", all_blocks, rows_of(target, 0), target.rows,
+    write("bus.broadcast_from", all_blocks, layout_of(target, 0), target.rows,
           pes_.ranks().all_gather(std::span<const float>(sent), sizes));
 }
 
@@ -64,7 +64,7 @@ void Bus::gather(const Buffer<float>& blocks, std::span<float> target, std::uint
 std::vector<float> Bus::read(const char* label, const Buffer<float>& pe_memory, const PeWords& source,
                              std::size_t words) {
     std::vector<float> words_read(source.rows * words);
-    const auto [offset, pitch, first] = rows_of(source, pes_.first());
+    const auto [offset, pitch, first] = layout_of(source, pes_.first());
     for (std::size_t row = 0; row < source.rows; ++row)
         session_.read(label, pe_memory, std::span(words_read).subspan(row * words, words),
                       first + row * pitch + offset);

@@ -1,8 +1,6 @@
 // Checks of layer "machine": integer arithmetic, local memory, barriers and atomics with kernels/checks/machine.cl, and
 // transfers. All results are exact integers. The host computes the expected results with the headers that the kernels
 // use.
-#include "host/verify/machines.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>

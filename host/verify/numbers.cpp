@@ -81,7 +81,7 @@ NumberResults run_operations(CheckRunner& runner, const NumberRows& rows) {
     operands.insert(operands.end(), rows.b.begin(), rows.b.end());
     operands.insert(operands.end(), rows.c.begin(), rows.c.end());
     const auto operand_buffer = runner.filled("operands", operands);
-    auto result_buffer = runner.poisoned("results", kNumberOperations.size() * rows.count());
+    auto result_buffer = runner.poisoned("results", std::size(kNumberOperations) * rows.count());
     runner.run_rows<const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&>(
         "operations", rows.count(), operand_buffer, static_cast<cl_uint>(rows.count()), result_buffer);
     const std::vector<std::uint32_t> columns = runner.read(result_buffer);
@@ -245,13 +245,15 @@ std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
         if (fields.at(0).find_first_of("mp") != std::string::npos) {
             const NumberFormat format = parse_format(fields[0]);
             if (all.empty() || all.back().format != format) all.push_back({format, {}});
-            for (operation = 0; fields.at(1) != kNumberOperations.at(operation).name;) ++operation;
+            operation = static_cast<std::size_t>(
+                std::ranges::find(kNumberOperations, fields.at(1), &NumberOperation::name) - kNumberOperations);
             continue;
         }
+        std::vector<KnownAnswer>& answers = all.back().operations.at(operation);
         const std::size_t operands = kNumberOperations[operation].operands;
         KnownAnswer answer{{kOne, kOne, kOne}, word_of(fields.at(operands)), word_of(fields.back())};
         for (std::size_t k = 0; k < operands; ++k) answer.operands[k] = word_of(fields[k]);
-        all.back().operations[operation].push_back(answer);
+        answers.push_back(answer);
     }
     return all;
 }

@@ -1,5 +1,3 @@
-#include "host/verify/reproduce.hpp"
-
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -18,6 +16,7 @@
 #include "host/cl/kernel_source.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
+#include "host/verify/supervisor.hpp"
 #include "host/version.hpp"
 
 namespace raya {

@@ -23,8 +23,6 @@ namespace {
 // Begins the result of a check that an exception other than DeviceError has stopped.
 constexpr const char* kCheckStopped = "the check stopped with an error: ";
 
-constexpr const char* kOutcomeNames[] = {"PASS", "FAIL", "SKIP", "XFAIL", "XPASS"};  // by Outcome
-
 constexpr std::pair<const char*, std::string Fault::*> kFaultTexts[] = {
     {"where", &Fault::where}, {"expected", &Fault::expected}, {"got", &Fault::got}, {"build_options", &Fault::options}};
 
@@ -68,7 +66,9 @@ void visit_layers(Verification& verification) {
 
 }  // namespace
 
-const char* outcome_name(Outcome outcome) { return kOutcomeNames[static_cast<std::size_t>(outcome)]; }
+const char* outcome_name(Outcome outcome) {
+    return std::array{"PASS", "FAIL", "SKIP", "XFAIL", "XPASS"}[static_cast<std::size_t>(outcome)];
+}
 
 bool name_matches(const std::string& full_name, const std::string& pattern) {
     std::string glob = "*";
@@ -130,8 +130,8 @@ std::vector<std::string> remedies_of(const Check& check, const VerifySettings& s
 }
 
 std::size_t count_of(const std::vector<Check>& checks, Outcome outcome) {
-    return static_cast<std::size_t>(
-        std::count_if(checks.begin(), checks.end(), [&](const Check& c) { return c.verdict.outcome == outcome; }));
+    const auto outcome_of = [](const Check& check) { return check.verdict.outcome; };
+    return static_cast<std::size_t>(std::ranges::count(checks, outcome, outcome_of));
 }
 
 std::string check_lines(const Check& c) {

@@ -149,6 +149,18 @@ void verify_images(Verification& verification);
 /// Layer "random": settings().random random kernels (random_kernel.hpp) of the sequence settings().seed.
 void verify_random(Verification& verification);
 
+/// A copy of blocks between two buffers in which the blocks have different layouts.
+struct BlockCopy {
+    Session::Blocks from, to;         // layouts in source and destination
+    std::size_t block_words, blocks;  // words to copy from the start of each block; number of blocks
+};
+
+/// Size of each of the two buffers of check_copies(), in words.
+inline constexpr std::size_t kCopiedWords = 4096;
+
+/// Checks that each copy is correct and does not change the other words of the destination.
+Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies);
+
 /// Number of kernels in a check of layer "random".
 inline constexpr std::uint32_t kRandomBatch = 25;
 
