@@ -160,8 +160,8 @@ MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, 
     return moves;
 }
 
-std::uint64_t sum_of(const MovesOfSides& moves) {
-    return std::accumulate(moves.begin(), moves.end(), std::uint64_t{0});
+std::uint64_t sum_of(std::span<const std::uint64_t> numbers) {
+    return std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
 }
 
 namespace {
@@ -278,18 +278,14 @@ Schedule dynamic_schedule(const CostImage& image, const raya_mapping& static_map
     assign_chunks(chunks, plan, finish);
     Schedule schedule{load_of(std::move(finish)), chunks.size()};
     Load& load = schedule.load;
-    if (load.max > 0) load.speedup = static_cast<double>(total_cycles(image)) / static_cast<double>(load.max);
+    if (load.max > 0) load.speedup = static_cast<double>(sum_of(image.cycles)) / static_cast<double>(load.max);
     load.efficiency = load.speedup / static_mapping.pes;
     return schedule;
 }
 
-std::uint64_t total_cycles(const CostImage& image) {
-    return std::accumulate(image.cycles.begin(), image.cycles.end(), std::uint64_t{0});
-}
-
 std::uint64_t lower_bound(const CostImage& image, std::uint32_t pes) {
     check_image(image, pes);
-    const std::uint64_t total = total_cycles(image);
+    const std::uint64_t total = sum_of(image.cycles);
     const std::uint64_t mean_load = total / pes + (total % pes != 0);  // rounded up
     return std::max(mean_load, *std::max_element(image.cycles.begin(), image.cycles.end()));
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <stdexcept>
 
 #include "host/model/budget.hpp"
@@ -75,9 +74,7 @@ const CostImage& Phase::cost() const {
     return *recorded_cost;
 }
 
-std::uint64_t Phase::barrier_cycles() const {
-    return turn_cycles.empty() ? load.max : std::accumulate(turn_cycles.begin(), turn_cycles.end(), std::uint64_t{0});
-}
+std::uint64_t Phase::barrier_cycles() const { return turn_cycles.empty() ? load.max : sum_of(turn_cycles); }
 
 std::uint64_t RingResult::turns() const {
     std::uint64_t turns = 0;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "host/error.hpp"
@@ -268,13 +267,12 @@ std::uint64_t Turns::barrier_cycles(const std::string& label, std::uint32_t step
     std::vector<std::uint64_t> spent(steps * per_step), busiest(steps);
     session_.read(label, spent_, spent);
     for (std::size_t n = 0; n < spent.size(); n += per_pe) {
-        const auto first = spent.begin() + static_cast<std::ptrdiff_t>(n);
         std::uint64_t& most = busiest[n / per_step];
-        most = std::max(most, std::accumulate(first, first + static_cast<std::ptrdiff_t>(per_pe), std::uint64_t{0}));
+        most = std::max(most, sum_of(std::span(spent).subspan(n, per_pe)));
     }
     const std::vector<std::uint64_t> all = pes_.ranks().all_gather(std::span<const std::uint64_t>(busiest));
     for (std::size_t n = 0; n < all.size(); ++n) busiest[n % steps] = std::max(busiest[n % steps], all[n]);
-    return std::accumulate(busiest.begin(), busiest.end(), std::uint64_t{0});
+    return sum_of(busiest);
 }
 
 }  // namespace raya

@@ -43,20 +43,6 @@ Fault fault_of(const NumberFormat& format, std::size_t operation, const NumberRo
             .got = number_text(got)};
 }
 
-Program build_number_program(Session& session, const NumberBuild& build) {
-    const KernelOptions options{
-        .lanes = build.lanes, .format = build.format, .exact_divide = build.trusted, .exact_fma = build.trusted};
-    KernelSources sources = build.sources;
-    if (!build.optimised) sources.more_options.emplace_back("-cl-opt-disable");
-    if (!build.trusted) sources.more_options.emplace_back(kNoBuiltins);
-    if (build.imprecise) {
-        // The simulated errors are added to the device's results, which are not exact without this option (NVIDIA).
-        sources.more_options.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
-        sources.more_options.emplace_back("-DRAYA_IMPRECISE=1");
-    }
-    return Kernels(session, options, sources).program("checks/numbers.cl");
-}
-
 }  // namespace
 
 void NumberRows::add(float x, float y, float z) {
@@ -74,9 +60,21 @@ std::string NumberBuild::name() const {
                        optimised ? "" : ", -cl-opt-disable");
 }
 
-namespace {
+CheckRunner number_runner(Session& session, const NumberBuild& build) {
+    const KernelOptions options{
+        .lanes = build.lanes, .format = build.format, .exact_divide = build.trusted, .exact_fma = build.trusted};
+    KernelSources sources = build.sources;
+    if (!build.optimised) sources.more_options.emplace_back("-cl-opt-disable");
+    if (!build.trusted) sources.more_options.emplace_back(kNoBuiltins);
+    if (build.imprecise) {
+        // The simulated errors are added to the device's results, which are not exact without this option (NVIDIA).
+        sources.more_options.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
+        sources.more_options.emplace_back("-DRAYA_IMPRECISE=1");
+    }
+    return {session, Kernels(session, options, sources).program("checks/numbers.cl"), build.lanes};
+}
 
-NumberResults run_operations(CheckRunner& runner, const NumberRows& rows) {
+NumberResults run_numbers(CheckRunner& runner, const NumberRows& rows) {
     std::vector<float> operands = rows.a;
     operands.insert(operands.end(), rows.b.begin(), rows.b.end());
     operands.insert(operands.end(), rows.c.begin(), rows.c.end());
@@ -91,17 +89,10 @@ NumberResults run_operations(CheckRunner& runner, const NumberRows& rows) {
     return results;
 }
 
-}  // namespace
-
-NumberResults run_numbers(Session& session, const NumberBuild& build, const NumberRows& rows) {
-    CheckRunner runner(session, build_number_program(session, build), build.lanes);
-    return run_operations(runner, rows);
-}
-
 Verdict check_numbers(Session& session, const NumberBuild& build, const NumberRows& rows,
                       const std::vector<ExpectedNumbers>& expected) {
-    CheckRunner runner(session, build_number_program(session, build), build.lanes);
-    const NumberResults results = run_operations(runner, rows);
+    CheckRunner runner = number_runner(session, build);
+    const NumberResults results = run_numbers(runner, rows);
     KnownWords known(results.size() * rows.count());
     std::size_t wrong = 0, compared = 0, kept = 0, flushed = 0;
     std::string operations;

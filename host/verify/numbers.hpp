@@ -65,8 +65,11 @@ struct ExpectedNumbers {
     std::size_t first_row = 0;
 };
 
-/// Returns the results of all operations in one build. The number of rows must be a multiple of kMaxLanes.
-NumberResults run_numbers(Session& session, const NumberBuild& build, const NumberRows& rows);
+/// Builds kernels/checks/numbers.cl.
+CheckRunner number_runner(Session& session, const NumberBuild& build);
+
+/// Returns the results of all operations. The number of rows must be a multiple of kMaxLanes.
+NumberResults run_numbers(CheckRunner& runner, const NumberRows& rows);
 
 /// Computes the operations and compares the results with `expected`. The verdict of a pass has a text such as "357
 /// answers"; that of a failure states the number of wrong results of each operation and the first wrong result. Any NaN

@@ -187,9 +187,6 @@ struct DeviceChecks {
     }
 };
 
-/// Returns the properties of a device, without checks.
-DeviceChecks device_checks_of(const DeviceInfo& info);
-
 /// Lists the members of a device, for to_json(), schema_of() and from_json().
 void members_of(Members& m, DeviceChecks& device);
 
