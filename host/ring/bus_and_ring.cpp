@@ -16,6 +16,8 @@ Session::Blocks layout_of(const PeWords& words, std::size_t first_pe) {
     return {words.offset, words.pitch, (words.pe - first_pe) * words.rows * words.pitch};
 }
 
+constexpr std::size_t kColours = 3;
+
 }  // namespace
 
 void Bus::broadcast(Buffer<std::uint32_t>& target, std::span<const std::uint32_t> words) {
@@ -137,12 +139,6 @@ void Ring::move(const char* label, const Buffer<float>& source, std::size_t firs
     session_.copy(label, source, first_source * block_words_, target, first_target * block_words_,
                   blocks * block_words_);
 }
-
-namespace {
-
-constexpr std::size_t kColours = 3;
-
-}  // namespace
 
 NeighbourExchange::NeighbourExchange(Session& session, Communication& communication, const raya_mapping& mapping,
                                      std::uint32_t capacity, std::uint32_t band, ExchangeMethod method,

@@ -51,6 +51,17 @@ void check_offset(const raya_mapping& m) {
                                 m.width - 1));
 }
 
+std::uint64_t moves_of_side(const raya_mapping& mapping, ExchangeMethod method, raya_u32 side) {
+    const std::vector<std::uint32_t> distances = neighbour_distances(mapping, side);
+    const auto distant_count = static_cast<std::uint64_t>(
+        std::ranges::count_if(distances, [](std::uint32_t distance) { return distance > 0; }));
+    if (method == ExchangeMethod::kBus) return distant_count * mapping.pes;
+    if (method == ExchangeMethod::kBroadcast) return distant_count > 0 ? mapping.pes : 0;
+    std::uint64_t rotations = 0;
+    for (const Leg& leg : shortest_route(mapping.pes, distances)) rotations += leg.rotations();
+    return rotations;
+}
+
 }  // namespace
 
 raya_mapping make_mapping(const MappingRule& rule, const ImageSize& image, std::uint32_t pes) {
@@ -92,21 +103,6 @@ std::uint32_t largest_share(const raya_mapping& mapping) {
         largest = std::max(largest, raya_share_size(raya_share_of(mapping, pe)));
     return largest;
 }
-
-namespace {
-
-std::uint64_t moves_of_side(const raya_mapping& mapping, ExchangeMethod method, raya_u32 side) {
-    const std::vector<std::uint32_t> distances = neighbour_distances(mapping, side);
-    const auto distant_count = static_cast<std::uint64_t>(
-        std::ranges::count_if(distances, [](std::uint32_t distance) { return distance > 0; }));
-    if (method == ExchangeMethod::kBus) return distant_count * mapping.pes;
-    if (method == ExchangeMethod::kBroadcast) return distant_count > 0 ? mapping.pes : 0;
-    std::uint64_t rotations = 0;
-    for (const Leg& leg : shortest_route(mapping.pes, distances)) rotations += leg.rotations();
-    return rotations;
-}
-
-}  // namespace
 
 std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya_u32 side) {
     std::vector<bool> found(mapping.pes);

@@ -30,6 +30,38 @@ constexpr std::uint32_t kMaxTrees = 1024;  // of a PE with divided objects, so t
         bytes, *machine.pe_memory_bytes);
 }
 
+// Returns true if PEs should copy their `words` words into local memory in each launch. Returns false if the words do
+// not fit, or if the copying loop could exceed the device's limit of loop iterations. Also returns false for many words
+// with an accelerator: the kernel then reads only a few of the words, so the copy takes longer than it saves.
+bool words_local(std::size_t words, const DeviceInfo& device, AccelKind accel) {
+    constexpr std::size_t kMaxCopiedBytes = 64 * 1024;
+    constexpr std::size_t kMaxCopiedWords = 4096;
+    if (device.ends_loops_early && words > kMaxCopiedWords) return false;
+    // 32 bytes for padding to a multiple of 16 bytes, and for the work-group's own data.
+    const std::size_t bytes = 4 * words + 32;
+    return bytes <= device.local_memory_bytes && (accel == AccelKind::kNone || bytes <= kMaxCopiedBytes);
+}
+
+RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSettings& settings,
+                      const std::function<void()>& packed) {
+    const LengthScale scale = length_scale(scene, settings.format);
+    const auto pack = [&] {
+        const SpanLog::Span span = session.span("pack scene");
+        return pack_for_ring(scene, settings, scale);
+    };
+    RingJob job{{}, pack()};
+    job.scale = scale;
+    job.objects = scene.object_count();
+    job.has_patches = job.job.has_patches();
+    if (packed) packed();
+    if (settings.accel.kind == AccelKind::kNone) return job;
+    const SpanLog::Span span = session.span("divide scene");
+    const Clock::time_point start = Clock::now();
+    job.accel = append_accel(job.job, settings);
+    job.accel_s = seconds_since(start);
+    return job;
+}
+
 }  // namespace
 
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
@@ -72,42 +104,6 @@ PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
         static_cast<std::uint32_t>(std::min<std::uint64_t>(max_trees, 1 + (limit_bytes - memory.bytes()) / tree_bytes));
     return memory;
 }
-
-namespace {
-
-// Returns true if PEs should copy their `words` words into local memory in each launch. Returns false if the words do
-// not fit, or if the copying loop could exceed the device's limit of loop iterations. Also returns false for many words
-// with an accelerator: the kernel then reads only a few of the words, so the copy takes longer than it saves.
-bool words_local(std::size_t words, const DeviceInfo& device, AccelKind accel) {
-    constexpr std::size_t kMaxCopiedBytes = 64 * 1024;
-    constexpr std::size_t kMaxCopiedWords = 4096;
-    if (device.ends_loops_early && words > kMaxCopiedWords) return false;
-    // 32 bytes for padding to a multiple of 16 bytes, and for the work-group's own data.
-    const std::size_t bytes = 4 * words + 32;
-    return bytes <= device.local_memory_bytes && (accel == AccelKind::kNone || bytes <= kMaxCopiedBytes);
-}
-
-RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSettings& settings,
-                      const std::function<void()>& packed) {
-    const LengthScale scale = length_scale(scene, settings.format);
-    const auto pack = [&] {
-        const SpanLog::Span span = session.span("pack scene");
-        return pack_for_ring(scene, settings, scale);
-    };
-    RingJob job{{}, pack()};
-    job.scale = scale;
-    job.objects = scene.object_count();
-    job.has_patches = job.job.has_patches();
-    if (packed) packed();
-    if (settings.accel.kind == AccelKind::kNone) return job;
-    const SpanLog::Span span = session.span("divide scene");
-    const Clock::time_point start = Clock::now();
-    job.accel = append_accel(job.job, settings);
-    job.accel_s = seconds_since(start);
-    return job;
-}
-
-}  // namespace
 
 void use_packets(RingSettings& settings, bool may_change_mapping) {
     if (settings.accel.kind != AccelKind::kBvh || !settings.format.is_fp32() || settings.dynamic) return;

@@ -42,6 +42,34 @@ Image black_image(const raya_mapping& m) {
     return image;
 }
 
+/// Calls visit(pixel, image pixel) for the pixels in `range` of the share of a PE. The arguments are the index of the
+/// pixel in the PE's device buffer, and the index of the pixel in the image.
+template <class Visit>
+void for_each_pixel(const raya_mapping& m, std::size_t pe, PixelRange range, Visit&& visit) {
+    const raya_share share = raya_share_of(m, static_cast<std::uint32_t>(pe));
+    const std::uint32_t end = std::min(range.end, raya_share_size(share));
+    if (range.begin >= end) return;
+    raya_pixel_run run = raya_pixel_run_of(m, share, range.begin);
+    for (std::uint32_t k = range.begin; k < end; ++k) {
+        if (k > range.begin) run = raya_pixel_run_at(run, m, share, k);
+        visit(std::size_t{k - range.window_start}, std::size_t{run.pixel.row} * m.width + run.pixel.column);
+    }
+}
+
+// Throws DeviceError unless one primary ray was counted for each pixel of this rank. Some devices silently end long
+// loops (Mesa's llvmpipe after 65,535 iterations of a work-item), so that pixels would be missing.
+void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const Distribution& pes,
+                      const DeviceInfo& device) {
+    std::uint64_t pixels = 0;
+    for (const std::uint32_t pe : pes.own()) pixels += raya_share_size(raya_share_of(m, pe));
+    const std::uint64_t traced = first_pass[RAYA_PRIMARY];
+    if (traced == pixels) return;
+    throw DeviceError(fmt::format(
+        "{} {} ended the trace kernel after {} of {} pixels; remedy: run raya verify; use more PEs (--pes), "
+        "which give each work-item fewer pixels and do not change the image, or another device",
+        device.platform, device.name, traced, pixels));
+}
+
 }  // namespace
 
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks,
@@ -280,38 +308,6 @@ void RingRenderer::resume(RingResult& result) {
     ranks_.broadcast(band_);
     resumed_ = checkpoints_->resume([&](RenderState& state) { visit_state(state, result); });
 }
-
-namespace {
-
-/// Calls visit(pixel, image pixel) for the pixels in `range` of the share of a PE. The arguments are the index of the
-/// pixel in the PE's device buffer, and the index of the pixel in the image.
-template <class Visit>
-void for_each_pixel(const raya_mapping& m, std::size_t pe, PixelRange range, Visit&& visit) {
-    const raya_share share = raya_share_of(m, static_cast<std::uint32_t>(pe));
-    const std::uint32_t end = std::min(range.end, raya_share_size(share));
-    if (range.begin >= end) return;
-    raya_pixel_run run = raya_pixel_run_of(m, share, range.begin);
-    for (std::uint32_t k = range.begin; k < end; ++k) {
-        if (k > range.begin) run = raya_pixel_run_at(run, m, share, k);
-        visit(std::size_t{k - range.window_start}, std::size_t{run.pixel.row} * m.width + run.pixel.column);
-    }
-}
-
-// Throws DeviceError unless one primary ray was counted for each pixel of this rank. Some devices silently end long
-// loops (Mesa's llvmpipe after 65,535 iterations of a work-item), so that pixels would be missing.
-void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const Distribution& pes,
-                      const DeviceInfo& device) {
-    std::uint64_t pixels = 0;
-    for (const std::uint32_t pe : pes.own()) pixels += raya_share_size(raya_share_of(m, pe));
-    const std::uint64_t traced = first_pass[RAYA_PRIMARY];
-    if (traced == pixels) return;
-    throw DeviceError(fmt::format(
-        "{} {} ended the trace kernel after {} of {} pixels; remedy: run raya verify; use more PEs (--pes), "
-        "which give each work-item fewer pixels and do not change the image, or another device",
-        device.platform, device.name, traced, pixels));
-}
-
-}  // namespace
 
 // Reads the pixels in `range` of every PE's share, and places them in the image.
 void RingRenderer::gather(PixelRange range, RingResult& result) {

@@ -115,6 +115,20 @@ Words base_of(const PackedJob& job) {
     return base;
 }
 
+constexpr std::uint32_t kMaxDividedLights = 32;  // `meet` marks blocked shadow rays in a word
+
+StoredScene store_in_parts(const PackedJob& job, const RingSettings& settings, const std::string& scene,
+                           std::uint32_t parts) {
+    StoredScene stored;
+    if (parts > 1) stored.parts = divide_objects(job, parts);
+    PeDemand demand = pe_demand(settings, scene, stored.words(job).size());
+    demand.parts = parts;
+    if (stored.parts) demand.part_words = stored.parts->part_words;
+    demand.divisible = parts < settings.mapping.pes && settings.accel.kind == AccelKind::kNone && !settings.dynamic;
+    stored.memory = plan_pe_memory(settings.machine, demand);
+    return stored;
+}
+
 }  // namespace
 
 ObjectParts divide_objects(const PackedJob& job, std::uint32_t parts) {
@@ -133,24 +147,6 @@ ObjectParts divide_objects(const PackedJob& job, std::uint32_t parts) {
     }
     return divided;
 }
-
-namespace {
-
-constexpr std::uint32_t kMaxDividedLights = 32;  // `meet` marks blocked shadow rays in a word
-
-StoredScene store_in_parts(const PackedJob& job, const RingSettings& settings, const std::string& scene,
-                           std::uint32_t parts) {
-    StoredScene stored;
-    if (parts > 1) stored.parts = divide_objects(job, parts);
-    PeDemand demand = pe_demand(settings, scene, stored.words(job).size());
-    demand.parts = parts;
-    if (stored.parts) demand.part_words = stored.parts->part_words;
-    demand.divisible = parts < settings.mapping.pes && settings.accel.kind == AccelKind::kNone && !settings.dynamic;
-    stored.memory = plan_pe_memory(settings.machine, demand);
-    return stored;
-}
-
-}  // namespace
 
 StoredScene store_scene(const PackedJob& job, const RingSettings& settings, const std::string& scene) {
     const std::uint32_t pes = settings.mapping.pes, lights = job.header().lights;

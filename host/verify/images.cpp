@@ -21,13 +21,8 @@
 namespace raya {
 namespace {
 
-enum class Renderer {
-    kRing,
-    kGrid,
-    kBvh,
-    kPackets,
-    kTorus
-};  // kGrid, kBvh: the ring with it; kPackets: of rays, with a BVH
+// kGrid, kBvh: the ring with it; kPackets: of rays, with a BVH.
+enum class Renderer { kRing, kGrid, kBvh, kPackets, kTorus };
 constexpr auto kGrid = Renderer::kGrid, kBvh = Renderer::kBvh, kPackets = Renderer::kPackets, kTorus = Renderer::kTorus;
 
 /// A reference image and the settings that must not change any bit of it.

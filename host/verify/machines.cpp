@@ -212,33 +212,6 @@ Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t str
     return passed(fmt::format("{} packets over {} links", traffic.packets_sent, RAYA_LINKS * nodes));
 }
 
-}  // namespace
-
-Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies) {
-    const Words source = distinct_words(kCopiedWords);
-    std::size_t copied = 0;
-    for (const BlockCopy& copy : copies) {
-        auto source_buffer = session.buffer<std::uint32_t>("from", kCopiedWords);
-        auto destination = session.buffer<std::uint32_t>("to", kCopiedWords);
-        session.write("from", source_buffer, source);
-        session.fill("to", destination, kPoison);
-        session.copy_blocks("blocks", source_buffer, copy.from, destination, copy.to, copy.block_words, copy.blocks);
-        Words expected(kCopiedWords, kPoison), got(kCopiedWords);
-        const auto index = [&](const Session::Blocks& layout, std::size_t block, std::size_t w) {
-            return layout.first + block * layout.pitch + layout.offset + w;
-        };
-        for (std::size_t block = 0; block < copy.blocks; ++block)
-            for (std::size_t w = 0; w < copy.block_words; ++w, ++copied)
-                expected[index(copy.to, block, w)] = source[index(copy.from, block, w)];
-        session.read("to", destination, got);
-        const std::string transfer = fmt::format("{} blocks of {} words", copy.blocks, copy.block_words);
-        if (auto verdict = difference(expected, got, transfer, kCopiedWords, "buffer")) return *verdict;
-    }
-    return passed(fmt::format("{} words in {} layouts", copied, copies.size()));
-}
-
-namespace {
-
 void verify_transfers(Verification& v) {
     const std::vector<BlockCopy> copies = {{{3, 17, 0}, {0, 5, 2}, 5, 40},
                                            {{0, 8, 1}, {4, 31, 0}, 8, 33},
@@ -471,6 +444,29 @@ void verify_kernels(Verification& v) {
 }
 
 }  // namespace
+
+Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies) {
+    const Words source = distinct_words(kCopiedWords);
+    std::size_t copied = 0;
+    for (const BlockCopy& copy : copies) {
+        auto source_buffer = session.buffer<std::uint32_t>("from", kCopiedWords);
+        auto destination = session.buffer<std::uint32_t>("to", kCopiedWords);
+        session.write("from", source_buffer, source);
+        session.fill("to", destination, kPoison);
+        session.copy_blocks("blocks", source_buffer, copy.from, destination, copy.to, copy.block_words, copy.blocks);
+        Words expected(kCopiedWords, kPoison), got(kCopiedWords);
+        const auto index = [&](const Session::Blocks& layout, std::size_t block, std::size_t w) {
+            return layout.first + block * layout.pitch + layout.offset + w;
+        };
+        for (std::size_t block = 0; block < copy.blocks; ++block)
+            for (std::size_t w = 0; w < copy.block_words; ++w, ++copied)
+                expected[index(copy.to, block, w)] = source[index(copy.from, block, w)];
+        session.read("to", destination, got);
+        const std::string transfer = fmt::format("{} blocks of {} words", copy.blocks, copy.block_words);
+        if (auto verdict = difference(expected, got, transfer, kCopiedWords, "buffer")) return *verdict;
+    }
+    return passed(fmt::format("{} words in {} layouts", copied, copies.size()));
+}
 
 void verify_machines(Verification& v) {
     verify_kernels(v);

@@ -33,16 +33,6 @@ void for_each_setting(Settings& s, const Visit& visit) {
     visit("done", s.done);
 }
 
-}  // namespace
-
-Json settings_json(const VerifySettings& settings, const std::string& selector, std::size_t index) {
-    Json json = {{"device", selector}, {"index", index}};
-    for_each_setting(settings, [&](const char* name, const auto& value) { json[name] = value; });
-    return json;
-}
-
-namespace {
-
 // --- Functions of the child process
 
 struct SelectedDevices {
@@ -178,6 +168,12 @@ class Supervision {
 };
 
 }  // namespace
+
+Json settings_json(const VerifySettings& settings, const std::string& selector, std::size_t index) {
+    Json json = {{"device", selector}, {"index", index}};
+    for_each_setting(settings, [&](const char* name, const auto& value) { json[name] = value; });
+    return json;
+}
 
 DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink) {

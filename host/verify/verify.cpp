@@ -64,6 +64,34 @@ void visit_layers(Verification& verification) {
     verify_images(verification);
 }
 
+// Runs random checks with random numbers of lanes for settings.soak_s seconds, without the first settings.done.
+void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
+    std::vector<VerifySettings> choices;
+    std::vector<std::uint32_t> lanes_choices = {1, 4, 8, 16};
+    if (settings.lanes != 0) lanes_choices = {settings.lanes};
+    for (const std::uint32_t lanes : lanes_choices) {
+        VerifySettings all = settings;
+        all.lanes = lanes;
+        for (const std::string& name : check_names(device, all)) choices.push_back(settings_of_one(all, name));
+    }
+    if (settings.only.empty() && settings.skip.empty()) {
+        choices.push_back(settings_of_one(settings, ""));
+        choices.back().is_whole_name = false;
+        choices.back().random = kRandomBatch;
+    }
+    SplitMix random(settings.seed);
+    const Clock::time_point start = Clock::now();
+    for (std::size_t n = 0; seconds_since(start) < settings.soak_s; ++n) {
+        VerifySettings one = choices[random.next() % choices.size()];
+        if (one.random > 0) one.seed = random.next() % 1'000'000;
+        if (n < settings.done) continue;
+        verify(device, one, {.started = sink.started, .finished = [&](Check check) {
+                                 if (one.lanes != 0) check.verdict.result += fmt::format(", --lanes {}", one.lanes);
+                                 sink.finished(check);
+                             }});
+    }
+}
+
 }  // namespace
 
 const char* outcome_name(Outcome outcome) {
@@ -206,38 +234,6 @@ VerifySettings settings_of_one(VerifySettings settings, const std::string& full_
     settings.soak_s = 0;
     return settings;
 }
-
-namespace {
-
-// Runs random checks with random numbers of lanes for settings.soak_s seconds, without the first settings.done.
-void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
-    std::vector<VerifySettings> choices;
-    std::vector<std::uint32_t> lanes_choices = {1, 4, 8, 16};
-    if (settings.lanes != 0) lanes_choices = {settings.lanes};
-    for (const std::uint32_t lanes : lanes_choices) {
-        VerifySettings all = settings;
-        all.lanes = lanes;
-        for (const std::string& name : check_names(device, all)) choices.push_back(settings_of_one(all, name));
-    }
-    if (settings.only.empty() && settings.skip.empty()) {
-        choices.push_back(settings_of_one(settings, ""));
-        choices.back().is_whole_name = false;
-        choices.back().random = kRandomBatch;
-    }
-    SplitMix random(settings.seed);
-    const Clock::time_point start = Clock::now();
-    for (std::size_t n = 0; seconds_since(start) < settings.soak_s; ++n) {
-        VerifySettings one = choices[random.next() % choices.size()];
-        if (one.random > 0) one.seed = random.next() % 1'000'000;
-        if (n < settings.done) continue;
-        verify(device, one, {.started = sink.started, .finished = [&](Check check) {
-                                 if (one.lanes != 0) check.verdict.result += fmt::format(", --lanes {}", one.lanes);
-                                 sink.finished(check);
-                             }});
-    }
-}
-
-}  // namespace
 
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
     if (settings.soak_s > 0) return verify_at_random(device, settings, sink), std::vector<Check>();
