@@ -63,8 +63,7 @@ double t805_link_ms(std::uint64_t words, std::uint64_t words_back) {
 }
 
 Load load_of(std::vector<std::uint64_t> per_pe) {
-    Load load;
-    load.per_pe = std::move(per_pe);
+    Load load{.per_pe = std::move(per_pe)};
     const auto [lowest, highest] = std::minmax_element(load.per_pe.begin(), load.per_pe.end());
     load.min = *lowest;
     load.max = *highest;
@@ -92,8 +91,7 @@ ModelledTime modelled_time(const MachineClock& clock, std::span<const Load> phas
                            const SmoothingCycles& smoothing) {
     const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
     const Communication& c = communication;
-    ModelledTime time;
-    time.factor = clock.cycle_factor;
+    ModelledTime time{.factor = clock.cycle_factor};
     std::uint64_t cycles = smoothing.filter + smoothing.compare + smoothing.wait;
     for (const Load& load : phases) cycles += load.max;
     time.compute_ms = compute_ms(clock, number(cycles));

@@ -56,12 +56,12 @@ struct BenchRates {
     double best = 0, median = 0;
 };
 
-void members_of(Members& m, const BenchRates& rates) {
+static void members_of(Members& m, const BenchRates& rates) {
     m("best", rates.best, "Rate of the fastest sample, Mrays/s.");
     m("median", rates.median, "Rate of the sample with the median time, Mrays/s.");
 }
 
-void members_of(Members& m, BenchMeasurement& row) {
+static void members_of(Members& m, BenchMeasurement& row) {
     key_members(m, row);
     m("rays", row.rays, "Number of rays of one image.");
     m("mrays_per_s", BenchRates{row.best_rate(), row.median_rate()}, "Millions of rays of all kinds per second.");
@@ -80,7 +80,7 @@ void members_of(Members& m, BenchMeasurement& row) {
     roofline_members(m, row.roofline);
 }
 
-void members_of(Members& m, BenchBuild& build) {
+static void members_of(Members& m, BenchBuild& build) {
     m("kernel", build.kernel, "File of the program in kernels/.");
     m("variant", build.variant, "Variant that uses the program: `none`, `grid`, `bvh` or `torus`.");
     m("format", build.format, kFormatMeaning);
@@ -102,7 +102,7 @@ void members_of(Members& m, const ComparedRow& row) {
       "`as before`, `faster`, `SLOWER`, `OTHER IMAGE: ...`, or which report alone has the row.");
 }
 
-void members_of(Members& m, const BenchComparison& c) {
+static void members_of(Members& m, const BenchComparison& c) {
     m("baseline", c.baseline, "File of the earlier report.");
     m("tolerance_percent", c.tolerance_percent, "Decrease that does not count as slower, percent.");
     m("remarks", c.remarks, "Differences of device, driver or version of raya.");

@@ -216,10 +216,8 @@ std::vector<std::uint64_t> chunk_costs(const CostImage& image, const std::vector
 void assign_chunks(const std::vector<std::uint64_t>& chunks, const DynamicPlan& plan,
                    std::vector<std::uint64_t>& finish) {
     using IdleTime = std::pair<std::uint64_t, std::uint32_t>;  // time at which a PE becomes idle, PE number
-    std::vector<IdleTime> idle_times;
-    idle_times.reserve(finish.size());
-    for (std::uint32_t pe = 0; pe < finish.size(); ++pe) idle_times.emplace_back(finish[pe], pe);
-    std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle(std::greater<>{}, std::move(idle_times));
+    std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle;
+    for (std::uint32_t pe = 0; pe < finish.size(); ++pe) idle.emplace(finish[pe], pe);
     std::uint64_t answered = 0;  // time at which the root has answered the previous request
     for (const std::uint64_t cost : chunks) {
         const auto [time, pe] = idle.top();

@@ -108,7 +108,7 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
 /// plan.chunk pixels; the last chunk may be smaller. The PE that becomes idle first (in a tie, the one with the lowest
 /// number) takes the next chunk: it waits until the root has answered all earlier requests and the PE's own, then
 /// spends the overhead plus the costs of the pixels. If static_fraction is 0, only the image size and the number of PEs
-/// of `static_mapping` are used; if it is 1, the result is that of static_load(). Time: O(pixels + P + chunks log P).
+/// of `static_mapping` are used; if it is 1, the result is that of static_load(). Time: O(pixels + (P + chunks) log P).
 Schedule dynamic_schedule(const CostImage& image, const raya_mapping& static_mapping, const DynamicPlan& plan);
 
 /// Returns a lower bound, in cycles, of the makespan of every distribution of whole pixels over P PEs: max(ceil(total /

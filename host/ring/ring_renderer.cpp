@@ -181,10 +181,8 @@ void RingRenderer::prepare(RingResult& result) {
         empty_costs = CostImage{settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
     if (counters_.size() > 1) result.sum_cost = empty_costs;
     for (PassCounters& counters : counters_) {
-        Phase phase;
-        phase.name = result.phases.empty() ? kTracePass : kSupersamplePass;
-        phase.recorded_cost = empty_costs;
-        result.phases.push_back(std::move(phase));
+        result.phases.push_back(
+            {.name = result.phases.empty() ? kTracePass : kSupersamplePass, .recorded_cost = empty_costs});
         tracer_->clear(counters);
     }
 }

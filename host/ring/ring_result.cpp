@@ -60,11 +60,7 @@ RankPixels pixels_of_rank(const raya_mapping& m, const RingResult& r) {
 // components and reads or writes `colours` colours.
 KernelWork neighbour_work(const std::string& label, std::uint64_t pixels, std::uint64_t operations,
                           std::uint64_t colours) {
-    KernelWork work;
-    work.label = label;
-    work.operations = 3 * operations * pixels;
-    work.bytes = colours * kColourBytes * pixels;
-    return work;
+    return {.label = label, .operations = 3 * operations * pixels, .bytes = colours * kColourBytes * pixels};
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ inline constexpr const char *kTracePass = "trace", *kSupersamplePass = "supersam
 struct Phase {
     std::string name;                          // kTracePass, kSupersamplePass
     EventCounts events{}, rank_events{};       // of all ranks; of this rank
-    Load load;                                 // modelled cycles of each PE, from the PE's counters
+    Load load{};                               // modelled cycles of each PE, from the PE's counters
     std::optional<CostImage> recorded_cost{};  // only with RingSettings::record_costs
     std::vector<std::uint64_t> turn_cycles{};  // of each turn, see PassCounters
 

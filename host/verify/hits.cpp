@@ -44,10 +44,7 @@ CheckRunner hit_runner(Session& session, const HitBuild& build) {
 }
 
 PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
-    JobSettings settings;
-    settings.image = {16, 16};
-    settings.format = format;
-    PackedJob job = pack_job(scene, settings);
+    PackedJob job = pack_job(scene, {.image = {16, 16}, .format = format});
     append_grid(job, accel_partition(job, format, {.kind = AccelKind::kGrid, .divisions = Divisions{6, 5, 4}}));
     return job;
 }

@@ -55,12 +55,6 @@ struct Rendering {
     std::string name() const;
 };
 
-// Returns the mapping's name in names of checks.
-std::string mapping_name(const MappingRule& mapping) {
-    if (mapping == column_mapping()) return "column";
-    return mapping.kind == RAYA_RANDOM ? "random" : mapping_text(mapping);
-}
-
 std::string Rendering::check_kind() const {
     if (split > 1) return fmt::format("{} parts", split);
     if (renderer != kTorus) return std::array{"ring", "grid", "bvh", "packets"}[static_cast<std::size_t>(renderer)];
@@ -70,8 +64,10 @@ std::string Rendering::check_kind() const {
 
 std::string Rendering::name() const {
     std::string text = check_kind();
-    if (renderer != kTorus)
-        text = fmt::format("{} on {}{}", mapping_name(mapping), pes, text == "ring" ? "" : ", " + text);
+    const std::string mapping_name = mapping == column_mapping()   ? "column"
+                                     : mapping.kind == RAYA_RANDOM ? "random"
+                                                                   : mapping_text(mapping);
+    if (renderer != kTorus) text = fmt::format("{} on {}{}", mapping_name, pes, text == "ring" ? "" : ", " + text);
     if (mapping.kind == RAYA_FOLD_BLOCK) text += ", block fold";
     if (work_per_launch) text += ", launches of " + counted(work_per_launch, renderer == kTorus ? "unit" : "test");
     if (pe_bytes) text += fmt::format(", PEs of {} bytes", pe_bytes);
@@ -308,9 +304,6 @@ Rendered render(const KernelChoice& kernels, Session& session, const Rendering& 
 }
 
 Verdict check_rendering(const Verification& v, Session& session, const Rendering& r) {
-    if (r.group_size > v.device().max_group_size)
-        return skipped(fmt::format("needs groups of {} work-items, the device allows {}", r.group_size,
-                                   v.device().max_group_size));
     const StoredImage& stored = stored_image(reference_image_named(r.image));
     const Rendered got = render(v.kernels(r.lanes, r.group_size), session, r);
     Verdict verdict = compare_images(stored.image, got.image);
@@ -359,7 +352,8 @@ void verify_images(Verification& v) {
     };
     for (const Rendering& r : renderings)
         if (v.settings().depth >= r.depth && has_given_lanes(r))
-            v.check("image", r.name(), [&](Session& session) { return check_rendering(v, session, r); });
+            v.check(
+                "image", r.name(), [&](Session& session) { return check_rendering(v, session, r); }, r.group_size);
     if (!v.full()) return;
     for (const Rendering& r : {Rendering{.image = "glass fp32"}, Rendering{.image = "polygons fp32", .renderer = kGrid},
                                Rendering{.image = "polygons fp32", .renderer = kBvh},

@@ -199,9 +199,8 @@ Verdict check_chains(Session& session, const KernelOptions& options, const Kerne
 // Returns true for a few formats that together cover every code path of the number layer: fp32, reduced formats with
 // fewer exponent bits than fp32, reduced formats with 8 exponent bits as in fp32, and both kinds of rounding.
 bool is_representative(const NumberFormat& format) {
-    for (const char* name : {"fp32", "e6m15", "e6m15t", "e5m10", "e8m12", "e8m21t"})
-        if (format == parse_format(name)) return true;
-    return false;
+    const auto names = {"fp32", "e6m15", "e6m15t", "e5m10", "e8m12", "e8m21t"};
+    return std::ranges::find(names, format_name(format)) != names.end();
 }
 
 }  // namespace

@@ -105,21 +105,18 @@ class Supervision {
     double check_seconds() const { return seconds_since(start_); }
 
     void take(const Json& line) {
-        if (find_member(line, "devices")) take_device(line);
+        if (find_member(line, "devices") && devices_ == 0) {  // else already reported by the first process
+            devices_ = json_integer(line.at("devices"));
+            all_ = from_json<DeviceChecks>(line.at("device"));
+            all_.names = json_strings(line.at("names"));
+            if (sink_.device) sink_.device(all_, json_strings(line.at("left_out")), devices_);
+        }
         if (const Json* started = find_member(line, "started")) {
             running_ = Check{json_text(started->at("layer")), json_text(started->at("name")), 0, {}};
             start_ = Clock::now();
         }
         if (const Json* check = find_member(line, "check")) finish(from_json<Check>(*check));
         ended_ = ended_ || find_member(line, "ended");
-    }
-
-    void take_device(const Json& line) {
-        if (devices_ > 0) return;  // already reported by the first process
-        devices_ = json_integer(line.at("devices"));
-        all_ = from_json<DeviceChecks>(line.at("device"));
-        all_.names = json_strings(line.at("names"));
-        if (sink_.device) sink_.device(all_, json_strings(line.at("left_out")), devices_);
     }
 
     void finish(Check check) {

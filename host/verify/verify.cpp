@@ -23,16 +23,8 @@ namespace {
 // Begins the result of a check that an exception other than DeviceError has stopped.
 constexpr const char* kCheckStopped = "the check stopped with an error: ";
 
-constexpr std::pair<const char*, std::string Fault::*> kFaultTexts[] = {
-    {"where", &Fault::where}, {"expected", &Fault::expected}, {"got", &Fault::got}, {"build_options", &Fault::options}};
-
-// A remedy for failures whose result contains one of the texts.
-struct KnownCause {
-    std::vector<const char*> texts;
-    const char* remedy;
-};
-
-const KnownCause kKnownCauses[] = {
+// Texts, and a remedy for failures whose result contains one of them.
+const std::pair<std::vector<const char*>, const char*> kKnownCauses[] = {
     {{"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE", "CL_OUT_OF_", "bad_alloc"},
      "out of memory: end other programs that use this device or this machine, and run verify again"},
     {{"SIGKILL"}, "the system may have run out of memory and ended the process: see dmesg"},
@@ -144,10 +136,9 @@ std::vector<std::string> remedies_of(const Check& check, const VerifySettings& s
         return {"run raya verify without --kernel-dir; if it passes, these kernels are wrong"};
     std::vector<std::string> all;
     if (uses_il()) all.emplace_back("run raya verify without --il; if it passes, the SPIR-V is the cause");
-    for (const KnownCause& cause : kKnownCauses)
-        if (std::ranges::any_of(cause.texts,
-                                [&](const char* text) { return check.verdict.result.find(text) != std::string::npos; }))
-            all.emplace_back(cause.remedy);
+    const auto is_in_result = [&](const char* text) { return check.verdict.result.find(text) != std::string::npos; };
+    for (const auto& [texts, remedy] : kKnownCauses)
+        if (std::ranges::any_of(texts, is_in_result)) all.emplace_back(remedy);
     if (check.layer != "number")
         all.emplace_back("start with the first check that fails: the others rely on what it checks");
     if (settings.lanes != 1) all.emplace_back("run raya verify --lanes 1; if it passes, render with --lanes 1");
@@ -167,7 +158,8 @@ std::string check_lines(const Check& c) {
                                     c.name, c.seconds, c.verdict.result);
     if (c.verdict.outcome != Outcome::kFail) return lines;
     const Fault& f = c.verdict.fault;
-    for (const auto& [name, text] : kFaultTexts) lines += indented(replaced(name, "_", " "), f.*text);
+    lines += indented("where", f.where) + indented("expected", f.expected) + indented("got", f.got) +
+             indented("build options", f.options);
     for (const std::string& remedy : f.remedies) lines += indented(&remedy == &f.remedies.front() ? "try" : "", remedy);
     return lines;
 }
@@ -199,7 +191,7 @@ Verification::Verification(const cl::Device& device, const VerifySettings& setti
 }
 
 void Verification::check(const std::string& layer, const std::string& name,
-                         const std::function<Verdict(Session&)>& body) {
+                         const std::function<Verdict(Session&)>& body, std::uint32_t group_size) {
     const std::string full_name = layer + " " + name;
     if (settings_.is_whole_name ? full_name != settings_.only : !name_matches(full_name, settings_.only)) return;
     if (!settings_.skip.empty() && name_matches(full_name, settings_.skip)) return;
@@ -208,6 +200,9 @@ void Verification::check(const std::string& layer, const std::string& name,
     if (!runs_ || names_.size() <= settings_.done) return;
     if (sink_.started) sink_.started(layer, name);
     checks_.push_back(run_check(layer, name, [&] {
+        if (group_size > info_.max_group_size)
+            return skipped(
+                fmt::format("needs groups of {} work-items, the device allows {}", group_size, info_.max_group_size));
         for (std::uint32_t run = 1;; ++run) {
             Session session(device_);
             Verdict verdict = body(session);

@@ -114,8 +114,10 @@ class Verification {
     const VerifySettings& settings() const { return settings_; }
     bool full() const { return settings_.depth == Depth::kFull; }
 
-    /// Runs one check in a new session, because a failed command may make an OpenCL context unusable.
-    void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
+    /// Runs one check in a new session, because a failed command may make an OpenCL context unusable. Skips it on a
+    /// device that does not allow groups of `group_size` work-items.
+    void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body,
+               std::uint32_t group_size = 1);
 
     /// Returns the sources and options of a renderer's kernels. If `lanes` is 0, the options have settings().lanes.
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const {
