@@ -43,54 +43,6 @@ bool holds_sequences(const py::handle& value) {
     return false;
 }
 
-}  // namespace
-
-void parse_keywords(CLI::App& program, const py::dict& options, const std::string& command) {
-    std::vector<std::string> arguments;
-    if (!command.empty()) arguments.push_back(command);
-    for (const auto& [key, value] : options) {
-        std::string name = py::str(key);
-        while (name.ends_with('_')) name.pop_back();  // from_ sets --from, because `from` is a Python keyword
-        for (char& letter : name)
-            if (letter == '_') letter = '-';
-        const std::string option = "--" + name;
-        if (value.is_none() || value.ptr() == Py_False) continue;
-        if (value.ptr() == Py_True)
-            arguments.push_back(option);
-        else if (name == "light" && holds_sequences(value))
-            for (const py::handle light : value) arguments.push_back(option + '=' + text_of(option, light));
-        else
-            arguments.push_back(option + '=' +
-                                (name == "size" ? replaced(text_of(option, value), ",", "x") : text_of(option, value)));
-    }
-    parse_arguments(program, arguments);
-}
-
-void forbid_new(const py::object& type, const char* remedy) {
-    type.attr("__new__") = py::module_::import("builtins")
-                               .attr("staticmethod")(py::cpp_function(
-                                   [remedy](const py::args&, const py::kwargs&) { throw py::type_error(remedy); }));
-}
-
-py::object python_of(const Json& json) { return py::module_::import("json").attr("loads")(json_dump(json)); }
-
-CostImage cost_image_of(const py::array& cost) {
-    const char type_kind = cost.dtype().kind();
-    if (cost.ndim() != 2 || (type_kind != 'u' && type_kind != 'i'))
-        throw py::value_error("cost: must be an integer array [height, width] of modelled cycles");
-    if (type_kind == 'i' && cost.size() > 0 && cost.attr("min")().cast<std::int64_t>() < 0)
-        throw py::value_error("cost: modelled cycles must not be negative");
-    const py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast> array(cost);
-    CostImage image{static_cast<std::uint32_t>(array.shape(1)), static_cast<std::uint32_t>(array.shape(0)), {}};
-    image.cycles.assign(array.data(), array.data() + array.size());
-    std::uint64_t sum = 0;  // of all PEs
-    for (const std::uint64_t cycles : image.cycles)
-        if (__builtin_add_overflow(sum, cycles, &sum)) throw py::value_error("cost: the sum is 2^64 or more");
-    return image;
-}
-
-namespace {
-
 // Saves Python's signal handlers and restores them in the destructor, because OpenCL drivers replace them (the LLVM in
 // PoCL does).
 class SignalHandlers {
@@ -163,6 +115,50 @@ void check_process() {
 }
 
 }  // namespace
+
+void parse_keywords(CLI::App& program, const py::dict& options, const std::string& command) {
+    std::vector<std::string> arguments;
+    if (!command.empty()) arguments.push_back(command);
+    for (const auto& [key, value] : options) {
+        std::string name = py::str(key);
+        while (name.ends_with('_')) name.pop_back();  // from_ sets --from, because `from` is a Python keyword
+        for (char& letter : name)
+            if (letter == '_') letter = '-';
+        const std::string option = "--" + name;
+        if (value.is_none() || value.ptr() == Py_False) continue;
+        if (value.ptr() == Py_True)
+            arguments.push_back(option);
+        else if (name == "light" && holds_sequences(value))
+            for (const py::handle light : value) arguments.push_back(option + '=' + text_of(option, light));
+        else
+            arguments.push_back(option + '=' +
+                                (name == "size" ? replaced(text_of(option, value), ",", "x") : text_of(option, value)));
+    }
+    parse_arguments(program, arguments);
+}
+
+void forbid_new(const py::object& type, const char* remedy) {
+    type.attr("__new__") = py::module_::import("builtins")
+                               .attr("staticmethod")(py::cpp_function(
+                                   [remedy](const py::args&, const py::kwargs&) { throw py::type_error(remedy); }));
+}
+
+py::object python_of(const Json& json) { return py::module_::import("json").attr("loads")(json_dump(json)); }
+
+CostImage cost_image_of(const py::array& cost) {
+    const char type_kind = cost.dtype().kind();
+    if (cost.ndim() != 2 || (type_kind != 'u' && type_kind != 'i'))
+        throw py::value_error("cost: must be an integer array [height, width] of modelled cycles");
+    if (type_kind == 'i' && cost.size() > 0 && cost.attr("min")().cast<std::int64_t>() < 0)
+        throw py::value_error("cost: modelled cycles must not be negative");
+    const py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast> array(cost);
+    CostImage image{static_cast<std::uint32_t>(array.shape(1)), static_cast<std::uint32_t>(array.shape(0)), {}};
+    image.cycles.assign(array.data(), array.data() + array.size());
+    std::uint64_t sum = 0;  // of all PEs
+    for (const std::uint64_t cycles : image.cycles)
+        if (__builtin_add_overflow(sum, cycles, &sum)) throw py::value_error("cost: the sum is 2^64 or more");
+    return image;
+}
 
 PythonSession::PythonSession(const std::string& device)
     : device_(choose_device_with_stacks(device)), session_(device_) {}

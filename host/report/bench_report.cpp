@@ -49,6 +49,58 @@ void key_members(Members& m, Row& row) {
 
 constexpr const char* kOptionsMeaning = "Options of the kernel compiler.";
 
+using Rows = std::vector<BenchMeasurement>;
+
+const BenchMeasurement* find_row(const Rows& rows, const BenchMeasurement& wanted) {
+    const auto found = std::ranges::find_if(rows, [&](const auto& row) { return key(row) == key(wanted); });
+    return found == rows.end() ? nullptr : &*found;
+}
+
+/// Returns the change of a rate in percent.
+double percent_change(double before, double now) { return 100 * (now / before - 1); }
+
+/// Counts a row of both runs in `comparison`, and sets its verdict.
+void count_row(BenchComparison& comparison, ComparedRow& row, double tolerance) {
+    const double best_change = percent_change(row.before->best_rate(), row.now->best_rate());
+    const double median_change = percent_change(row.before->median_rate(), row.now->median_rate());
+    ++comparison.compared;
+    row.has_failed = true;
+    if (row.now->hash != row.before->hash) {
+        ++comparison.other_images;
+        row.verdict = fmt::format("OTHER IMAGE: {}, was {}", row.now->hash.substr(0, 8), row.before->hash.substr(0, 8));
+    } else if (std::max(best_change, median_change) < -tolerance) {
+        ++comparison.slower;
+        row.verdict = "SLOWER";
+    } else {
+        row.verdict = std::min(best_change, median_change) > tolerance ? "faster" : "as before";
+        row.has_failed = false;
+    }
+}
+
+/// Returns the table's cells of a row: its key, then for both rates this run, the baseline and the change.
+std::vector<std::string> cells_of(const ComparedRow& row) {
+    const BenchMeasurement& key = row.now != nullptr ? *row.now : *row.before;
+    std::vector<std::string> cells = {
+        key.kernel, key.scene, key.size, key.format, std::to_string(key.lanes), std::to_string(key.group_size)};
+    for (const auto rate : {&BenchMeasurement::best_rate, &BenchMeasurement::median_rate}) {
+        for (const BenchMeasurement* run : {row.now, row.before})
+            cells.push_back(run != nullptr ? fmt::format("{:.1f}", (run->*rate)()) : "-");
+        const bool has_both = row.now != nullptr && row.before != nullptr;
+        cells.push_back(has_both ? fmt::format("{:+.1f} %", percent_change((row.before->*rate)(), (row.now->*rate)()))
+                                 : "-");
+    }
+    cells.push_back(row.verdict);
+    return cells;
+}
+
+/// Adds a remark and a warning if the two runs have different texts for `property`.
+void add_difference(BenchComparison& comparison, const char* property, const std::string& before,
+                    const std::string& now) {
+    if (before == now) return;
+    comparison.remarks.push_back(fmt::format("the {} differs from the baseline's: {}, was {}", property, now, before));
+    comparison.text += "warning: " + comparison.remarks.back() + "\n";
+}
+
 }  // namespace
 
 /// Millions of rays of all kinds per second.
@@ -126,62 +178,6 @@ BenchReport read_bench_report(const fs::path& path) {
     const JsonSource source{input_name(path), "make a baseline with: raya bench --report " + path.string()};
     return read_json(json_file_text(path, source), source, report_of);
 }
-
-namespace {
-
-using Rows = std::vector<BenchMeasurement>;
-
-const BenchMeasurement* find_row(const Rows& rows, const BenchMeasurement& wanted) {
-    const auto found = std::ranges::find_if(rows, [&](const auto& row) { return key(row) == key(wanted); });
-    return found == rows.end() ? nullptr : &*found;
-}
-
-/// Returns the change of a rate in percent.
-double percent_change(double before, double now) { return 100 * (now / before - 1); }
-
-/// Counts a row of both runs in `comparison`, and sets its verdict.
-void count_row(BenchComparison& comparison, ComparedRow& row, double tolerance) {
-    const double best_change = percent_change(row.before->best_rate(), row.now->best_rate());
-    const double median_change = percent_change(row.before->median_rate(), row.now->median_rate());
-    ++comparison.compared;
-    row.has_failed = true;
-    if (row.now->hash != row.before->hash) {
-        ++comparison.other_images;
-        row.verdict = fmt::format("OTHER IMAGE: {}, was {}", row.now->hash.substr(0, 8), row.before->hash.substr(0, 8));
-    } else if (std::max(best_change, median_change) < -tolerance) {
-        ++comparison.slower;
-        row.verdict = "SLOWER";
-    } else {
-        row.verdict = std::min(best_change, median_change) > tolerance ? "faster" : "as before";
-        row.has_failed = false;
-    }
-}
-
-/// Returns the table's cells of a row: its key, then for both rates this run, the baseline and the change.
-std::vector<std::string> cells_of(const ComparedRow& row) {
-    const BenchMeasurement& key = row.now != nullptr ? *row.now : *row.before;
-    std::vector<std::string> cells = {
-        key.kernel, key.scene, key.size, key.format, std::to_string(key.lanes), std::to_string(key.group_size)};
-    for (const auto rate : {&BenchMeasurement::best_rate, &BenchMeasurement::median_rate}) {
-        for (const BenchMeasurement* run : {row.now, row.before})
-            cells.push_back(run != nullptr ? fmt::format("{:.1f}", (run->*rate)()) : "-");
-        const bool has_both = row.now != nullptr && row.before != nullptr;
-        cells.push_back(has_both ? fmt::format("{:+.1f} %", percent_change((row.before->*rate)(), (row.now->*rate)()))
-                                 : "-");
-    }
-    cells.push_back(row.verdict);
-    return cells;
-}
-
-/// Adds a remark and a warning if the two runs have different texts for `property`.
-void add_difference(BenchComparison& comparison, const char* property, const std::string& before,
-                    const std::string& now) {
-    if (before == now) return;
-    comparison.remarks.push_back(fmt::format("the {} differs from the baseline's: {}, was {}", property, now, before));
-    comparison.text += "warning: " + comparison.remarks.back() + "\n";
-}
-
-}  // namespace
 
 int rows_in_common(const BenchReport& baseline, const BenchReport& now) {
     return static_cast<int>(

@@ -62,6 +62,72 @@ std::uint64_t moves_of_side(const raya_mapping& mapping, ExchangeMethod method, 
     return rotations;
 }
 
+void check_image(const CostImage& image, std::uint32_t pes) {
+    const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
+    if (pixels == 0 || image.cycles.size() != pixels)
+        throw std::invalid_argument("a cost image must have at least one pixel, and one cost for each pixel");
+    if (pes < 1 || pes > pixels) throw std::invalid_argument("the number of PEs must be 1..W * H");
+}
+
+void check_mapping(const CostImage& image, const raya_mapping& mapping) {
+    check_image(image, mapping.pes);
+    if (mapping.width != image.width || mapping.height != image.height)
+        throw std::invalid_argument("the mapping has another size than the cost image");
+}
+
+/// Adds the cost of each PE's static part to `busy`: the first `fraction` of its pixels, which are not scheduled
+/// dynamically. Returns a flag for each pixel of the image: true if the pixel is in a static part.
+std::vector<bool> add_static_costs(const CostImage& image, const raya_mapping& static_mapping, double fraction,
+                                   std::vector<std::uint64_t>& busy) {
+    std::vector<bool> done(image.cycles.size());
+    if (fraction == 0) return done;
+    for (std::uint32_t pe = 0; pe < static_mapping.pes; ++pe) {
+        const raya_share share = raya_share_of(static_mapping, pe);
+        const auto pixels = static_cast<std::uint32_t>(fraction * raya_share_size(share));
+        for (std::uint32_t k = 0; k < pixels; ++k) {
+            const raya_pixel pixel = raya_pixel_of(static_mapping, share, k);
+            const std::size_t at = std::size_t{pixel.row} * image.width + pixel.column;
+            busy[pe] += image.cycles[at];
+            done[at] = true;
+        }
+    }
+    return done;
+}
+
+/// Divides the pixels that are not done into chunks of `chunk` pixels, and returns the cost of each chunk without
+/// overhead.
+std::vector<std::uint64_t> chunk_costs(const CostImage& image, const std::vector<bool>& done, std::uint32_t chunk) {
+    std::vector<std::uint64_t> chunks;
+    std::uint32_t free_pixels = 0;  // number of pixels that the last chunk can still take
+    for (std::size_t at = 0; at < done.size(); ++at) {
+        if (done[at]) continue;
+        if (free_pixels == 0) {
+            chunks.push_back(0);
+            free_pixels = chunk;
+        }
+        chunks.back() += image.cycles[at];
+        --free_pixels;
+    }
+    return chunks;
+}
+
+/// Assigns each chunk to the PE that becomes idle first. The root answers one request after another. `finish`:
+/// finishing time of each PE, in and out.
+void assign_chunks(const std::vector<std::uint64_t>& chunks, const DynamicPlan& plan,
+                   std::vector<std::uint64_t>& finish) {
+    using IdleTime = std::pair<std::uint64_t, std::uint32_t>;  // time at which a PE becomes idle, PE number
+    std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle;
+    for (std::uint32_t pe = 0; pe < finish.size(); ++pe) idle.emplace(finish[pe], pe);
+    std::uint64_t answered = 0;  // time at which the root has answered the previous request
+    for (const std::uint64_t cost : chunks) {
+        const auto [time, pe] = idle.top();
+        idle.pop();
+        answered = std::max(answered, time) + plan.root_cycles;
+        finish[pe] = (plan.root_cycles > 0 ? answered : time) + plan.overhead + cost;
+        idle.emplace(finish[pe], pe);
+    }
+}
+
 }  // namespace
 
 raya_mapping make_mapping(const MappingRule& rule, const ImageSize& image, std::uint32_t pes) {
@@ -159,76 +225,6 @@ MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, 
 std::uint64_t sum_of(std::span<const std::uint64_t> numbers) {
     return std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
 }
-
-namespace {
-
-void check_image(const CostImage& image, std::uint32_t pes) {
-    const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
-    if (pixels == 0 || image.cycles.size() != pixels)
-        throw std::invalid_argument("a cost image must have at least one pixel, and one cost for each pixel");
-    if (pes < 1 || pes > pixels) throw std::invalid_argument("the number of PEs must be 1..W * H");
-}
-
-void check_mapping(const CostImage& image, const raya_mapping& mapping) {
-    check_image(image, mapping.pes);
-    if (mapping.width != image.width || mapping.height != image.height)
-        throw std::invalid_argument("the mapping has another size than the cost image");
-}
-
-/// Adds the cost of each PE's static part to `busy`: the first `fraction` of its pixels, which are not scheduled
-/// dynamically. Returns a flag for each pixel of the image: true if the pixel is in a static part.
-std::vector<bool> add_static_costs(const CostImage& image, const raya_mapping& static_mapping, double fraction,
-                                   std::vector<std::uint64_t>& busy) {
-    std::vector<bool> done(image.cycles.size());
-    if (fraction == 0) return done;
-    for (std::uint32_t pe = 0; pe < static_mapping.pes; ++pe) {
-        const raya_share share = raya_share_of(static_mapping, pe);
-        const auto pixels = static_cast<std::uint32_t>(fraction * raya_share_size(share));
-        for (std::uint32_t k = 0; k < pixels; ++k) {
-            const raya_pixel pixel = raya_pixel_of(static_mapping, share, k);
-            const std::size_t at = std::size_t{pixel.row} * image.width + pixel.column;
-            busy[pe] += image.cycles[at];
-            done[at] = true;
-        }
-    }
-    return done;
-}
-
-/// Divides the pixels that are not done into chunks of `chunk` pixels, and returns the cost of each chunk without
-/// overhead.
-std::vector<std::uint64_t> chunk_costs(const CostImage& image, const std::vector<bool>& done, std::uint32_t chunk) {
-    std::vector<std::uint64_t> chunks;
-    std::uint32_t free_pixels = 0;  // number of pixels that the last chunk can still take
-    for (std::size_t at = 0; at < done.size(); ++at) {
-        if (done[at]) continue;
-        if (free_pixels == 0) {
-            chunks.push_back(0);
-            free_pixels = chunk;
-        }
-        chunks.back() += image.cycles[at];
-        --free_pixels;
-    }
-    return chunks;
-}
-
-/// Assigns each chunk to the PE that becomes idle first. The root answers one request after another. `finish`:
-/// finishing time of each PE, in and out.
-void assign_chunks(const std::vector<std::uint64_t>& chunks, const DynamicPlan& plan,
-                   std::vector<std::uint64_t>& finish) {
-    using IdleTime = std::pair<std::uint64_t, std::uint32_t>;  // time at which a PE becomes idle, PE number
-    std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle;
-    for (std::uint32_t pe = 0; pe < finish.size(); ++pe) idle.emplace(finish[pe], pe);
-    std::uint64_t answered = 0;  // time at which the root has answered the previous request
-    for (const std::uint64_t cost : chunks) {
-        const auto [time, pe] = idle.top();
-        idle.pop();
-        answered = std::max(answered, time) + plan.root_cycles;
-        finish[pe] = (plan.root_cycles > 0 ? answered : time) + plan.overhead + cost;
-        idle.emplace(finish[pe], pe);
-    }
-}
-
-}  // namespace
 
 std::string dynamic_text(const DynamicPlan& plan) {
     const std::string root = plan.root_cycles > 0 ? fmt::format(",{}", plan.root_cycles) : "";

@@ -236,49 +236,6 @@ void add_smoothing(RingTimeline& timeline, const RingSettings& s, const RingResu
     }
 }
 
-}  // namespace
-
-void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes) {
-    const Communication& c = result.communication;
-    if (pes == 0) {
-        trace.metadata()["machine"] = "left out: the number of PEs to trace is 0";
-        return;
-    }
-    const ModelledTime time = ring_time(settings, result);
-    RingTimeline timeline(trace, settings.machine, traced_pes(result.load.per_pe, pes));
-    timeline.add_common_phase("broadcast", time.objects_ms, {{"words", c.broadcast_words}});
-    const bool smoothed = settings.antialias.method != AntialiasMethod::kNone;
-    constexpr std::uint64_t kMaxShown = 4096;  // rotations that are slices of their own
-    const MachineClock& clock = settings.machine.clock;
-    const auto rotations_of = [&](const Phase& phase) { return phase.turn_cycles.size() * (result.parts - 1); };
-    const auto rotation_ms = [&](const Phase& phase) {  // of the parts, without a set-up
-        const auto words = static_cast<double>(rotations_of(phase) * result.pe_memory.part_words);
-        return rotations_of(phase) ? exchange_ms(clock, rotations_of(phase), words) - clock.setup_ms : 0;
-    };
-    double other_ms = time.communication_ms;
-    for (const Phase& phase : result.phases) other_ms -= rotation_ms(phase);
-    const auto add_tracing = [&](const Phase& phase, double setup_ms) {
-        timeline.add_tracing_phase(phase);
-        if (rotations_of(phase))
-            timeline.add_common_phase("rotate parts", setup_ms + rotation_ms(phase),
-                                      {{"rotations", rotations_of(phase)}},
-                                      rotations_of(phase) <= kMaxShown ? rotations_of(phase) : 1);
-    };
-    add_tracing(result.phases[0], smoothed ? 0 : other_ms);
-    if (smoothed) add_smoothing(timeline, settings, result, other_ms);
-    if (result.phases.size() > 1) add_tracing(result.phases[1], 0);
-    timeline.add_common_phase("gather", time.image_ms, {{"words", c.gather_words}});
-    if (time.display_ms > 0) timeline.add_common_phase("display", time.display_ms, Json::object());
-    trace.metadata()["machine"] = {{"name", settings.machine.name},
-                                   {"modelled_ms", time.total_ms},
-                                   {"pes", settings.mapping.pes},
-                                   {"note",
-                                    "modelled time, from time 0 of the trace; independent of the measured times "
-                                    "above"}};
-}
-
-namespace {
-
 double recomputed_share(const RingResult& result) {
     return static_cast<double>(result.recomputed) / (1.0 * result.image.width * result.image.height);
 }
@@ -418,6 +375,45 @@ std::string accel_line(const RingResult& r, bool all_counted) {
 }
 
 }  // namespace
+
+void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes) {
+    const Communication& c = result.communication;
+    if (pes == 0) {
+        trace.metadata()["machine"] = "left out: the number of PEs to trace is 0";
+        return;
+    }
+    const ModelledTime time = ring_time(settings, result);
+    RingTimeline timeline(trace, settings.machine, traced_pes(result.load.per_pe, pes));
+    timeline.add_common_phase("broadcast", time.objects_ms, {{"words", c.broadcast_words}});
+    const bool smoothed = settings.antialias.method != AntialiasMethod::kNone;
+    constexpr std::uint64_t kMaxShown = 4096;  // rotations that are slices of their own
+    const MachineClock& clock = settings.machine.clock;
+    const auto rotations_of = [&](const Phase& phase) { return phase.turn_cycles.size() * (result.parts - 1); };
+    const auto rotation_ms = [&](const Phase& phase) {  // of the parts, without a set-up
+        const auto words = static_cast<double>(rotations_of(phase) * result.pe_memory.part_words);
+        return rotations_of(phase) ? exchange_ms(clock, rotations_of(phase), words) - clock.setup_ms : 0;
+    };
+    double other_ms = time.communication_ms;
+    for (const Phase& phase : result.phases) other_ms -= rotation_ms(phase);
+    const auto add_tracing = [&](const Phase& phase, double setup_ms) {
+        timeline.add_tracing_phase(phase);
+        if (rotations_of(phase))
+            timeline.add_common_phase("rotate parts", setup_ms + rotation_ms(phase),
+                                      {{"rotations", rotations_of(phase)}},
+                                      rotations_of(phase) <= kMaxShown ? rotations_of(phase) : 1);
+    };
+    add_tracing(result.phases[0], smoothed ? 0 : other_ms);
+    if (smoothed) add_smoothing(timeline, settings, result, other_ms);
+    if (result.phases.size() > 1) add_tracing(result.phases[1], 0);
+    timeline.add_common_phase("gather", time.image_ms, {{"words", c.gather_words}});
+    if (time.display_ms > 0) timeline.add_common_phase("display", time.display_ms, Json::object());
+    trace.metadata()["machine"] = {{"name", settings.machine.name},
+                                   {"modelled_ms", time.total_ms},
+                                   {"pes", settings.mapping.pes},
+                                   {"note",
+                                    "modelled time, from time 0 of the trace; independent of the measured times "
+                                    "above"}};
+}
 
 MachineReport ring_report(const RingSettings& settings, const RingResult& result) {
     const ModelledTime time = ring_time(settings, result);

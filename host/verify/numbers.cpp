@@ -43,6 +43,78 @@ Fault fault_of(const NumberFormat& format, std::size_t operation, const NumberRo
             .got = number_text(got)};
 }
 
+// Launches the kernel once with the rows of all operations. The kernel computes every operation for every row; each
+// operation is compared only in its own rows.
+Verdict check_answers(Session& session, const NumberBuild& build, const FormatAnswers& answers) {
+    NumberRows rows;
+    std::vector<ExpectedNumbers> expected;
+    for (std::size_t k = 0; k < answers.operations.size(); ++k) {
+        expected.push_back({.operation = k, .first_row = rows.count()});
+        for (const KnownAnswer& answer : answers.operations[k]) {
+            const auto operand = [&](std::size_t i) { return std::bit_cast<float>(answer.operands[i]); };
+            rows.add(operand(0), operand(1), operand(2));
+            expected.back().results.push_back(answer.result);
+            expected.back().flushed.push_back(answer.flushed);
+        }
+    }
+    rows.pad();
+    return check_numbers(session, build, rows, expected);
+}
+
+void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t lanes, bool trusted,
+                   bool optimised = true) {
+    const NumberBuild build{.format = answers.format,
+                            .lanes = lanes,
+                            .trusted = trusted,
+                            .imprecise = !trusted && v.device().correctly_rounded_divide_sqrt,
+                            .optimised = optimised,
+                            .sources = v.settings().sources};
+    v.check("number", build.name(), [&](Session& session) { return check_answers(session, build, answers); });
+}
+
+// Returns the result of one work-item and lane of kernels/number/operations.cl in fp32.
+float result_of_chains(std::size_t kind, std::uint32_t rounds, float x) {
+    float sum = 0;
+    for (int k = 0; k < RAYA_CHAINS; ++k) {
+        float a = x + static_cast<float>(k);
+        for (std::uint32_t i = 0; i < rounds; ++i) {
+            const std::array<float, kOperations.size()> next = {x - a, a * x, std::fma(a, x * 0.5F, x), x / a,
+                                                                std::sqrt(a)};
+            a = next[kind];
+        }
+        sum += a;
+    }
+    return sum;
+}
+
+// Checks the results of the kernel that measures rates of operations.
+Verdict check_chains(Session& session, const KernelOptions& options, const KernelSources& sources) {
+    constexpr std::uint32_t kGroups = 3, kRounds = 5;
+    constexpr float kStart = 1.25F;
+    CheckRunner runner(session, Kernels(session, options, sources).program("number/operations.cl"));
+    for (std::size_t kind = 0; kind < kOperations.size(); ++kind) {
+        auto results = runner.constant("results", kGroups * options.lanes, -1.0F);
+        runner.run<cl_uint, cl_uint, float, Buffer<float>&>("operations", kGroups, 1, static_cast<cl_uint>(kind),
+                                                            kRounds, kStart, results);
+        const float expected = result_of_chains(kind, kRounds, kStart);
+        for (const float got : runner.read(results))
+            if (got != expected)
+                return failed(fmt::format("a chain of {} is wrong", kOperations[kind]),
+                              {.where = fmt::format("{} from {}, {} times", kOperations[kind], kStart, kRounds),
+                               .expected = fmt::format("{:.9g}", expected),
+                               .got = fmt::format("{:.9g}", got),
+                               .options = runner.options()});
+    }
+    return passed(fmt::format("{} operations", kOperations.size()));
+}
+
+// Returns true for a few formats that together cover every code path of the number layer: fp32, reduced formats with
+// fewer exponent bits than fp32, reduced formats with 8 exponent bits as in fp32, and both kinds of rounding.
+bool is_representative(const NumberFormat& format) {
+    const auto names = {"fp32", "e6m15", "e6m15t", "e5m10", "e8m12", "e8m21t"};
+    return std::ranges::find(names, format_name(format)) != names.end();
+}
+
 }  // namespace
 
 void NumberRows::add(float x, float y, float z) {
@@ -129,81 +201,6 @@ Verdict check_numbers(Session& session, const NumberBuild& build, const NumberRo
 }
 
 // --- Checks of layer "number": compare all operations in all formats with the known answers
-namespace {
-
-// Launches the kernel once with the rows of all operations. The kernel computes every operation for every row; each
-// operation is compared only in its own rows.
-Verdict check_answers(Session& session, const NumberBuild& build, const FormatAnswers& answers) {
-    NumberRows rows;
-    std::vector<ExpectedNumbers> expected;
-    for (std::size_t k = 0; k < answers.operations.size(); ++k) {
-        expected.push_back({.operation = k, .first_row = rows.count()});
-        for (const KnownAnswer& answer : answers.operations[k]) {
-            const auto operand = [&](std::size_t i) { return std::bit_cast<float>(answer.operands[i]); };
-            rows.add(operand(0), operand(1), operand(2));
-            expected.back().results.push_back(answer.result);
-            expected.back().flushed.push_back(answer.flushed);
-        }
-    }
-    rows.pad();
-    return check_numbers(session, build, rows, expected);
-}
-
-void verify_format(Verification& v, const FormatAnswers& answers, std::uint32_t lanes, bool trusted,
-                   bool optimised = true) {
-    const NumberBuild build{.format = answers.format,
-                            .lanes = lanes,
-                            .trusted = trusted,
-                            .imprecise = !trusted && v.device().correctly_rounded_divide_sqrt,
-                            .optimised = optimised,
-                            .sources = v.settings().sources};
-    v.check("number", build.name(), [&](Session& session) { return check_answers(session, build, answers); });
-}
-
-// Returns the result of one work-item and lane of kernels/number/operations.cl in fp32.
-float result_of_chains(std::size_t kind, std::uint32_t rounds, float x) {
-    float sum = 0;
-    for (int k = 0; k < RAYA_CHAINS; ++k) {
-        float a = x + static_cast<float>(k);
-        for (std::uint32_t i = 0; i < rounds; ++i) {
-            const std::array<float, kOperations.size()> next = {x - a, a * x, std::fma(a, x * 0.5F, x), x / a,
-                                                                std::sqrt(a)};
-            a = next[kind];
-        }
-        sum += a;
-    }
-    return sum;
-}
-
-// Checks the results of the kernel that measures rates of operations.
-Verdict check_chains(Session& session, const KernelOptions& options, const KernelSources& sources) {
-    constexpr std::uint32_t kGroups = 3, kRounds = 5;
-    constexpr float kStart = 1.25F;
-    CheckRunner runner(session, Kernels(session, options, sources).program("number/operations.cl"));
-    for (std::size_t kind = 0; kind < kOperations.size(); ++kind) {
-        auto results = runner.constant("results", kGroups * options.lanes, -1.0F);
-        runner.run<cl_uint, cl_uint, float, Buffer<float>&>("operations", kGroups, 1, static_cast<cl_uint>(kind),
-                                                            kRounds, kStart, results);
-        const float expected = result_of_chains(kind, kRounds, kStart);
-        for (const float got : runner.read(results))
-            if (got != expected)
-                return failed(fmt::format("a chain of {} is wrong", kOperations[kind]),
-                              {.where = fmt::format("{} from {}, {} times", kOperations[kind], kStart, kRounds),
-                               .expected = fmt::format("{:.9g}", expected),
-                               .got = fmt::format("{:.9g}", got),
-                               .options = runner.options()});
-    }
-    return passed(fmt::format("{} operations", kOperations.size()));
-}
-
-// Returns true for a few formats that together cover every code path of the number layer: fp32, reduced formats with
-// fewer exponent bits than fp32, reduced formats with 8 exponent bits as in fp32, and both kinds of rounding.
-bool is_representative(const NumberFormat& format) {
-    const auto names = {"fp32", "e6m15", "e6m15t", "e5m10", "e8m12", "e8m21t"};
-    return std::ranges::find(names, format_name(format)) != names.end();
-}
-
-}  // namespace
 
 void verify_numbers(Verification& v) {
     for (const FormatAnswers& answers : known_answers()) {
