@@ -1,5 +1,5 @@
 // Observers of program builds and kernel launches, and one of them: the capture of a build or launch as files, from
-// which a self-contained test case is made (host/verify/reproduce.hpp).
+// which a self-contained test case is made (host/verify/reproduce.cpp).
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -15,7 +15,6 @@
 #include "host/cli/page.hpp"
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
-#include "host/verify/reproduce.hpp"
 #include "host/verify/supervisor.hpp"
 
 namespace raya {

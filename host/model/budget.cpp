@@ -1,5 +1,8 @@
 #include "host/model/budget.hpp"
 
+#include <algorithm>
+#include <ranges>
+
 namespace raya {
 namespace {
 
@@ -187,12 +190,7 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
     {.event = RAYA_RESUMED, .moves = 3 + 3 + 2 + 2, .branches = 2},
 }};
 
-constexpr bool budgets_in_order() {
-    for (std::size_t i = 0; i < kBudgets.size(); ++i)
-        if (kBudgets[i].event != static_cast<int>(i)) return false;
-    return true;
-}
-static_assert(budgets_in_order());
+static_assert(std::ranges::equal(kBudgets, std::views::iota(0, int{RAYA_EVENTS}), {}, &Budget::event));
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <ranges>
 
 #include "host/model/budget.hpp"
 #include "host/model/t805.hpp"
@@ -31,8 +32,27 @@ std::string memory_text(const std::optional<std::uint64_t>& bytes) {
 /// Sources of a machine's numbers, by the name of the number.
 using Sources = std::map<std::string, std::string>;
 
-/// Returns the facts of a ring machine. `sources` has one for each.
-std::vector<Fact> ring_facts(const Machine& m, const std::string& mapping, const Sources& sources) {
+Sources spa_sources() {
+    return {{"PEs", "[P] 256 DSPs"},
+            {"memory of a PE", "[P]"},
+            {"reflections and refractions", "[P]"},
+            {"number format", "[P] 22 bits; [?] their division into 1 sign, 6 exponent and 15 fraction bits"},
+            {"mapping of pixels", "[P] the offset with the smallest imbalance"},
+            {"cycle of a PE", "[P] 100 ns, 20 MFLOPS: one multiply-accumulate a cycle"},
+            {"cycles per budget cycle",
+             "[D] Tables 3 and 4: the filter's arithmetic takes 7 ms (9 - 2 and 19 - 12); its budget is 1.0752 ms"},
+            {"link to a neighbour", "[P] DMA; [?] the bus between PEs has the same rate"},
+            {"synchronisation of a rotation", "[D] Table 4: 34 rotations of 768 words take 10 ms longer than 2"},
+            {"set-up of a transfer",
+             "[D] Table 4: 2 ms minus the time of 2 rotations; [?] a broadcast or gather takes the same"},
+            {"broadcast by the host", "[?] as the gather"},
+            {"gather of the image", "[D] Table 2: 140 ms for 256 x 256 pixels of 3 words"},
+            {"display", "[P] Table 2: 1,130 ms for 256 x 256 pixels"}};
+}
+
+/// Returns the facts of a ring machine. Numbers that are not in `sources` have the source of the SPA's.
+std::vector<Fact> ring_facts(const Machine& m, const std::string& mapping, Sources sources = {}) {
+    sources.merge(spa_sources());
     const MachineClock& c = m.clock;
     std::vector<Fact> facts = {{"PEs", m.pes ? fmt::format("{}", *m.pes) : "one per image column", ""},
                                {"memory of a PE", memory_text(m.pe_memory_bytes), ""},
@@ -67,24 +87,6 @@ MachineClock spa_clock() {
     return clock;
 }
 
-Sources spa_sources() {
-    return {{"PEs", "[P] 256 DSPs"},
-            {"memory of a PE", "[P]"},
-            {"reflections and refractions", "[P]"},
-            {"number format", "[P] 22 bits; [?] their division into 1 sign, 6 exponent and 15 fraction bits"},
-            {"mapping of pixels", "[P] the offset with the smallest imbalance"},
-            {"cycle of a PE", "[P] 100 ns, 20 MFLOPS: one multiply-accumulate a cycle"},
-            {"cycles per budget cycle",
-             "[D] Tables 3 and 4: the filter's arithmetic takes 7 ms (9 - 2 and 19 - 12); its budget is 1.0752 ms"},
-            {"link to a neighbour", "[P] DMA; [?] the bus between PEs has the same rate"},
-            {"synchronisation of a rotation", "[D] Table 4: 34 rotations of 768 words take 10 ms longer than 2"},
-            {"set-up of a transfer",
-             "[D] Table 4: 2 ms minus the time of 2 rotations; [?] a broadcast or gather takes the same"},
-            {"broadcast by the host", "[?] as the gather"},
-            {"gather of the image", "[D] Table 2: 140 ms for 256 x 256 pixels of 3 words"},
-            {"display", "[P] Table 2: 1,130 ms for 256 x 256 pixels"}};
-}
-
 Machine spa() {
     Machine machine = {.name = "spa",
                        .title = "the SPA",
@@ -95,7 +97,7 @@ Machine spa() {
                        .format = {6, 15, false},
                        .mapping = cyclic_mapping(16),
                        .clock = spa_clock()};
-    machine.facts = ring_facts(machine, "cyclic, offset 16", spa_sources());
+    machine.facts = ring_facts(machine, "cyclic, offset 16");
     return machine;
 }
 
@@ -107,9 +109,9 @@ Machine grande() {
     machine.pe_memory_bytes = {};
     machine.format = {};
     machine.accel = {AccelKind::kBvh};
-    Sources sources = spa_sources();
-    for (const char* what : {"PEs", "memory of a PE", "number format"}) sources[what] = "[?] no machine of the papers";
-    machine.facts = ring_facts(machine, "cyclic, offset 16", sources);
+    const std::string source = "[?] no machine of the papers";
+    machine.facts = ring_facts(machine, "cyclic, offset 16",
+                               {{"PEs", source}, {"memory of a PE", source}, {"number format", source}});
     return machine;
 }
 
@@ -120,10 +122,8 @@ Machine spa1() {
     machine.title = "the SPA with one DSP";
     machine.pes = 1;
     machine.mapping = cyclic_mapping(0);  // no effect with one PE
-    Sources sources = spa_sources();
-    sources["PEs"] = "[P] Table 2";
-    sources["mapping of pixels"] = "no effect with one PE";
-    machine.facts = ring_facts(machine, "cyclic, offset 0", sources);
+    machine.facts = ring_facts(machine, "cyclic, offset 0",
+                               {{"PEs", "[P] Table 2"}, {"mapping of pixels", "no effect with one PE"}});
     return machine;
 }
 
@@ -217,15 +217,12 @@ Machine links() {
 
 // Yoshitani & Yamazaki, about 1995. The cycles of nodes and links are in model/t805.hpp.
 Machine torus() {
-    Machine machine;
-    machine.name = "torus";
-    machine.title = "the torus of transputers";
-    machine.kind = MachineKind::kTorus;
-    machine.topology = "torus3d";
-    machine.pes = 64;
-    machine.pe_memory_bytes = 4 * 1024 * 1024;
-    machine.bounces = 8;
-    machine.format = {};
+    Machine machine = {.name = "torus",
+                       .title = "the torus of transputers",
+                       .topology = "torus3d",
+                       .kind = MachineKind::kTorus,
+                       .pes = 64,
+                       .pe_memory_bytes = 4 * 1024 * 1024};
     machine.facts = {
         {"nodes", "64 = 4 x 4 x 4", "[P] T805s, one voxel each"},
         {"memory of a node", memory_text(machine.pe_memory_bytes), "[?] a T805 board"},
@@ -262,16 +259,15 @@ const std::vector<Machine>& machines() {
 
 const Machine& machine_named(std::string_view name) {
     const auto& all = machines();
-    const auto found = std::find_if(all.begin(), all.end(), [&](const Machine& m) { return m.name == name; });
+    const auto found = std::ranges::find(all, name, &Machine::name);
     if (found != all.end()) return *found;
-    std::vector<std::string> names;
-    for (const Machine& m : all) names.push_back(m.name);
-    throw UserError(fmt::format("--machine {}: no such machine; available: {}", name, fmt::join(names, ", ")));
+    throw UserError(fmt::format("--machine {}: no such machine; available: {}", name,
+                                fmt::join(all | std::views::transform(&Machine::name), ", ")));
 }
 
 std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events() {
     std::array<std::uint32_t, RAYA_EVENTS> cycles{};
-    for (std::size_t event = 0; event < cycles.size(); ++event) cycles[event] = cycles_of(budgets()[event]);
+    std::ranges::transform(budgets(), cycles.begin(), cycles_of);
     return cycles;
 }
 

@@ -12,6 +12,8 @@
 namespace raya {
 namespace {
 
+constexpr std::uint64_t kKb = 1024;
+
 // Rounds to `bits` fraction bits, ties to even; truncates if `truncates`. A carry out of the fraction gives the next
 // power of two, or infinity. The result for denormal doubles does not matter: they are below the range of every format.
 double with_fraction_bits(double value, int bits, bool truncates) {
@@ -60,12 +62,6 @@ float round_to_format(double value, const NumberFormat& format) {
     if (std::abs(rounded) < smallest_number(format)) return static_cast<float>(std::copysign(0.0, value));
     return static_cast<float>(rounded);
 }
-
-namespace {
-
-constexpr std::uint64_t kKb = 1024;
-
-}  // namespace
 
 std::string counted(std::uint64_t count, const std::string& singular, const std::string& plural) {
     return fmt::format("{} {}", count, count == 1 ? singular : plural.empty() ? singular + 's' : plural);

@@ -18,6 +18,15 @@ std::uint32_t t805_cycles_of(const Budget& budget, const PacketCharge& packets) 
            kT805StoreCycles * packets.words_of(budget.creates) + kT805BranchCycles * budget.branches;
 }
 
+double milliseconds(double words, double words_per_s) { return 1e3 * words / words_per_s; }
+
+// Returns the time of all broadcasts or all gathers, with one set-up, however many parts they have: Table 2 prints the
+// same 140 ms for 256 PEs and for one PE, which sends its pixels in parts.
+double host_ms(const MachineClock& clock, std::uint64_t words, double words_per_s) {
+    if (words == 0 || std::isinf(words_per_s)) return 0;
+    return clock.setup_ms + milliseconds(static_cast<double>(words), words_per_s);
+}
+
 }  // namespace
 
 std::uint32_t PacketCharge::words_of(CreatedPacket packet) const {
@@ -53,22 +62,8 @@ double t805_link_ms(std::uint64_t words, std::uint64_t words_back) {
             static_cast<double>(more - less) / kT805OneWayBytesPerS);
 }
 
-namespace {
-
-double milliseconds(double words, double words_per_s) { return 1e3 * words / words_per_s; }
-
-// Returns the time of all broadcasts or all gathers, with one set-up, however many parts they have: Table 2 prints the
-// same 140 ms for 256 PEs and for one PE, which sends its pixels in parts.
-double host_ms(const MachineClock& clock, std::uint64_t words, double words_per_s) {
-    if (words == 0 || std::isinf(words_per_s)) return 0;
-    return clock.setup_ms + milliseconds(static_cast<double>(words), words_per_s);
-}
-
-}  // namespace
-
 Load load_of(std::vector<std::uint64_t> per_pe) {
-    Load load;
-    load.per_pe = std::move(per_pe);
+    Load load{.per_pe = std::move(per_pe)};
     const auto [lowest, highest] = std::minmax_element(load.per_pe.begin(), load.per_pe.end());
     load.min = *lowest;
     load.max = *highest;
@@ -96,8 +91,7 @@ ModelledTime modelled_time(const MachineClock& clock, std::span<const Load> phas
                            const SmoothingCycles& smoothing) {
     const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
     const Communication& c = communication;
-    ModelledTime time;
-    time.factor = clock.cycle_factor;
+    ModelledTime time{.factor = clock.cycle_factor};
     std::uint64_t cycles = smoothing.filter + smoothing.compare + smoothing.wait;
     for (const Load& load : phases) cycles += load.max;
     time.compute_ms = compute_ms(clock, number(cycles));

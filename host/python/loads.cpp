@@ -107,11 +107,7 @@ py::dict schedule(const py::array& costs, const std::string& plan, const py::kwa
 // offset p > 0, successive rows miss different pairs; for p = 0, all rows miss the same pair.
 std::uint64_t neighbour_rotations(raya_mapping mapping) {
     if (raya_has_slots(mapping) && mapping.pes <= mapping.width) mapping.height = std::min(mapping.height, 2u);
-    std::uint64_t rotations = 0;
-    for (raya_u32 side = 0; side < RAYA_SIDES; ++side)
-        for (const Leg& leg : shortest_route(mapping.pes, neighbour_distances(mapping, side)))
-            rotations += leg.rotations();
-    return rotations;
+    return sum_of(exchange_moves(mapping, ExchangeMethod::kRing, false));
 }
 
 // Computes modelled times of the SPA for every offset of the cyclic mapping: the time of the busiest PE in each pass,
@@ -126,7 +122,7 @@ py::dict offset_times(const py::array& trace, std::uint32_t pes, const std::stri
     std::iota(offsets.begin(), offsets.end(), 0u);
     const std::vector<double> u = imbalance_of_offsets(trace_cost, pes, RAYA_FOLD_CYCLIC, offsets);
     const auto busiest_ms = [&](const CostImage& cost, const std::vector<double>& imbalance) {
-        const double mean = static_cast<double>(total_cycles(cost)) / pes;
+        const double mean = static_cast<double>(sum_of(cost.cycles)) / pes;
         std::vector<double> ms;
         for (const double offset_imbalance : imbalance) ms.push_back(compute_ms(clock, mean * (1 + offset_imbalance)));
         return ms;
@@ -185,13 +181,6 @@ py::array link_ends(const std::array<std::uint32_t, 3>& nodes) {
     return array;
 }
 
-// Returns (number, value, source) of each number of a machine.
-py::list facts_of(const Machine& machine) {
-    py::list facts;
-    for (const Fact& fact : machine.facts) facts.append(py::make_tuple(fact.what, fact.value, fact.source));
-    return facts;
-}
-
 py::list all_machines() {
     py::list dicts;
     for (const Machine& machine : machines()) {
@@ -202,7 +191,9 @@ py::list all_machines() {
         fields["pe_memory_bytes"] = machine.pe_memory_bytes;
         fields["bounces"] = machine.bounces;
         fields["format"] = format_name(machine.format);
-        fields["facts"] = facts_of(machine);
+        py::list facts;
+        for (const Fact& fact : machine.facts) facts.append(py::make_tuple(fact.what, fact.value, fact.source));
+        fields["facts"] = facts;
         if (machine.kind == MachineKind::kRing) {
             const MachineClock& clock = machine.clock;
             fields["cycle_ns"] = clock.cycle_ns;

@@ -154,11 +154,6 @@ void add_scenes(py::module_& module) {
     add_generators(module);
 }
 
-}  // namespace
-}  // namespace raya
-
-namespace {
-
 // Returns the path of this shared object. raya searches for its shared libraries in the folder of this file, not in the
 // folder of the Python interpreter.
 std::filesystem::path this_module_file() {
@@ -168,6 +163,7 @@ std::filesystem::path this_module_file() {
 }
 
 }  // namespace
+}  // namespace raya
 
 PYBIND11_MODULE(_engine, module) {
     using namespace raya;

@@ -77,11 +77,7 @@ py::dict root_times(const Result& r) {
     return times;
 }
 
-double work_ms(const Result& r) {
-    std::uint64_t sum = 0;
-    for (const std::uint64_t load : torus_of(*r, "work_ms").load.per_pe) sum += load;
-    return t805_ms(sum);
-}
+double work_ms(const Result& r) { return t805_ms(sum_of(torus_of(*r, "work_ms").load.per_pe)); }
 
 py::dict node_memory(const Result& r) {
     const TorusResult& result = torus_of(*r, "node_memory");
@@ -189,8 +185,6 @@ void add_torus_results(py::module_& module, ResultClass& result) {
              "(docs/architecture.md). Takes the keyword arguments of simulate(). Returns the number of messages.");
 }
 
-const Load& load_of(const Render& r) { return r.report.load; }
-
 const RingResult& ring_of(const Render& r, const char* property) {
     if (!r.ring) throw py::value_error(fmt::format("{}: only for ring machines; this render used a torus", property));
     return *r.ring;
@@ -264,7 +258,7 @@ py::object report_of(const py::object& self) {
 std::string repr_text(const Result& r) {
     return fmt::format("<raya.Result of {} on {}: {}x{}, {}, imbalance {:.4f}>", r->report.scene,
                        r->report.machine.name, r->image().width, r->image().height, r->report.image.hash.substr(0, 8),
-                       load_of(*r).imbalance);
+                       r->report.load.imbalance);
 }
 
 double device_seconds(const Result& r) { return r->ring ? trace_seconds(*r->ring) : r->torus->render_s; }
@@ -288,17 +282,17 @@ void add_result(py::module_& module) {
         .def_property_readonly(
             "loads",
             [](const py::object& self) {
-                const std::vector<std::uint64_t>& loads = load_of(*self.cast<Result>()).per_pe;
+                const std::vector<std::uint64_t>& loads = self.cast<Result>()->report.load.per_pe;
                 return view_of<std::uint64_t>(loads, {static_cast<py::ssize_t>(loads.size())}, self);
             },
             "uint64 [P]: modelled cycles of each PE (of a ring) or node (of a torus).")
         .def_property_readonly(
-            "imbalance", [](const Result& r) { return load_of(*r).imbalance; },
+            "imbalance", [](const Result& r) { return r->report.load.imbalance; },
             "Imbalance u = (max - mean) / mean of the loads (Kohata & Ito 1993, Fig. 8).")
         .def_property_readonly(
-            "speedup", [](const Result& r) { return load_of(*r).speedup; }, "Sum / max of the loads.")
+            "speedup", [](const Result& r) { return r->report.load.speedup; }, "Sum / max of the loads.")
         .def_property_readonly(
-            "efficiency", [](const Result& r) { return load_of(*r).efficiency; }, "Speed-up / P.")
+            "efficiency", [](const Result& r) { return r->report.load.efficiency; }, "Speed-up / P.")
         .def_property_readonly("report", report_of, "dict: the JSON of raya render --report.")
         .def_property_readonly(
             "job_words", [](const Result& r) { return ring_of(*r, "job_words").pe_memory.job_words; },
@@ -317,14 +311,10 @@ void add_result(py::module_& module) {
     add_torus_results(module, result);
 }
 
-void raise_warnings(const Render& r) {
-    for (const std::string& text : r.report.warnings)
-        if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 2) != 0) throw py::error_already_set();
-}
-
 Result render_in(PythonSession& session, const Scene& scene, const py::object& progress, const py::kwargs& options) {
     Result result = session.render(scene, options, progress);
-    raise_warnings(*result);
+    for (const std::string& text : result->report.warnings)
+        if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 2) != 0) throw py::error_already_set();
     return result;
 }
 

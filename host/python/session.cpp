@@ -43,6 +43,77 @@ bool holds_sequences(const py::handle& value) {
     return false;
 }
 
+// Saves Python's signal handlers and restores them in the destructor, because OpenCL drivers replace them (the LLVM in
+// PoCL does).
+class SignalHandlers {
+  public:
+    SignalHandlers() {
+        for (int signal = 1; signal < 32; ++signal) ::sigaction(signal, nullptr, &saved_handlers_[signal]);
+    }
+    ~SignalHandlers() {
+        for (int signal = 1; signal < 32; ++signal) ::sigaction(signal, &saved_handlers_[signal], nullptr);
+    }
+    SignalHandlers(const SignalHandlers&) = delete;
+    SignalHandlers& operator=(const SignalHandlers&) = delete;
+
+  private:
+    struct sigaction saved_handlers_[32]{};
+};
+
+// Calls choose_device() with a larger default stack size for new threads. PoCL creates its threads in this call and
+// puts the private memory of a work-group on their stacks (host/cl/driver.cpp).
+cl::Device choose_device_with_stacks(const std::string& name) {
+    pthread_attr_t saved_attributes, large_stack;
+    ::pthread_getattr_default_np(&saved_attributes);
+    ::pthread_attr_init(&large_stack);
+    ::pthread_attr_setstacksize(&large_stack, std::size_t{128} << 20);
+    ::pthread_setattr_default_np(&large_stack);
+    const auto restore = [](const pthread_attr_t* saved) { ::pthread_setattr_default_np(saved); };
+    const std::unique_ptr<pthread_attr_t, decltype(restore)> end(&saved_attributes, restore);
+    return choose_device(name);
+}
+
+RenderCommand parse_options(CLI::App& program, const py::dict& options) {
+    RenderCommand command;
+    CLI::App* render = program.add_subcommand("render");
+    add_render_command_options(*render, command);
+    render->callback([&] {
+        refuse_options_of_other_machines(*render, machine_named(command.render.machine));
+        for (CLI::Option* option : render->get_options())
+            if (file_use_of(*option) == FileUse::kWritten && option->count() > 0 && option->as<std::string>() == "-")
+                throw UserError(option->get_name() + " -: name a file; Result has the report and the images");
+        check_files(*render);
+        check_render(command);
+    });
+    parse_keywords(program, options, "render");
+    return command;
+}
+
+// If the option `name` has the value True, removes the option from `options` and returns true. For `cost` and
+// `packets`, True stores the arrays in the Result; any other value is the name of the file for the arrays.
+bool pop_if_true(py::dict& options, const char* name) {
+    if (!options.contains(name) || options[name].ptr() != Py_True) return false;
+    options.attr("pop")(name);
+    return true;
+}
+
+// Removes pixels=(stride, first), which is not an option of the command line, from `options` and returns its value.
+PixelSubset pop_pixels(py::dict& options) {
+    if (!options.contains("pixels")) return {};
+    const auto [stride, first] = options.attr("pop")("pixels").cast<std::pair<std::uint32_t, std::uint32_t>>();
+    if (stride == 0 || first >= stride) throw py::value_error("pixels: must be (stride, first), 0 <= first < stride");
+    return {stride, first};
+}
+
+// Throws DeviceError in a process that was forked from the first one.
+void check_process() {
+    static const pid_t first = ::getpid();
+    if (::getpid() != first)
+        throw DeviceError(
+            "OpenCL does not work in a process that was forked after raya had opened a device; remedy: start it with "
+            "multiprocessing.get_context('spawn')");
+}
+
 }  // namespace
 
 void parse_keywords(CLI::App& program, const py::dict& options, const std::string& command) {
@@ -80,93 +151,13 @@ CostImage cost_image_of(const py::array& cost) {
         throw py::value_error("cost: must be an integer array [height, width] of modelled cycles");
     if (type_kind == 'i' && cost.size() > 0 && cost.attr("min")().cast<std::int64_t>() < 0)
         throw py::value_error("cost: modelled cycles must not be negative");
-    const CostArray array(cost);
+    const py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast> array(cost);
     CostImage image{static_cast<std::uint32_t>(array.shape(1)), static_cast<std::uint32_t>(array.shape(0)), {}};
     image.cycles.assign(array.data(), array.data() + array.size());
     std::uint64_t sum = 0;  // of all PEs
     for (const std::uint64_t cycles : image.cycles)
         if (__builtin_add_overflow(sum, cycles, &sum)) throw py::value_error("cost: the sum is 2^64 or more");
     return image;
-}
-
-namespace {
-
-// Saves Python's signal handlers and restores them in the destructor, because OpenCL drivers replace them (the LLVM in
-// PoCL does).
-class SignalHandlers {
-  public:
-    SignalHandlers() {
-        for (int signal = 1; signal < 32; ++signal) ::sigaction(signal, nullptr, &saved_handlers_[signal]);
-    }
-    ~SignalHandlers() {
-        for (int signal = 1; signal < 32; ++signal) ::sigaction(signal, &saved_handlers_[signal], nullptr);
-    }
-    SignalHandlers(const SignalHandlers&) = delete;
-    SignalHandlers& operator=(const SignalHandlers&) = delete;
-
-  private:
-    struct sigaction saved_handlers_[32]{};
-};
-
-// Calls choose_device() with a larger default stack size for new threads. PoCL creates its threads in this call and
-// puts the private memory of a work-group on their stacks (host/cl/driver.cpp).
-cl::Device choose_device_with_stacks(const std::string& name) {
-    pthread_attr_t saved_attributes, large_stack;
-    ::pthread_getattr_default_np(&saved_attributes);
-    ::pthread_attr_init(&large_stack);
-    ::pthread_attr_setstacksize(&large_stack, std::size_t{128} << 20);
-    ::pthread_setattr_default_np(&large_stack);
-    const auto restore = [&] { ::pthread_setattr_default_np(&saved_attributes); };
-    try {
-        cl::Device device = choose_device(name);
-        restore();
-        return device;
-    } catch (...) {
-        restore();
-        throw;
-    }
-}
-
-RenderCommand parse_options(CLI::App& program, const py::dict& options) {
-    RenderCommand command;
-    CLI::App* render = program.add_subcommand("render");
-    add_render_command_options(*render, command);
-    render->callback([&] {
-        refuse_options_of_other_machines(*render, machine_named(command.render.machine));
-        for (CLI::Option* option : render->get_options())
-            if (file_use_of(*option) == FileUse::kWritten && option->count() > 0 && option->as<std::string>() == "-")
-                throw UserError(option->get_name() + " -: name a file; Result has the report and the images");
-        check_files(*render);
-        check_render(command);
-    });
-    parse_keywords(program, options, "render");
-    return command;
-}
-
-// If the option `name` has the value True, removes the option from `options` and returns true. For `cost` and
-// `packets`, True stores the arrays in the Result; any other value is the name of the file for the arrays.
-bool pop_if_true(py::dict& options, const char* name) {
-    if (!options.contains(name) || options[name].ptr() != Py_True) return false;
-    options.attr("pop")(name);
-    return true;
-}
-
-// Removes pixels=(stride, first), which is not an option of the command line, from `options` and returns its value.
-PixelSubset pop_pixels(py::dict& options) {
-    if (!options.contains("pixels")) return {};
-    const auto [stride, first] = options.attr("pop")("pixels").cast<std::pair<std::uint32_t, std::uint32_t>>();
-    if (stride == 0 || first >= stride) throw py::value_error("pixels: must be (stride, first), 0 <= first < stride");
-    return {stride, first};
-}
-
-}  // namespace
-
-void PythonSession::check_process() {
-    static const pid_t first = ::getpid();
-    if (::getpid() != first)
-        throw DeviceError(
-            "OpenCL does not work in a process that was forked after raya had opened a device; remedy: start it with "
-            "multiprocessing.get_context('spawn')");
 }
 
 PythonSession::PythonSession(const std::string& device)

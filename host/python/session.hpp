@@ -23,8 +23,6 @@ namespace raya {
 
 namespace py = pybind11;
 
-using CostArray = py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast>;
-
 /// Parses keyword arguments as options of `program`, or of its command `command`: offset=16 as "--offset=16",
 /// strict=True as "--strict", from_=(1, 2, 3) as "--from=1,2,3", and a list of lights as one --light per element. Omits
 /// arguments with the value False or None. Raises ValueError for True or False in a sequence. Throws UserError.
@@ -73,9 +71,6 @@ class PythonSession {
     static PythonSession& shared(const std::string& device);
 
   private:
-    /// Throws DeviceError in a process that was forked from the first one.
-    static void check_process();
-
     cl::Device device_;
     Session session_;
     std::mutex mutex_;

@@ -49,86 +49,6 @@ void key_members(Members& m, Row& row) {
 
 constexpr const char* kOptionsMeaning = "Options of the kernel compiler.";
 
-}  // namespace
-
-/// Millions of rays of all kinds per second.
-struct BenchRates {
-    double best = 0, median = 0;
-};
-
-void members_of(Members& m, const BenchRates& rates) {
-    m("best", rates.best, "Rate of the fastest sample, Mrays/s.");
-    m("median", rates.median, "Rate of the sample with the median time, Mrays/s.");
-}
-
-void members_of(Members& m, BenchMeasurement& row) {
-    key_members(m, row);
-    m("rays", row.rays, "Number of rays of one image.");
-    m("mrays_per_s", BenchRates{row.best_rate(), row.median_rate()}, "Millions of rays of all kinds per second.");
-    double best_ms = 1e3 * row.best_s, median_ms = 1e3 * row.median_s;
-    m("ms",
-      "Time for one image. Kernels: time of the kernel by the device's clock. With `--variants`: time of the whole "
-      "render by the host's clock.",
-      [&](Members& ms) {
-          ms("best", best_ms, "Time of the fastest sample, ms.");
-          ms("median", median_ms, "Median time of the samples, ms.");
-      });
-    if (m.reads()) row.best_s = 1e-3 * best_ms, row.median_s = 1e-3 * median_ms;
-    m("samples", row.samples, "Number of samples.");
-    m("hash", row.hash, kHashMeaning);
-    m("build_options", row.build_options, kOptionsMeaning);
-    roofline_members(m, row.roofline);
-}
-
-void members_of(Members& m, BenchBuild& build) {
-    m("kernel", build.kernel, "File of the program in kernels/.");
-    m("variant", build.variant, "Variant that uses the program: `none`, `grid`, `bvh` or `torus`.");
-    m("format", build.format, kFormatMeaning);
-    m("lanes", build.lanes, kLanesMeaning);
-    m("build_s", build.build_s, "Time of clBuildProgram, s.");
-    m("first_launch_s", build.launch_s, "First launches of its kernels, with compilation at launch, s.");
-    m("build_options", build.build_options, kOptionsMeaning);
-}
-
-void members_of(Members& m, const ComparedRow& row) {
-    const auto rates = [](const BenchMeasurement* of) {
-        return of ? std::optional(BenchRates{of->best_rate(), of->median_rate()}) : std::nullopt;
-    };
-    const BenchMeasurement none;
-    key_members(m, row.now ? *row.now : row.before ? *row.before : none);
-    m("mrays_per_s", rates(row.now), "Rates in this report; null if only the earlier report has the row.");
-    m("mrays_per_s_was", rates(row.before), "Rates in the earlier report; null if it lacks the row.");
-    m("verdict", row.verdict,
-      "`as before`, `faster`, `SLOWER`, `OTHER IMAGE: ...`, or which report alone has the row.");
-}
-
-void members_of(Members& m, const BenchComparison& c) {
-    m("baseline", c.baseline, "File of the earlier report.");
-    m("tolerance_percent", c.tolerance_percent, "Decrease that does not count as slower, percent.");
-    m("remarks", c.remarks, "Differences of device, driver or version of raya.");
-    m("compared", c.compared, "Number of rows that both reports have.");
-    m("slower", c.slower, "Number of rows whose best and median rates both fell by more than the tolerance.");
-    m("other_images", c.other_images, "Number of rows with another image hash.");
-    m("rows", c.rows, "Rows of this report and of the earlier report; one entry for a row that both have.");
-}
-
-void members_of(Members& m, BenchReport& report) {
-    m("kind", kBenchReportKind, "Identifies the report: `raya bench`.");
-    m("raya", report.raya, kVersionMeaning);
-    m("device", "OpenCL device.", [&](Members& device) { device_members(device, report.device); });
-    m("rows", report.rows, "One row for each kernel or variant, format and number of lanes; empty with `--build`.");
-    m.when(!report.builds.empty(), "builds", report.builds, "With --build: each program, variant and format.");
-    m.when(report.compared.has_value(), "compared", report.compared.value_or(BenchComparison{}),
-           "With --compare: comparison with an earlier report.");
-}
-
-BenchReport read_bench_report(const fs::path& path) {
-    const JsonSource source{input_name(path), "make a baseline with: raya bench --report " + path.string()};
-    return read_json(json_file_text(path, source), source, report_of);
-}
-
-namespace {
-
 using Rows = std::vector<BenchMeasurement>;
 
 const BenchMeasurement* find_row(const Rows& rows, const BenchMeasurement& wanted) {
@@ -182,6 +102,82 @@ void add_difference(BenchComparison& comparison, const char* property, const std
 }
 
 }  // namespace
+
+/// Millions of rays of all kinds per second.
+struct BenchRates {
+    double best = 0, median = 0;
+};
+
+static void members_of(Members& m, const BenchRates& rates) {
+    m("best", rates.best, "Rate of the fastest sample, Mrays/s.");
+    m("median", rates.median, "Rate of the sample with the median time, Mrays/s.");
+}
+
+static void members_of(Members& m, BenchMeasurement& row) {
+    key_members(m, row);
+    m("rays", row.rays, "Number of rays of one image.");
+    m("mrays_per_s", BenchRates{row.best_rate(), row.median_rate()}, "Millions of rays of all kinds per second.");
+    double best_ms = 1e3 * row.best_s, median_ms = 1e3 * row.median_s;
+    m("ms",
+      "Time for one image. Kernels: time of the kernel by the device's clock. With `--variants`: time of the whole "
+      "render by the host's clock.",
+      [&](Members& ms) {
+          ms("best", best_ms, "Time of the fastest sample, ms.");
+          ms("median", median_ms, "Median time of the samples, ms.");
+      });
+    if (m.reads()) row.best_s = 1e-3 * best_ms, row.median_s = 1e-3 * median_ms;
+    m("samples", row.samples, "Number of samples.");
+    m("hash", row.hash, kHashMeaning);
+    m("build_options", row.build_options, kOptionsMeaning);
+    roofline_members(m, row.roofline);
+}
+
+static void members_of(Members& m, BenchBuild& build) {
+    m("kernel", build.kernel, "File of the program in kernels/.");
+    m("variant", build.variant, "Variant that uses the program: `none`, `grid`, `bvh` or `torus`.");
+    m("format", build.format, kFormatMeaning);
+    m("lanes", build.lanes, kLanesMeaning);
+    m("build_s", build.build_s, "Time of clBuildProgram, s.");
+    m("first_launch_s", build.launch_s, "First launches of its kernels, with compilation at launch, s.");
+    m("build_options", build.build_options, kOptionsMeaning);
+}
+
+void members_of(Members& m, const ComparedRow& row) {
+    const auto rates = [](const BenchMeasurement* of) {
+        return of ? std::optional(BenchRates{of->best_rate(), of->median_rate()}) : std::nullopt;
+    };
+    const BenchMeasurement none;
+    key_members(m, row.now ? *row.now : row.before ? *row.before : none);
+    m("mrays_per_s", rates(row.now), "Rates in this report; null if only the earlier report has the row.");
+    m("mrays_per_s_was", rates(row.before), "Rates in the earlier report; null if it lacks the row.");
+    m("verdict", row.verdict,
+      "`as before`, `faster`, `SLOWER`, `OTHER IMAGE: ...`, or which report alone has the row.");
+}
+
+static void members_of(Members& m, const BenchComparison& c) {
+    m("baseline", c.baseline, "File of the earlier report.");
+    m("tolerance_percent", c.tolerance_percent, "Decrease that does not count as slower, percent.");
+    m("remarks", c.remarks, "Differences of device, driver or version of raya.");
+    m("compared", c.compared, "Number of rows that both reports have.");
+    m("slower", c.slower, "Number of rows whose best and median rates both fell by more than the tolerance.");
+    m("other_images", c.other_images, "Number of rows with another image hash.");
+    m("rows", c.rows, "Rows of this report and of the earlier report; one entry for a row that both have.");
+}
+
+void members_of(Members& m, BenchReport& report) {
+    m("kind", kBenchReportKind, "Identifies the report: `raya bench`.");
+    m("raya", report.raya, kVersionMeaning);
+    m("device", "OpenCL device.", [&](Members& device) { device_members(device, report.device); });
+    m("rows", report.rows, "One row for each kernel or variant, format and number of lanes; empty with `--build`.");
+    m.when(!report.builds.empty(), "builds", report.builds, "With --build: each program, variant and format.");
+    m.when(report.compared.has_value(), "compared", report.compared.value_or(BenchComparison{}),
+           "With --compare: comparison with an earlier report.");
+}
+
+BenchReport read_bench_report(const fs::path& path) {
+    const JsonSource source{input_name(path), "make a baseline with: raya bench --report " + path.string()};
+    return read_json(json_file_text(path, source), source, report_of);
+}
 
 int rows_in_common(const BenchReport& baseline, const BenchReport& now) {
     return static_cast<int>(

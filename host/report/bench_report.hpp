@@ -74,10 +74,7 @@ struct BenchReport {
 inline constexpr const char* kBenchReportKind = "raya bench";
 
 // Lists of the members, for to_json(), schema_of() and from_json(), which ignores rooflines and comparison.
-void members_of(Members& m, BenchMeasurement& row);
-void members_of(Members& m, BenchBuild& build);
 void members_of(Members& m, const ComparedRow& row);
-void members_of(Members& m, const BenchComparison& comparison);
 void members_of(Members& m, BenchReport& report);
 
 /// Reads a report. Throws UserError with file, reason and remedy if the file

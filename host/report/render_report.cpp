@@ -99,7 +99,7 @@ std::string roofline_table(const Roofline& roofline) {
                1e-9 * p.copy_bytes_per_s);
 }
 
-void members_of(Members& m, const DevicePeak& p) {
+static void members_of(Members& m, const DevicePeak& p) {
     m("fp32_multiply_adds_per_s", p.fp32_per_s, "fp32 multiply-adds per second; each is one operation.");
     m("format", p.format, kFormatMeaning);
     m("format_multiply_adds_per_s", p.multiply_per_s, "Multiply-adds per second in `format`.");
@@ -146,7 +146,7 @@ std::uint64_t test_count(const EventCounts& e) {
     return 0 RAYA_OBJECT_LIST(RAYA_TESTS);
 }
 
-void members_of(Members& m, const Load& load) {
+static void members_of(Members& m, const Load& load) {
     m("unit", "cycles", "`cycles` of a PE's processor.");
     m("mean", load.mean, "Mean over all PEs, cycles.");
     m("max", load.max, "Load of the busiest PE, cycles.");
@@ -171,7 +171,7 @@ void members_of(Members& m, const LabelSummary& c) {
     m("bytes", c.bytes, "Total number of bytes moved or filled; 0 for kernels.");
 }
 
-void members_of(Members& m, const ProgramBuild& build) {
+static void members_of(Members& m, const ProgramBuild& build) {
     m("program", build.name, "Kernel file.");
     m("seconds", build.seconds, "Build time of the program by the host's clock, s.");
 }

@@ -64,7 +64,6 @@ Roofline roofline(const DevicePeak& peak, const std::vector<KernelWork>& works,
 /// Returns the table and the peak as text.
 std::string roofline_table(const Roofline& roofline);
 
-void members_of(Members& m, const DevicePeak& peak);
 void members_of(Members& m, const RooflineRow& row);
 
 /// Adds the members `peak` and `roofline`, or `no_roofline` with the reason; none of them if `roofline` is empty.
@@ -176,8 +175,6 @@ std::uint64_t test_count(const EventCounts& events);
 // change them.
 
 void members_of(Members& m, const LabelSummary& commands);
-void members_of(Members& m, const ProgramBuild& build);
-void members_of(Members& m, const Load& load);
 void members_of(Members& m, const RankReport& rank);
 void members_of(Members& m, const SceneView& view);
 void members_of(Members& m, const SceneRemark& remark);

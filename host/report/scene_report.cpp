@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ranges>
 
 #include "host/model/number_format.hpp"
 #include "host/report/table.hpp"
@@ -73,11 +74,9 @@ std::string vector_text(const Vec3& v) { return fmt::format("{:.6g},{:.6g},{:.6g
 std::string lights_text(const Scene& scene) {
     constexpr std::size_t kShown = 4;
     std::vector<std::string> lights;
-    for (const Light& light : scene.lights) {
-        if (lights.size() == kShown) break;
+    for (const Light& light : scene.lights | std::views::take(kShown))
         lights.push_back(
             fmt::format("at {} of {}", vector_text(light.position), vector_text(light_colour(scene, light))));
-    }
     std::string text = lights.empty() ? "none; only ambient light"
                                       : fmt::format("{}: {}", scene.lights.size(), fmt::join(lights, "; "));
     if (scene.lights.size() > kShown) text += fmt::format("; and {} more", scene.lights.size() - kShown);
@@ -136,7 +135,7 @@ std::string refusals_text(const std::vector<MachineNeeds>& machines) {
 
 }  // namespace
 
-void members_of(Members& m, const FormatFit& f) {
+static void members_of(Members& m, const FormatFit& f) {
     m("format", f.format, kFormatMeaning);
     m("fits", f.refusal.empty(), "True if the scene can be rendered in this format.");
     m("length_exponent", f.scale.exponent, "Exponent e: raya multiplies all lengths by 2^e.");
@@ -147,7 +146,7 @@ void members_of(Members& m, const FormatFit& f) {
     m("refusal", text_or_null(f.refusal), "Error message of a render; null: accepted.");
 }
 
-void members_of(Members& m, const AccelNeed& n) {
+static void members_of(Members& m, const AccelNeed& n) {
     m("accel", n.accel, "Acceleration structure, as given to --accel; `voxels` on the torus.");
     m("default", n.is_default, "True if this acceleration structure is the machine's default for the scene.");
     m("fits", n.refusal.empty(), "True if the scene can be rendered with this acceleration structure.");
@@ -162,7 +161,7 @@ void members_of(Members& m, const AccelNeed& n) {
     m("refusal", text_or_null(n.refusal), "Error message of a render; null: accepted.");
 }
 
-void members_of(Members& m, const MachineNeeds& machine) {
+static void members_of(Members& m, const MachineNeeds& machine) {
     m("name", machine.machine, "Name, as given to --machine.");
     m("pes", machine.pes, "Number of PEs or nodes; 0: the machine refuses the options.");
     m("format", machine.format, "Number format; empty if the machine refuses the options (`refusal`).");
@@ -216,7 +215,7 @@ SceneView view_of(const Scene& scene) {
     return view;
 }
 
-void members_of(Members& m, const Light& light) {
+static void members_of(Members& m, const Light& light) {
     m("position", array_of(light.position), "Position, scene units.");
     m("colour", array_of(light.colour.value_or(Colour())), "Linear colour of the emitted light: red, green, blue.");
 }

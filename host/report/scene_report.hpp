@@ -56,9 +56,6 @@ struct SceneReport {
     std::vector<MachineNeeds> machines;
 };
 
-void members_of(Members& m, const FormatFit& fit);
-void members_of(Members& m, const AccelNeed& need);
-void members_of(Members& m, const MachineNeeds& needs);
 void members_of(Members& m, const SceneReport& report);
 
 /// Returns the text for the terminal: objects, camera, lights, extent, formats, and a table of machines.

@@ -18,6 +18,14 @@ bool is_right_aligned(const std::vector<std::vector<std::string>>& rows, std::si
                        [&](const auto& row) { return column >= row.size() || is_number(row[column]); });
 }
 
+std::string build_line(double build_s, const std::vector<ProgramBuild>& builds) {
+    std::string text = fmt::format("kernel build {:.3f} s, not among the commands", build_s);
+    for (std::size_t i = 0; i < builds.size(); ++i)
+        text += fmt::format("{} {} {:.3f} s", i == 0 ? ":" : ",", builds[i].name, builds[i].seconds);
+    return text +
+           (builds.empty() ? "\n" : "; the remainder is the time of first launches, in which some drivers compile\n");
+}
+
 }  // namespace
 
 std::string text_table(const std::vector<std::vector<std::string>>& rows) {
@@ -39,18 +47,6 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows) {
     }
     return text;
 }
-
-namespace {
-
-std::string build_line(double build_s, const std::vector<ProgramBuild>& builds) {
-    std::string text = fmt::format("kernel build {:.3f} s, not among the commands", build_s);
-    for (std::size_t i = 0; i < builds.size(); ++i)
-        text += fmt::format("{} {} {:.3f} s", i == 0 ? ":" : ",", builds[i].name, builds[i].seconds);
-    return text +
-           (builds.empty() ? "\n" : "; the remainder is the time of first launches, in which some drivers compile\n");
-}
-
-}  // namespace
 
 std::string profile_table(double build_s, const std::vector<ProgramBuild>& builds,
                           const std::vector<LabelSummary>& commands) {

@@ -18,6 +18,43 @@ std::string name_record(const char* record_name, TraceTrack track, const Json& a
                        track.thread, json_dump(arguments));
 }
 
+std::uint32_t process_of(TraceProcess process, const TraceRank& rank) {
+    return process + kTraceProcesses * rank.number;
+}
+
+std::string name_of(const std::string& process, const TraceRank& rank) {
+    return rank.named ? fmt::format("rank {} {}", rank.number, process) : process;
+}
+
+Json arguments_of(const CommandRecord& c) {
+    Json json = {{"kind", c.kind}};
+    json[c.kind == "kernel" ? "kernel" : "buffer"] = c.target_name;
+    if (c.kind == "kernel") {
+        json["groups"] = c.groups;
+        json["group_size"] = c.group_size;
+    } else {
+        json["bytes"] = c.bytes;
+    }
+    json["queued_ns"] = c.queued;
+    json["submitted_ns"] = c.submitted;
+    json["started_ns"] = c.started;
+    json["ended_ns"] = c.ended;
+    return json;
+}
+
+// Returns the number of the first track in which no slice is open at time `start`; adds a track if there is none.
+// `busy_until`[track - 1]: end time of the track's last slice.
+std::uint32_t free_track(TraceFile& trace, std::uint32_t process, std::vector<std::uint64_t>& busy_until,
+                         std::uint64_t start) {
+    const auto found = std::ranges::find_if(busy_until, [&](std::uint64_t end) { return end <= start; });
+    const auto track = static_cast<std::uint32_t>(found - busy_until.begin()) + 1;
+    if (found == busy_until.end()) {
+        busy_until.push_back(0);
+        trace.name_track({process, track}, track == 1 ? "queue" : fmt::format("queue, overlapping {}", track));
+    }
+    return track;
+}
+
 }  // namespace
 
 void TraceFile::name_process(std::uint32_t process, const std::string& name) {
@@ -115,47 +152,6 @@ std::vector<TracedPe> traced_pes(const std::vector<std::uint64_t>& loads, std::s
 std::string traced_pe_name(const std::string& kind, const TracedPe& traced) {
     return fmt::format("{} {}{}", kind, traced.pe, traced.remark.empty() ? "" : fmt::format(" ({})", traced.remark));
 }
-
-namespace {
-
-std::uint32_t process_of(TraceProcess process, const TraceRank& rank) {
-    return process + kTraceProcesses * rank.number;
-}
-
-std::string name_of(const std::string& process, const TraceRank& rank) {
-    return rank.named ? fmt::format("rank {} {}", rank.number, process) : process;
-}
-
-Json arguments_of(const CommandRecord& c) {
-    Json json = {{"kind", c.kind}};
-    json[c.kind == "kernel" ? "kernel" : "buffer"] = c.target_name;
-    if (c.kind == "kernel") {
-        json["groups"] = c.groups;
-        json["group_size"] = c.group_size;
-    } else {
-        json["bytes"] = c.bytes;
-    }
-    json["queued_ns"] = c.queued;
-    json["submitted_ns"] = c.submitted;
-    json["started_ns"] = c.started;
-    json["ended_ns"] = c.ended;
-    return json;
-}
-
-// Returns the number of the first track in which no slice is open at time `start`; adds a track if there is none.
-// `busy_until`[track - 1]: end time of the track's last slice.
-std::uint32_t free_track(TraceFile& trace, std::uint32_t process, std::vector<std::uint64_t>& busy_until,
-                         std::uint64_t start) {
-    const auto found = std::ranges::find_if(busy_until, [&](std::uint64_t end) { return end <= start; });
-    const auto track = static_cast<std::uint32_t>(found - busy_until.begin()) + 1;
-    if (found == busy_until.end()) {
-        busy_until.push_back(0);
-        trace.name_track({process, track}, track == 1 ? "queue" : fmt::format("queue, overlapping {}", track));
-    }
-    return track;
-}
-
-}  // namespace
 
 void add_host_spans(TraceFile& trace, const std::vector<HostSpan>& spans, std::uint64_t begin, const TraceRank& rank) {
     const TraceTrack track = {process_of(kTraceHost, rank), 1};

@@ -55,14 +55,11 @@ class Bus {
     void gather(const Buffer<float>& blocks, std::span<float> target, std::uint64_t words);
 
   private:
-    /// copy() copies between device buffers. read() and write() transfer [row][words] to and from the host.
-    /// `first_block_pe`: number of the first PE whose words are in `blocks`.
-    void copy(const char* label, const Buffer<float>& pe_memory, const PeWords& source, Buffer<float>& blocks,
-              const PeWords& target, std::size_t words, std::size_t first_block_pe);
+    /// Transfer [row][words] to and from the host.
     std::vector<float> read(const char* label, const Buffer<float>& pe_memory, const PeWords& source,
                             std::size_t words);
-    void write(const char* label, Buffer<float>& blocks, const PeWords& target, std::span<const float> words,
-               std::size_t first_block_pe);
+    void write(const char* label, Buffer<float>& blocks, Session::Blocks target, std::size_t rows,
+               std::span<const float> words);
 
     Session& session_;
     Communication& communication_;
@@ -93,9 +90,7 @@ class Ring {
     Buffer<float>& blocks() { return front_; }
 
   private:
-    void rotate_within_rank(RingDirection direction);
-    void send_block(RingDirection direction);
-    void receive_block(RingDirection direction);
+    void send_block(bool down);
     /// Copies `blocks` blocks. `first_source`, `first_target`: indices of the first block in each buffer.
     void move(const char* label, const Buffer<float>& source, std::size_t first_source, Buffer<float>& target,
               std::size_t first_target, std::size_t blocks);
@@ -113,10 +108,12 @@ class Ring {
 
 /// Blocks that have arrived, one in every PE.
 struct Arrival {
-    Buffer<float>& blocks;   // [PE][3][band]
-    raya_u32 side;           // side of the neighbours that the blocks contain: RAYA_LEFT..RAYA_BELOW
-    std::uint32_t distance;  // PE i has received the block of PE (i + distance) mod P
-    std::uint32_t begin;     // index of the block's first pixel in the share of PE (i + distance) mod P
+    Buffer<float>& blocks;       // [PE][3][band]
+    raya_u32 side = RAYA_LEFT;   // side of the neighbours that the blocks contain: RAYA_LEFT..RAYA_BELOW
+    std::uint32_t distance = 0;  // PE i has received the block of PE (i + distance) mod P
+    std::uint32_t begin = 0;     // index of the block's first pixel in the share of PE (i + distance) mod P
+    std::uint32_t band = 0;      // number of pixels in a block
+    std::uint32_t capacity = 0;  // number of pixels in each PE's memory
 };
 
 /// Exchanges neighbouring pixels. Each move carries a band: at most `band` pixels of each PE. If a PE's memory can hold
@@ -128,7 +125,8 @@ class NeighbourExchange {
     NeighbourExchange(Session& session, Communication& communication, const raya_mapping& mapping,
                       std::uint32_t capacity, std::uint32_t band, ExchangeMethod method, const Distribution& pes);
 
-    std::uint32_t band() const { return band_; }
+    const Distribution& pes() const { return pes_; }
+    std::uint32_t capacity() const { return capacity_; }
 
     /// Moves every pixel to the PEs that need it as a neighbour on one of `sides`, and calls `on_arrival` after each
     /// arrival of blocks that contain such neighbours. `pixels`: pixels of this rank's PEs, [PE][3][capacity]. The
@@ -137,17 +135,14 @@ class NeighbourExchange {
                const std::function<void(const Arrival&)>& on_arrival);
 
   private:
-    using ArrivalCallback = std::function<void(const Arrival&)>;
-
-    void exchange_by_rotation(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin,
-                              const ArrivalCallback& on_arrival);
-    void exchange_by_transfers(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin,
-                               const ArrivalCallback& on_arrival);
-    void exchange_by_broadcast(const Buffer<float>& pixels, std::initializer_list<raya_u32> sides, std::uint32_t begin,
-                               const ArrivalCallback& on_arrival);
+    void rotate_band(const Buffer<float>& pixels, raya_u32 side, std::uint32_t begin,
+                     const std::function<void(std::uint32_t)>& arrive);
+    void broadcast_band(const Buffer<float>& pixels, std::initializer_list<raya_u32> sides, std::uint32_t begin);
+    void fetch_blocks(const Buffer<float>& pixels, std::uint32_t distance, std::uint32_t begin);
     std::size_t band_pixels(std::uint32_t begin) const;
 
-    std::uint32_t pes_, capacity_, band_;
+    Distribution pes_;
+    std::uint32_t capacity_, band_;
     ExchangeMethod method_;
     std::array<std::vector<std::uint32_t>, RAYA_SIDES> distances_;
     Ring ring_;
@@ -158,11 +153,29 @@ class NeighbourExchange {
 // The parts of anti-aliasing that need neighbouring pixels: the 3 x 3 filter (kernels/ring/filter.cl), and the
 // detection of pixels that differ from a neighbour (kernels/ring/contrast.cl).
 
-/// Arguments that all launches of RingFilter and RingContrast have in common.
-struct ExchangeSetup {
-    Buffer<std::uint32_t> broadcast;  // the job's words
-    Distribution pes;                 // PEs on the device
-    std::uint32_t capacity = 0;       // number of pixels in the memory of each PE
+/// What both parts have in common. The kernels must be built for one lane. The constructors of the parts allocate the
+/// device memory, and launch each kernel once without pixels, because PoCL compiles a kernel at its first launch.
+class NeighbourPass {
+  protected:
+    /// `broadcast`: the job's words.
+    NeighbourPass(Kernels& kernels, NeighbourExchange exchange, Buffer<std::uint32_t> broadcast)
+        : session_(kernels.session()),
+          group_size_(kernels.options().group_size),
+          exchange_(std::move(exchange)),
+          broadcast_(std::move(broadcast)) {}
+
+    /// Launches a kernel on blocks that have arrived. `last`: the kernel's last arguments.
+    template <class Kernel, class... Last>
+    void launch(const std::string& label, Kernel& kernel, const Arrival& a, Last&&... last) {
+        session_.launch(label, kernel, exchange_.pes().count(), group_size_, broadcast_, Uint<"side">{a.side},
+                        Uint<"distance">{a.distance}, Uint<"begin">{a.begin}, Uint<"band">{a.band},
+                        Uint<"capacity">{a.capacity}, Uint<"first_pe">{exchange_.pes().first()}, last...);
+    }
+
+    Session& session_;
+    std::uint32_t group_size_;
+    NeighbourExchange exchange_;
+    Buffer<std::uint32_t> broadcast_;
 };
 
 using AddNeighboursKernel = DescribedKernel<"ring/filter.cl", "add_neighbours", const Buffer<std::uint32_t>&,
@@ -171,24 +184,18 @@ using AddNeighboursKernel = DescribedKernel<"ring/filter.cl", "add_neighbours", 
 using TakeMeansKernel = DescribedKernel<"ring/filter.cl", "take_means", const Buffer<std::uint32_t>&, Uint<"capacity">,
                                         Uint<"first_pe">, Buffer<float>&>;
 
-class RingFilter {
+class RingFilter : NeighbourPass {
   public:
-    /// The kernels must be built for one lane. Allocates the device memory, and launches each kernel once without
-    /// pixels, because PoCL compiles a kernel at its first launch.
-    RingFilter(Kernels& kernels, const ExchangeSetup& setup);
+    RingFilter(Kernels& kernels, NeighbourExchange exchange, const Buffer<std::uint32_t>& broadcast);
 
     /// Replaces every pixel by the mean of its 3 x 3 neighbourhood. `pixels`: [PE][3][capacity]; afterwards `pixels`
     /// refers to another buffer of the same size.
-    void apply(Buffer<float>& pixels, NeighbourExchange& exchange);
+    void apply(Buffer<float>& pixels);
 
   private:
-    void sum_two_sides(Buffer<float>& pixels, NeighbourExchange& exchange, const std::string& label,
-                       raya_u32 first_side, raya_u32 second_side);
-    void add_neighbours(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity);
+    void sum_two_sides(Buffer<float>& pixels, const std::string& label, raya_u32 first_side, raya_u32 second_side);
+    void take_means(const std::string& label, std::uint32_t capacity, Buffer<float>& sums);
 
-    Session& session_;
-    std::uint32_t group_size_;
-    ExchangeSetup setup_;
     AddNeighboursKernel add_neighbours_;
     TakeMeansKernel take_means_;
     Buffer<float> sums_;  // [PE][3][capacity]
@@ -199,26 +206,18 @@ using MarkContrastsKernel =
                     Uint<"begin">, Uint<"band">, Uint<"capacity">, Uint<"first_pe">, cl_float, const Buffer<float>&,
                     const Buffer<float>&, Buffer<std::uint8_t>&>;
 
-class RingContrast {
+class RingContrast : NeighbourPass {
   public:
-    /// The kernel must be built for one lane. Allocates the device memory, and launches the kernel once without pixels,
-    /// because PoCL compiles a kernel at its first launch. `threshold`, 0..1, must be representable in the number
-    /// format.
-    RingContrast(Kernels& kernels, const ExchangeSetup& setup, float threshold);
+    /// `threshold`, 0..1, must be representable in the number format.
+    RingContrast(Kernels& kernels, NeighbourExchange exchange, const Buffer<std::uint32_t>& broadcast, float threshold);
 
     /// Marks each pixel that differs from a neighbour by the threshold or more. `pixels`: [PE][3][capacity].
-    void apply(const Buffer<float>& pixels, NeighbourExchange& exchange);
+    void apply(const Buffer<float>& pixels);
 
     /// [PE][capacity]: 1 for marked pixels, else 0.
     Buffer<std::uint8_t>& marks() { return marks_; }
 
   private:
-    void mark_contrasts(const std::string& label, const Arrival& arrival, std::uint32_t band, std::uint32_t capacity,
-                        const Buffer<float>& pixels);
-
-    Session& session_;
-    std::uint32_t group_size_;
-    ExchangeSetup setup_;
     float threshold_;
     MarkContrastsKernel mark_contrasts_;
     Buffer<std::uint8_t> marks_;

@@ -51,53 +51,6 @@ void check_offset(const raya_mapping& m) {
                                 m.width - 1));
 }
 
-}  // namespace
-
-raya_mapping make_mapping(const MappingRule& rule, const ImageSize& image, std::uint32_t pes) {
-    const auto [width, height] = image;
-    if (width < 1 || width > kMaxSide || height < 1 || height > kMaxSide)
-        throw UserError(fmt::format("--size {}x{}: both sides must be 1..{} pixels", width, height, kMaxSide));
-    const raya_mapping mapping{width, height, pes, rule.parameter, rule.kind};
-    check_pes(rule, mapping);
-    if (rule.kind == RAYA_TILES) check_tiles(mapping);
-    if (rule.has_slots()) check_offset(mapping);
-    return mapping;
-}
-
-std::string mapping_text(const MappingRule& rule) {
-    const std::uint32_t first = raya_first_of(rule.parameter), second = raya_second_of(rule.parameter);
-    switch (rule.kind) {
-        case RAYA_ROWS:
-            return "rows";
-        case RAYA_BLOCKS:
-            return "blocks";
-        case RAYA_GRID:
-            return fmt::format("grid:{}x{}", first, second);
-        case RAYA_TILES:
-            return fmt::format("tiles:{}x{}", first, second);
-        case RAYA_RANDOM:
-            return fmt::format("random:{}", rule.parameter);
-        default:
-            return fmt::format("cyclic:{}", rule.parameter);
-    }
-}
-
-std::string mapping_text(const raya_mapping& mapping) {
-    return mapping_text(MappingRule{mapping.kind, mapping.parameter});
-}
-
-std::uint32_t largest_share(const raya_mapping& mapping) {
-    std::uint32_t largest = 0;
-    for (std::uint32_t pe = 0; pe < mapping.pes; ++pe)
-        largest = std::max(largest, raya_share_size(raya_share_of(mapping, pe)));
-    return largest;
-}
-
-namespace {
-
-// Names of the methods, in the order of ExchangeMethod.
-constexpr std::array<const char*, 3> kExchangeNames = {"ring", "bus", "bus-broadcast"};
-
 std::uint64_t moves_of_side(const raya_mapping& mapping, ExchangeMethod method, raya_u32 side) {
     const std::vector<std::uint32_t> distances = neighbour_distances(mapping, side);
     const auto distant_count = static_cast<std::uint64_t>(
@@ -108,64 +61,6 @@ std::uint64_t moves_of_side(const raya_mapping& mapping, ExchangeMethod method, 
     for (const Leg& leg : shortest_route(mapping.pes, distances)) rotations += leg.rotations();
     return rotations;
 }
-
-}  // namespace
-
-std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya_u32 side) {
-    std::vector<bool> found(mapping.pes);
-    for (std::uint32_t row = 0; row < mapping.height; ++row)
-        for (std::uint32_t column = 0; column < mapping.width; ++column) {
-            const raya_pixel pixel = {row, column};
-            if (!raya_has_neighbour(mapping, pixel, side)) continue;
-            const raya_pixel adjacent = raya_neighbour(pixel, side);
-            const std::uint32_t neighbour_owner = raya_owner(mapping, adjacent.row, adjacent.column);
-            const std::uint32_t owner = raya_owner(mapping, row, column);
-            found[neighbour_owner >= owner ? neighbour_owner - owner : neighbour_owner + (mapping.pes - owner)] = true;
-        }
-    std::vector<std::uint32_t> distances;
-    for (std::uint32_t d = 0; d < mapping.pes; ++d)
-        if (found[d]) distances.push_back(d);
-    return distances;
-}
-
-std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances) {
-    if (distances.empty()) return {};
-    // Downward rotations fetch the blocks at the first `down_count` distances, upward rotations the remaining
-    // blocks. A block at distance d arrives after d downward or P - d upward rotations. The loop tries every split.
-    std::size_t down_count = 0;
-    std::uint64_t min_rotations = std::numeric_limits<std::uint64_t>::max();
-    for (std::size_t n = 0; n <= distances.size(); ++n) {
-        const std::uint64_t downwards = n ? distances[n - 1] : 0,
-                            upwards = n < distances.size() ? pes - distances[n] : 0;
-        if (downwards + upwards < min_rotations) {
-            min_rotations = downwards + upwards;
-            down_count = n;
-        }
-    }
-    const auto split = distances.begin() + static_cast<std::ptrdiff_t>(down_count);
-    std::vector<Leg> legs;
-    if (down_count > 0) legs.push_back({RingDirection::kDown, {distances.begin(), split}});
-    if (split != distances.end()) legs.push_back({RingDirection::kUp, {}});
-    for (auto d = distances.end(); d != split;) legs.back().stops.push_back(pes - *--d);
-    return legs;
-}
-
-std::string exchange_name(ExchangeMethod method) { return kExchangeNames.at(static_cast<std::size_t>(method)); }
-
-MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool any_order) {
-    MovesOfSides moves{};
-    for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
-        const bool already_served = method == ExchangeMethod::kBroadcast && any_order && sum_of(moves) > 0;
-        if (!already_served) moves[side] = moves_of_side(mapping, method, side);
-    }
-    return moves;
-}
-
-std::uint64_t sum_of(const MovesOfSides& moves) {
-    return std::accumulate(moves.begin(), moves.end(), std::uint64_t{0});
-}
-
-namespace {
 
 void check_image(const CostImage& image, std::uint32_t pes) {
     const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
@@ -221,10 +116,8 @@ std::vector<std::uint64_t> chunk_costs(const CostImage& image, const std::vector
 void assign_chunks(const std::vector<std::uint64_t>& chunks, const DynamicPlan& plan,
                    std::vector<std::uint64_t>& finish) {
     using IdleTime = std::pair<std::uint64_t, std::uint32_t>;  // time at which a PE becomes idle, PE number
-    std::vector<IdleTime> idle_times;
-    idle_times.reserve(finish.size());
-    for (std::uint32_t pe = 0; pe < finish.size(); ++pe) idle_times.emplace_back(finish[pe], pe);
-    std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle(std::greater<>{}, std::move(idle_times));
+    std::priority_queue<IdleTime, std::vector<IdleTime>, std::greater<>> idle;
+    for (std::uint32_t pe = 0; pe < finish.size(); ++pe) idle.emplace(finish[pe], pe);
     std::uint64_t answered = 0;  // time at which the root has answered the previous request
     for (const std::uint64_t cost : chunks) {
         const auto [time, pe] = idle.top();
@@ -236,6 +129,102 @@ void assign_chunks(const std::vector<std::uint64_t>& chunks, const DynamicPlan& 
 }
 
 }  // namespace
+
+raya_mapping make_mapping(const MappingRule& rule, const ImageSize& image, std::uint32_t pes) {
+    const auto [width, height] = image;
+    if (width < 1 || width > kMaxSide || height < 1 || height > kMaxSide)
+        throw UserError(fmt::format("--size {}x{}: both sides must be 1..{} pixels", width, height, kMaxSide));
+    const raya_mapping mapping{width, height, pes, rule.parameter, rule.kind};
+    check_pes(rule, mapping);
+    if (rule.kind == RAYA_TILES) check_tiles(mapping);
+    if (rule.has_slots()) check_offset(mapping);
+    return mapping;
+}
+
+std::string mapping_text(const MappingRule& rule) {
+    const std::uint32_t first = raya_first_of(rule.parameter), second = raya_second_of(rule.parameter);
+    switch (rule.kind) {
+        case RAYA_ROWS:
+            return "rows";
+        case RAYA_BLOCKS:
+            return "blocks";
+        case RAYA_GRID:
+            return fmt::format("grid:{}x{}", first, second);
+        case RAYA_TILES:
+            return fmt::format("tiles:{}x{}", first, second);
+        case RAYA_RANDOM:
+            return fmt::format("random:{}", rule.parameter);
+        default:
+            return fmt::format("cyclic:{}", rule.parameter);
+    }
+}
+
+std::string mapping_text(const raya_mapping& mapping) {
+    return mapping_text(MappingRule{mapping.kind, mapping.parameter});
+}
+
+std::uint32_t largest_share(const raya_mapping& mapping) {
+    std::uint32_t largest = 0;
+    for (std::uint32_t pe = 0; pe < mapping.pes; ++pe)
+        largest = std::max(largest, raya_share_size(raya_share_of(mapping, pe)));
+    return largest;
+}
+
+std::vector<std::uint32_t> neighbour_distances(const raya_mapping& mapping, raya_u32 side) {
+    std::vector<bool> found(mapping.pes);
+    for (std::uint32_t row = 0; row < mapping.height; ++row)
+        for (std::uint32_t column = 0; column < mapping.width; ++column) {
+            const raya_pixel pixel = {row, column};
+            if (!raya_has_neighbour(mapping, pixel, side)) continue;
+            const raya_pixel adjacent = raya_neighbour(pixel, side);
+            const std::uint32_t neighbour_owner = raya_owner(mapping, adjacent.row, adjacent.column);
+            const std::uint32_t owner = raya_owner(mapping, row, column);
+            found[neighbour_owner >= owner ? neighbour_owner - owner : neighbour_owner + (mapping.pes - owner)] = true;
+        }
+    std::vector<std::uint32_t> distances;
+    for (std::uint32_t d = 0; d < mapping.pes; ++d)
+        if (found[d]) distances.push_back(d);
+    return distances;
+}
+
+std::vector<Leg> shortest_route(std::uint32_t pes, const std::vector<std::uint32_t>& distances) {
+    if (distances.empty()) return {};
+    // Downward rotations fetch the blocks at the first `down_count` distances, upward rotations the remaining
+    // blocks. A block at distance d arrives after d downward or P - d upward rotations. The loop tries every split.
+    std::size_t down_count = 0;
+    std::uint64_t min_rotations = std::numeric_limits<std::uint64_t>::max();
+    for (std::size_t n = 0; n <= distances.size(); ++n) {
+        const std::uint64_t downwards = n ? distances[n - 1] : 0,
+                            upwards = n < distances.size() ? pes - distances[n] : 0;
+        if (downwards + upwards < min_rotations) {
+            min_rotations = downwards + upwards;
+            down_count = n;
+        }
+    }
+    const auto split = distances.begin() + static_cast<std::ptrdiff_t>(down_count);
+    std::vector<Leg> legs;
+    if (down_count > 0) legs.push_back({RingDirection::kDown, {distances.begin(), split}});
+    if (split != distances.end()) legs.push_back({RingDirection::kUp, {}});
+    for (auto d = distances.end(); d != split;) legs.back().stops.push_back(pes - *--d);
+    return legs;
+}
+
+std::string exchange_name(ExchangeMethod method) {
+    return std::array{"ring", "bus", "bus-broadcast"}.at(static_cast<std::size_t>(method));
+}
+
+MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool any_order) {
+    MovesOfSides moves{};
+    for (raya_u32 side = 0; side < RAYA_SIDES; ++side) {
+        const bool already_served = method == ExchangeMethod::kBroadcast && any_order && sum_of(moves) > 0;
+        if (!already_served) moves[side] = moves_of_side(mapping, method, side);
+    }
+    return moves;
+}
+
+std::uint64_t sum_of(std::span<const std::uint64_t> numbers) {
+    return std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
+}
 
 std::string dynamic_text(const DynamicPlan& plan) {
     const std::string root = plan.root_cycles > 0 ? fmt::format(",{}", plan.root_cycles) : "";
@@ -279,18 +268,14 @@ Schedule dynamic_schedule(const CostImage& image, const raya_mapping& static_map
     assign_chunks(chunks, plan, finish);
     Schedule schedule{load_of(std::move(finish)), chunks.size()};
     Load& load = schedule.load;
-    if (load.max > 0) load.speedup = static_cast<double>(total_cycles(image)) / static_cast<double>(load.max);
+    if (load.max > 0) load.speedup = static_cast<double>(sum_of(image.cycles)) / static_cast<double>(load.max);
     load.efficiency = load.speedup / static_mapping.pes;
     return schedule;
 }
 
-std::uint64_t total_cycles(const CostImage& image) {
-    return std::accumulate(image.cycles.begin(), image.cycles.end(), std::uint64_t{0});
-}
-
 std::uint64_t lower_bound(const CostImage& image, std::uint32_t pes) {
     check_image(image, pes);
-    const std::uint64_t total = total_cycles(image);
+    const std::uint64_t total = sum_of(image.cycles);
     const std::uint64_t mean_load = total / pes + (total % pes != 0);  // rounded up
     return std::max(mean_load, *std::max_element(image.cycles.begin(), image.cycles.end()));
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -69,8 +70,8 @@ using MovesOfSides = std::array<std::uint64_t, RAYA_SIDES>;
 /// is counted for the first side that needs a broadcast.
 MovesOfSides exchange_moves(const raya_mapping& mapping, ExchangeMethod method, bool any_order);
 
-/// Returns the sum over all sides.
-std::uint64_t sum_of(const MovesOfSides& moves);
+/// Returns the sum of the numbers.
+std::uint64_t sum_of(std::span<const std::uint64_t> numbers);
 
 // Costs of an image's pixels, and the PEs' loads with static and dynamic mappings, computed from these costs without
 // tracing.
@@ -88,7 +89,7 @@ std::string dynamic_text(const DynamicPlan& plan);
 /// Result of a simulated run.
 struct Schedule {
     Load load;  // finishing time of each PE in cycles, including overhead and waiting for the root. load.max is the
-                // makespan. load.speedup is total_cycles() / makespan: the gain over one PE without requests
+                // makespan. load.speedup is the sum of all costs / makespan: the gain over one PE without requests
     std::uint64_t requests = 0;  // number of requests to which the root answered with pixels
 };
 
@@ -107,11 +108,8 @@ std::vector<double> imbalance_of_offsets(const CostImage& image, std::uint32_t p
 /// plan.chunk pixels; the last chunk may be smaller. The PE that becomes idle first (in a tie, the one with the lowest
 /// number) takes the next chunk: it waits until the root has answered all earlier requests and the PE's own, then
 /// spends the overhead plus the costs of the pixels. If static_fraction is 0, only the image size and the number of PEs
-/// of `static_mapping` are used; if it is 1, the result is that of static_load(). Time: O(pixels + P + chunks log P).
+/// of `static_mapping` are used; if it is 1, the result is that of static_load(). Time: O(pixels + (P + chunks) log P).
 Schedule dynamic_schedule(const CostImage& image, const raya_mapping& static_mapping, const DynamicPlan& plan);
-
-/// Returns the sum of all pixels' costs, without overhead.
-std::uint64_t total_cycles(const CostImage& image);
 
 /// Returns a lower bound, in cycles, of the makespan of every distribution of whole pixels over P PEs: max(ceil(total /
 /// P), cost of the most expensive pixel).

@@ -30,6 +30,38 @@ constexpr std::uint32_t kMaxTrees = 1024;  // of a PE with divided objects, so t
         bytes, *machine.pe_memory_bytes);
 }
 
+// Returns true if PEs should copy their `words` words into local memory in each launch. Returns false if the words do
+// not fit, or if the copying loop could exceed the device's limit of loop iterations. Also returns false for many words
+// with an accelerator: the kernel then reads only a few of the words, so the copy takes longer than it saves.
+bool words_local(std::size_t words, const DeviceInfo& device, AccelKind accel) {
+    constexpr std::size_t kMaxCopiedBytes = 64 * 1024;
+    constexpr std::size_t kMaxCopiedWords = 4096;
+    if (device.ends_loops_early && words > kMaxCopiedWords) return false;
+    // 32 bytes for padding to a multiple of 16 bytes, and for the work-group's own data.
+    const std::size_t bytes = 4 * words + 32;
+    return bytes <= device.local_memory_bytes && (accel == AccelKind::kNone || bytes <= kMaxCopiedBytes);
+}
+
+RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSettings& settings,
+                      const std::function<void()>& packed) {
+    const LengthScale scale = length_scale(scene, settings.format);
+    const auto pack = [&] {
+        const SpanLog::Span span = session.span("pack scene");
+        return pack_for_ring(scene, settings, scale);
+    };
+    RingJob job{{}, pack()};
+    job.scale = scale;
+    job.objects = scene.object_count();
+    job.has_patches = job.job.has_patches();
+    if (packed) packed();
+    if (settings.accel.kind == AccelKind::kNone) return job;
+    const SpanLog::Span span = session.span("divide scene");
+    const Clock::time_point start = Clock::now();
+    job.accel = append_accel(job.job, settings);
+    job.accel_s = seconds_since(start);
+    return job;
+}
+
 }  // namespace
 
 PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
@@ -73,42 +105,6 @@ PeMemory plan_pe_memory(const Machine& machine, const PeDemand& demand) {
     return memory;
 }
 
-namespace {
-
-// Returns true if PEs should copy their `words` words into local memory in each launch. Returns false if the words do
-// not fit, or if the copying loop could exceed the device's limit of loop iterations. Also returns false for many words
-// with an accelerator: the kernel then reads only a few of the words, so the copy takes longer than it saves.
-bool words_local(std::size_t words, const DeviceInfo& device, AccelKind accel) {
-    constexpr std::size_t kMaxCopiedBytes = 64 * 1024;
-    constexpr std::size_t kMaxCopiedWords = 4096;
-    if (device.ends_loops_early && words > kMaxCopiedWords) return false;
-    // 32 bytes for padding to a multiple of 16 bytes, and for the work-group's own data.
-    const std::size_t bytes = 4 * words + 32;
-    return bytes <= device.local_memory_bytes && (accel == AccelKind::kNone || bytes <= kMaxCopiedBytes);
-}
-
-RingJob pack_ring_job(const Session& session, const Scene& scene, const RingSettings& settings,
-                      const std::function<void()>& packed) {
-    const LengthScale scale = length_scale(scene, settings.format);
-    const auto pack = [&] {
-        const SpanLog::Span span = session.span("pack scene");
-        return pack_for_ring(scene, settings, scale);
-    };
-    RingJob job{{}, pack()};
-    job.scale = scale;
-    job.objects = scene.object_count();
-    job.has_patches = job.job.has_patches();
-    if (packed) packed();
-    if (settings.accel.kind == AccelKind::kNone) return job;
-    const SpanLog::Span span = session.span("divide scene");
-    const Clock::time_point start = Clock::now();
-    job.accel = append_accel(job.job, settings);
-    job.accel_s = seconds_since(start);
-    return job;
-}
-
-}  // namespace
-
 void use_packets(RingSettings& settings, bool may_change_mapping) {
     if (settings.accel.kind != AccelKind::kBvh || !settings.format.is_fp32() || settings.dynamic) return;
     const raya_mapping& m = settings.mapping;
@@ -117,15 +113,6 @@ void use_packets(RingSettings& settings, bool may_change_mapping) {
             if (m.kind != RAYA_TILES && m.width % width == 0 && m.height % height == 0)
                 settings.mapping = make_mapping(tiles_mapping(width, height), {m.width, m.height}, m.pes);
     settings.packets = m.kind == RAYA_TILES;
-}
-
-JobSettings job_settings(const RingSettings& settings, const LengthScale& scale) {
-    return {{settings.mapping.width, settings.mapping.height},
-            settings.sampling,
-            settings.bounces,
-            cycles_of_events(),
-            settings.format,
-            scale.exponent};
 }
 
 PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::uint64_t job_words) {
@@ -195,7 +182,12 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
 PackedJob pack_for_ring(const Scene& scene, const RingSettings& settings, const LengthScale& scale) {
     // More than most BVHs need. Without it, append_accel() would copy the job to other memory.
     constexpr std::size_t kBvhWordsPerObject = 20;
-    JobSettings for_job = job_settings(settings, scale);
+    JobSettings for_job{{settings.mapping.width, settings.mapping.height},
+                        settings.sampling,
+                        settings.bounces,
+                        cycles_of_events(),
+                        settings.format,
+                        scale.exponent};
     if (settings.accel.kind == AccelKind::kBvh) for_job.spare_words = kBvhWordsPerObject * scene.object_count();
     PackedJob job = pack_job(scene, for_job);
     raya_job header = job.header();
@@ -225,15 +217,6 @@ RingJob make_ring_job(const Session& session, const Scene& scene, const RingSett
     return {figures, PackedJob(header, std::move(words), figures.has_patches)};
 }
 
-namespace {
-
-std::size_t saved_tree_words(const KernelOptions& options, std::uint32_t pes) {
-    const std::size_t lanes = std::size_t{pes} * options.group_size * options.lanes;
-    return lanes * raya_saved_words(options.bounces);
-}
-
-}  // namespace
-
 SampleTracer::SampleTracer(Kernels& kernels, std::string build_options, const Distribution& pes, std::uint32_t capacity)
     : session_(kernels.session()),
       options_(kernels.options()),
@@ -246,7 +229,9 @@ Tracer::Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity
     : SampleTracer(kernels, kernels.program(TraceKernel::kFile).options(), pes, capacity),
       work_(work),
       kernel_(kernels.get<TraceKernel>()),
-      saved_trees_(session_.buffer<std::uint32_t>("saved trees", saved_tree_words(options_, pes.count()))) {}
+      saved_trees_(session_.buffer<std::uint32_t>(
+          "saved trees",
+          std::size_t{pes.count()} * options_.group_size * options_.lanes * raya_saved_words(options_.bounces))) {}
 
 PassCounters SampleTracer::make_counters(const std::string& pass) const {
     const std::size_t costs = options_.packets ? 1 : std::size_t{pes_.count()} * capacity_;  // else not counted
@@ -261,54 +246,48 @@ void SampleTracer::clear(PassCounters& counters) {
     counters.turn_cycles.clear();
 }
 
-void Tracer::warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
-                     PassCounters& counters) {
-    reset_progress("warm-up", 0);
-    launch("warm-up", job, {}, RAYA_POINTS_OWN, 1, marks, pixels, counters);
+void Tracer::warm_up(const TracePass& pass) {
+    reset_progress(pass);
+    launch(pass, 1);
 }
 
-void Tracer::trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
-                   const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-                   const ProgressCallback& progress) {
-    reset_progress(label, range.begin);
-    const auto launch_part = [&](std::uint32_t work, bool) {
-        launch(label, job, range, points, work, marks, pixels, counters);
-    };
+void Tracer::trace(const TracePass& pass, const ProgressCallback& progress) {
+    reset_progress(pass);
     launches_.run(
-        session_, label, progress ? work_.with_progress : work_.first, work_.target_s / (progress ? 2 : 1), launch_part,
-        [&] { return read_progress(label, range, progress); }, progress_, saved_trees_, pixels, counters.cycles,
-        counters.events);
+        session_, pass.label, progress ? work_.with_progress : work_.first, work_.target_s / (progress ? 2 : 1),
+        [&](std::uint32_t work, bool) { launch(pass, work); }, [&] { return read_progress(pass, progress); }, progress_,
+        saved_trees_, pass.pixels, pass.counters.cycles, pass.counters.events);
 }
 
-LaunchEnd SampleTracer::read_progress(const std::string& label, PixelRange range, const ProgressCallback& progress) {
+LaunchEnd SampleTracer::read_progress(const TracePass& pass, const ProgressCallback& progress) {
+    const auto [window_start, begin, end] = pass.range;
     std::vector<raya_trace_progress> pes(pes_.count());
-    session_.read(label, progress_, pes);
+    session_.read(pass.label, progress_, pes);
     LaunchEnd ended;
     std::uint64_t traced = 0;
     for (const raya_trace_progress& pe : pes) {
         ended.done &= pe.left == 0;
         ended.truncated |= pe.cut > 0;
-        traced += pe.next - range.begin;
+        traced += pe.next - begin;
     }
     if (progress && !ended.truncated)
-        progress(ended.done ? 1 : static_cast<double>(traced) / (1.0 * pes_.count() * (range.end - range.begin)));
+        progress(ended.done ? 1 : static_cast<double>(traced) / (1.0 * pes_.count() * (end - begin)));
     return ended;
 }
 
 // Writes the buffer instead of filling it, because Oclgrind reports filled buffers as uninitialised.
-void SampleTracer::reset_progress(const std::string& label, std::uint32_t pixel) {
-    session_.write(label, progress_, std::vector<raya_trace_progress>(pes_.count(), {pixel, 0, 0}));
+void SampleTracer::reset_progress(const TracePass& pass) {
+    session_.write(pass.label, progress_, std::vector<raya_trace_progress>(pes_.count(), {pass.range.begin, 0, 0}));
 }
 
-void Tracer::launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
-                    std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
-                    PassCounters& counters) {
-    session_.launch(label, kernel_, pes_.count(), options_.group_size, job, Uint<"word_count">{cl_uint(job.size())},
-                    Uint<"window_start">{range.window_start}, Uint<"capacity">{capacity_}, Uint<"end">{range.end},
-                    Uint<"points">{points}, Uint<"first_pe">{pes_.first()}, Uint<"work">{work}, marks,
-                    LocalMemory<raya_trace_progress>{1},
-                    LocalMemory<std::uint32_t>{options_.words_local ? (job.size() + 3) / 4 * 4 : 4}, pixels,
-                    counters.cycles, counters.events, progress_, saved_trees_);
+void Tracer::launch(const TracePass& pass, std::uint32_t work) {
+    const std::size_t words = pass.job.size();
+    session_.launch(pass.label, kernel_, pes_.count(), options_.group_size, pass.job,
+                    Uint<"word_count">{cl_uint(words)}, Uint<"window_start">{pass.range.window_start},
+                    Uint<"capacity">{capacity_}, Uint<"end">{pass.range.end}, Uint<"points">{pass.points},
+                    Uint<"first_pe">{pes_.first()}, Uint<"work">{work}, pass.marks, LocalMemory<raya_trace_progress>{1},
+                    LocalMemory<std::uint32_t>{options_.words_local ? (words + 3) / 4 * 4 : 4}, pass.pixels,
+                    pass.counters.cycles, pass.counters.events, progress_, saved_trees_);
 }
 
 }  // namespace raya

@@ -83,8 +83,6 @@ struct RingSettings : RenderSettings {
 /// neighbouring pixels. If `may_change_mapping`, first chooses small tiles that divide the image, if there are any.
 void use_packets(RingSettings& settings, bool may_change_mapping);
 
-JobSettings job_settings(const RingSettings& settings, const LengthScale& scale);
-
 /// Returns the properties of a render that determine a PE's memory. `scene`: name of the scene, for messages.
 /// `job_words`: number of words of the job.
 PeDemand pe_demand(const RingSettings& settings, const std::string& scene, std::uint64_t job_words);
@@ -154,6 +152,17 @@ struct PixelRange {
     std::uint32_t window_start = 0, begin = 0, end = 0;
 };
 
+/// A pass, or a part of it, over the pixels of the PEs on a device.
+struct TracePass {
+    std::string label;                  // of the commands
+    const Buffer<std::uint32_t>& job;   // the broadcast words
+    PixelRange range;                   // the pixels
+    raya_u32 points;                    // RAYA_POINTS_*: sample points; supersampling points only of marked pixels
+    const Buffer<std::uint8_t>& marks;  // [PE][capacity]
+    Buffer<float>& pixels;              // [PE][3][capacity]
+    PassCounters& counters;
+};
+
 using TraceKernel =
     DescribedKernel<"ring/trace.cl", "trace", const Buffer<std::uint32_t>&, Uint<"word_count">, Uint<"window_start">,
                     Uint<"capacity">, Uint<"end">, Uint<"points">, Uint<"first_pe">, Uint<"work">,
@@ -170,18 +179,13 @@ class SampleTracer {
     PassCounters make_counters(const std::string& pass) const;
     void clear(PassCounters& counters);
 
-    /// Launches the kernels once without pixels, so that their compilation, which PoCL does at the first launch, counts
-    /// as build time.
-    virtual void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
-                         PassCounters& counters) = 0;
+    /// Launches the kernels once with an empty range, so that their compilation, which PoCL does at the first launch,
+    /// counts as build time.
+    virtual void warm_up(const TracePass& pass) = 0;
 
-    /// Traces the sample points `points` (RAYA_POINTS_*) of the range's pixels; supersampling points only of the marked
-    /// pixels. `label`: label of the commands; `job`: the broadcast words. Each launch does a bounded amount of work,
-    /// so that no GPU watchdog ends it; launches are repeated until all pixels are traced. Throws DeviceError if the
-    /// device ends loops early even in the smallest launch.
-    virtual void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
-                       const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-                       const ProgressCallback& progress) = 0;
+    /// Traces a pass. Each launch does a bounded amount of work, so that no GPU watchdog ends it; launches are repeated
+    /// until all pixels are traced. Throws DeviceError if the device ends loops early even in the smallest launch.
+    virtual void trace(const TracePass& pass, const ProgressCallback& progress) = 0;
 
     const KernelOptions& options() const { return options_; }
     const std::string& build_options() const { return build_options_; }
@@ -190,10 +194,10 @@ class SampleTracer {
     /// `pes`: PEs on this device; `capacity`: number of pixels of each PE in the device buffers.
     SampleTracer(Kernels& kernels, std::string build_options, const Distribution& pes, std::uint32_t capacity);
 
-    /// Sets the next pixel of every PE to index `pixel` of its share.
-    void reset_progress(const std::string& label, std::uint32_t pixel);
-    /// Reads the progress of all PEs in `range`, and calls `progress` if it is not empty.
-    LaunchEnd read_progress(const std::string& label, PixelRange range, const ProgressCallback& progress);
+    /// Sets the next pixel of every PE to the first of the range.
+    void reset_progress(const TracePass& pass);
+    /// Reads the progress of all PEs in the range, and calls `progress` if it is not empty.
+    LaunchEnd read_progress(const TracePass& pass, const ProgressCallback& progress);
 
     Session& session_;
     KernelOptions options_;
@@ -208,16 +212,12 @@ class Tracer : public SampleTracer {
   public:
     Tracer(Kernels& kernels, const Distribution& pes, std::uint32_t capacity, const LaunchWork& work);
 
-    void warm_up(const Buffer<std::uint32_t>& job, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
-                 PassCounters& counters) override;
-    void trace(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
-               const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-               const ProgressCallback& progress) override;
+    void warm_up(const TracePass& pass) override;
+    void trace(const TracePass& pass, const ProgressCallback& progress) override;
 
   private:
     /// Launches the kernel for those pixels of the range that have not been traced.
-    void launch(const std::string& label, const Buffer<std::uint32_t>& job, PixelRange range, raya_u32 points,
-                std::uint32_t work, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters);
+    void launch(const TracePass& pass, std::uint32_t work);
 
     LaunchWork work_;
     TraceKernel kernel_;

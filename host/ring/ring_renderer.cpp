@@ -42,6 +42,34 @@ Image black_image(const raya_mapping& m) {
     return image;
 }
 
+/// Calls visit(pixel, image pixel) for the pixels in `range` of the share of a PE. The arguments are the index of the
+/// pixel in the PE's device buffer, and the index of the pixel in the image.
+template <class Visit>
+void for_each_pixel(const raya_mapping& m, std::size_t pe, PixelRange range, Visit&& visit) {
+    const raya_share share = raya_share_of(m, static_cast<std::uint32_t>(pe));
+    const std::uint32_t end = std::min(range.end, raya_share_size(share));
+    if (range.begin >= end) return;
+    raya_pixel_run run = raya_pixel_run_of(m, share, range.begin);
+    for (std::uint32_t k = range.begin; k < end; ++k) {
+        if (k > range.begin) run = raya_pixel_run_at(run, m, share, k);
+        visit(std::size_t{k - range.window_start}, std::size_t{run.pixel.row} * m.width + run.pixel.column);
+    }
+}
+
+// Throws DeviceError unless one primary ray was counted for each pixel of this rank. Some devices silently end long
+// loops (Mesa's llvmpipe after 65,535 iterations of a work-item), so that pixels would be missing.
+void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const Distribution& pes,
+                      const DeviceInfo& device) {
+    std::uint64_t pixels = 0;
+    for (const std::uint32_t pe : pes.own()) pixels += raya_share_size(raya_share_of(m, pe));
+    const std::uint64_t traced = first_pass[RAYA_PRIMARY];
+    if (traced == pixels) return;
+    throw DeviceError(fmt::format(
+        "{} {} ended the trace kernel after {} of {} pixels; remedy: run raya verify; use more PEs (--pes), "
+        "which give each work-item fewer pixels and do not change the image, or another device",
+        device.platform, device.name, traced, pixels));
+}
+
 }  // namespace
 
 RingRenderer::RingRenderer(Session& session, const Scene& scene, const RingSettings& settings, Ranks& ranks,
@@ -80,7 +108,7 @@ void RingRenderer::build() {
     counters_.push_back(tracer_->make_counters(kTracePass));
     bus_.broadcast(broadcast_, stored_.words(job_.job));
     tracer_->clear(counters_.front());
-    tracer_->warm_up(broadcast_, no_marks_, pixels_, counters_.front());
+    tracer_->warm_up({"warm-up", broadcast_, {}, RAYA_POINTS_OWN, no_marks_, pixels_, counters_.front()});
     if (settings_.antialias.method != AntialiasMethod::kNone) build_exchange(options);
     session_.finish();
     build_s_ = seconds_since(start);
@@ -90,14 +118,13 @@ void RingRenderer::build_exchange(KernelOptions options) {
     options.lanes = 1;
     options.accel = RAYA_ACCEL_NONE;  // these kernels do not read the scene
     Kernels kernels(session_, options, settings_.kernels.sources);
-    const ExchangeSetup setup{.broadcast = broadcast_, .pes = pes_, .capacity = memory_.block_pixels};
-    exchange_ = std::make_unique<NeighbourExchange>(session_, communication_, settings_.mapping, memory_.block_pixels,
-                                                    memory_.band_pixels, settings_.antialias.exchange, pes_);
+    NeighbourExchange exchange(session_, communication_, settings_.mapping, memory_.block_pixels, memory_.band_pixels,
+                               settings_.antialias.exchange, pes_);
     if (settings_.antialias.method == AntialiasMethod::kFilter) {
-        filter_ = std::make_unique<RingFilter>(kernels, setup);
+        filter_ = std::make_unique<RingFilter>(kernels, std::move(exchange), broadcast_);
         return;
     }
-    contrast_ = std::make_unique<RingContrast>(kernels, setup,
+    contrast_ = std::make_unique<RingContrast>(kernels, std::move(exchange), broadcast_,
                                                round_to_format(settings_.antialias.threshold, settings_.format));
     counters_.push_back(tracer_->make_counters(kSupersamplePass));
 }
@@ -134,9 +161,9 @@ void RingRenderer::render_block(std::uint32_t block_begin, RingResult& result, c
         if (resumed_ && position_.window > window_begin) continue;
         const PixelRange range{window_begin, window_begin, std::min(end, window_begin + window_)};
         trace(0, range, result, progress);
-        if (filter_) filter_->apply(pixels_, *exchange_);
+        if (filter_) filter_->apply(pixels_);
         if (contrast_) {
-            if (!resumed_ || position_.pass == 0) contrast_->apply(pixels_, *exchange_);
+            if (!resumed_ || position_.pass == 0) contrast_->apply(pixels_);
             trace(1, range, result, progress);
         }
         gather(range, result);
@@ -154,10 +181,8 @@ void RingRenderer::prepare(RingResult& result) {
         empty_costs = CostImage{settings_.mapping.width, settings_.mapping.height, std::vector<std::uint64_t>(pixels)};
     if (counters_.size() > 1) result.sum_cost = empty_costs;
     for (PassCounters& counters : counters_) {
-        Phase phase;
-        phase.name = result.phases.empty() ? kTracePass : kSupersamplePass;
-        phase.recorded_cost = empty_costs;
-        result.phases.push_back(std::move(phase));
+        result.phases.push_back(
+            {.name = result.phases.empty() ? kTracePass : kSupersamplePass, .recorded_cost = empty_costs});
         tracer_->clear(counters);
     }
 }
@@ -185,9 +210,10 @@ void RingRenderer::trace(std::uint32_t pass, PixelRange range, RingResult& resul
         const Clock::time_point start = Clock::now();
         const bool has_bands = checkpoints_->active() && !turns_;
         band.end = has_bands ? band.begin + std::min(band_, range.end - band.begin) : range.end;
-        tracer_->trace(label, broadcast_, band, pass == 0 ? raya_u32{RAYA_POINTS_OWN} : settings_.antialias.points,
-                       pass == 0 ? no_marks_ : contrast_->marks(), pixels_, counters_[pass],
-                       progress || polls_failures() ? report : ProgressCallback{});
+        const raya_u32 points = pass == 0 ? raya_u32{RAYA_POINTS_OWN} : settings_.antialias.points;
+        tracer_->trace(
+            {label, broadcast_, band, points, pass == 0 ? no_marks_ : contrast_->marks(), pixels_, counters_[pass]},
+            progress || (ranks_.has_several() && ranks_.is_first()) ? report : ProgressCallback{});
         if (!has_bands) continue;
         // The next band must have the same length in all ranks, so the slowest rank determines it.
         const std::vector<double> seconds = ranks_.all_gather(seconds_since(start));
@@ -247,16 +273,6 @@ StateSettings RingRenderer::state_settings() const {
             {"another scene, camera or light", words_hash(job_.job.words())}};
 }
 
-namespace {
-
-std::uint64_t turn_count(const std::vector<PassCounters>& passes) {
-    std::uint64_t turns = 0;
-    for (const PassCounters& pass : passes) turns += pass.turn_cycles.size();
-    return turns;
-}
-
-}  // namespace
-
 void RingRenderer::visit_state(RenderState& state, RingResult& result) {
     for (std::uint32_t* number : {&position_.pass, &position_.window, &position_.next}) state.value(*number);
     if (position_.pass >= counters_.size()) throw UserError("damaged");
@@ -264,6 +280,7 @@ void RingRenderer::visit_state(RenderState& state, RingResult& result) {
     state.rank_0(result.image.rgb);
     state.buffer(pixels_);
     if (contrast_) state.buffer(contrast_->marks());
+    std::uint64_t turns = 0;
     for (std::size_t i = 0; i < counters_.size(); ++i) {
         state.buffer(counters_[i].cycles);
         // The events of a PE's work-items are summed, so that the group size may change.
@@ -277,8 +294,9 @@ void RingRenderer::visit_state(RenderState& state, RingResult& result) {
         if (state.restores()) session_.write("resume", counters_[i].events, counts);
         if (auto& cost = result.phases[i].recorded_cost) state.rank_0(cost->cycles);
         if (turns_) state.vector(counters_[i].turn_cycles, true);
+        turns += counters_[i].turn_cycles.size();
     }
-    if (turns_) turns_->visit_state(state, turn_count(counters_));
+    if (turns_) turns_->visit_state(state, turns);
     if (result.sum_cost) state.rank_0(result.sum_cost->cycles);
 }
 
@@ -288,47 +306,6 @@ void RingRenderer::resume(RingResult& result) {
     ranks_.broadcast(band_);
     resumed_ = checkpoints_->resume([&](RenderState& state) { visit_state(state, result); });
 }
-
-namespace {
-
-/// Calls visit(pixel, image pixel) for the pixels in `range` of the share of a PE. The arguments are the index of the
-/// pixel in the PE's device buffer, and the index of the pixel in the image.
-template <class Visit>
-void for_each_pixel(const raya_mapping& m, std::size_t pe, PixelRange range, Visit&& visit) {
-    const raya_share share = raya_share_of(m, static_cast<std::uint32_t>(pe));
-    const std::uint32_t end = std::min(range.end, raya_share_size(share));
-    if (range.begin >= end) return;
-    raya_pixel_run run = raya_pixel_run_of(m, share, range.begin);
-    for (std::uint32_t k = range.begin; k < end; ++k) {
-        if (k > range.begin) run = raya_pixel_run_at(run, m, share, k);
-        visit(std::size_t{k - range.window_start}, std::size_t{run.pixel.row} * m.width + run.pixel.column);
-    }
-}
-
-// Throws DeviceError unless one primary ray was counted for each pixel of this rank. Some devices silently end long
-// loops (Mesa's llvmpipe after 65,535 iterations of a work-item), so that pixels would be missing.
-void check_all_traced(const EventCounts& first_pass, const raya_mapping& m, const Distribution& pes,
-                      const DeviceInfo& device) {
-    std::uint64_t pixels = 0;
-    for (const std::uint32_t pe : pes.own()) pixels += raya_share_size(raya_share_of(m, pe));
-    const std::uint64_t traced = first_pass[RAYA_PRIMARY];
-    if (traced == pixels) return;
-    throw DeviceError(fmt::format(
-        "{} {} ended the trace kernel after {} of {} pixels; remedy: run raya verify; use more PEs (--pes), "
-        "which give each work-item fewer pixels and do not change the image, or another device",
-        device.platform, device.name, traced, pixels));
-}
-
-// Adds the event counts of all ranks to the counts of the phase and of the whole render.
-void add_events(const std::vector<EventCounts>& rank_events, EventCounts& phase_events, EventCounts& all_events) {
-    for (const EventCounts& events : rank_events)
-        for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
-            phase_events[event] += events[event];
-            all_events[event] += events[event];
-        }
-}
-
-}  // namespace
 
 // Reads the pixels in `range` of every PE's share, and places them in the image.
 void RingRenderer::gather(PixelRange range, RingResult& result) {
@@ -404,13 +381,18 @@ void RingRenderer::collect_events(RingResult& result) {
             events[event] += counts[n];
             loads[pe] += cycles[event] * counts[n];
         }
-        result.phases[i].rank_events = events;
-        result.phases[i].turn_cycles = counters_[i].turn_cycles;
+        Phase& phase = result.phases[i];
+        phase.rank_events = events;
+        phase.turn_cycles = counters_[i].turn_cycles;
         if (i == 0) check_all_traced(events, settings_.mapping, pes_, session_.device());
-        add_events(ranks_.all_gather(events), result.phases[i].events, result.events);
+        for (const EventCounts& of_rank : ranks_.all_gather(events))
+            for (std::size_t event = 0; event < RAYA_EVENTS; ++event) {
+                phase.events[event] += of_rank[event];
+                result.events[event] += of_rank[event];
+            }
         loads = pes_.gather(std::move(loads), 1);
         std::transform(loads.begin(), loads.end(), sum_loads.begin(), sum_loads.begin(), std::plus<>());
-        if (ranks_.is_first()) result.phases[i].load = load_of(std::move(loads));
+        if (ranks_.is_first()) phase.load = load_of(std::move(loads));
     }
     if (ranks_.is_first()) result.load = load_of(std::move(sum_loads));
 }

@@ -35,8 +35,6 @@ class RingRenderer {
 
   private:
     bool records_costs() const { return settings_.record_costs || settings_.dynamic.has_value(); }
-    /// Returns true if this rank checks for failures of other ranks.
-    bool polls_failures() const { return ranks_.has_several() && ranks_.is_first(); }
     void build();
     void build_exchange(KernelOptions options);
     void prepare(RingResult& result);
@@ -71,7 +69,6 @@ class RingRenderer {
     std::unique_ptr<SampleTracer> tracer_;
     Turns* turns_ = nullptr;              // tracer_, if the objects are divided
     std::vector<PassCounters> counters_;  // one for each pass
-    std::unique_ptr<NeighbourExchange> exchange_;
     std::unique_ptr<RingFilter> filter_;
     std::unique_ptr<RingContrast> contrast_;
 

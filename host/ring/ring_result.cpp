@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <stdexcept>
 
 #include "host/model/budget.hpp"
@@ -61,11 +60,7 @@ RankPixels pixels_of_rank(const raya_mapping& m, const RingResult& r) {
 // components and reads or writes `colours` colours.
 KernelWork neighbour_work(const std::string& label, std::uint64_t pixels, std::uint64_t operations,
                           std::uint64_t colours) {
-    KernelWork work;
-    work.label = label;
-    work.operations = 3 * operations * pixels;
-    work.bytes = colours * kColourBytes * pixels;
-    return work;
+    return {.label = label, .operations = 3 * operations * pixels, .bytes = colours * kColourBytes * pixels};
 }
 
 }  // namespace
@@ -75,9 +70,7 @@ const CostImage& Phase::cost() const {
     return *recorded_cost;
 }
 
-std::uint64_t Phase::barrier_cycles() const {
-    return turn_cycles.empty() ? load.max : std::accumulate(turn_cycles.begin(), turn_cycles.end(), std::uint64_t{0});
-}
+std::uint64_t Phase::barrier_cycles() const { return turn_cycles.empty() ? load.max : sum_of(turn_cycles); }
 
 std::uint64_t RingResult::turns() const {
     std::uint64_t turns = 0;
@@ -149,17 +142,18 @@ class RingTimeline {
         }
     }
 
-    // Adds a phase in which each PE computes for its own number of cycles, then waits for the busiest PE. `turns`: the
-    // cycles of the phase's turns, if its objects are divided: then all PEs wait for each other after each part.
-    void add_compute_phase(const std::string& name, const Load& load, const std::vector<std::uint64_t>& turns = {}) {
+    // Adds a phase in which each PE computes for its own number of cycles, then waits for the busiest PE. If the
+    // objects are divided, all PEs wait for each other after each part.
+    void add_compute_phase(const Phase& phase) {
+        const Load& load = phase.load;
+        const std::vector<std::uint64_t>& turns = phase.turn_cycles;
         const double begin = now_ms_;
         const auto busiest = std::max_element(load.per_pe.begin(), load.per_pe.end()) - load.per_pe.begin();
         const Json arguments = {
             {"u", load.imbalance}, {"mean_cycles", load.mean}, {"max_cycles", load.max}, {"busiest", busiest}};
         trace_.counter(kTraceMachine, "u", nanoseconds(begin), {{"u", load.imbalance}});
-        const std::uint64_t all =
-            turns.empty() ? load.max : std::accumulate(turns.begin(), turns.end(), std::uint64_t{0});
-        add_phase(name, cycle_ms_ * static_cast<double>(all), arguments);
+        const std::uint64_t all = phase.barrier_cycles();
+        add_phase(phase.name, cycle_ms_ * static_cast<double>(all), arguments);
         double turn_begin = begin;
         for (std::size_t i = 0; i < turns.size(); ++i) {
             const double turn_end = turn_begin + cycle_ms_ * static_cast<double>(turns[i]);
@@ -171,7 +165,7 @@ class RingTimeline {
         for (const TracedPe& p : pes_) {
             const std::uint64_t cycles = load.per_pe[p.pe];
             const std::uint64_t done = nanoseconds(begin + cycle_ms_ * static_cast<double>(cycles));
-            if (cycles > 0) trace_.slice(track_of(p), name, nanoseconds(begin), done, {{"cycles", cycles}});
+            if (cycles > 0) trace_.slice(track_of(p), phase.name, nanoseconds(begin), done, {{"cycles", cycles}});
             if (cycles < all) trace_.slice(track_of(p), wait, done, nanoseconds(now_ms_), {{"cycles", all - cycles}});
         }
     }
@@ -180,9 +174,8 @@ class RingTimeline {
     // live rays is the number of PEs that are tracing; with divided objects, of PEs that would be without waiting. The
     // counter has at most kMaxPoints points after the first point.
     void add_tracing_phase(const Phase& phase) {
-        const Load& load = phase.load;
         constexpr std::size_t kMaxPoints = 512;
-        std::vector<std::uint64_t> ends = load.per_pe;
+        std::vector<std::uint64_t> ends = phase.load.per_pe;
         std::sort(ends.begin(), ends.end());
         const std::size_t step = (ends.size() + kMaxPoints - 1) / kMaxPoints;
         add_live_rays(0, static_cast<double>(ends.end() - std::upper_bound(ends.begin(), ends.end(), 0u)));
@@ -190,7 +183,7 @@ class RingTimeline {
             const std::size_t last = std::min(i + step, ends.size()) - 1;
             if (ends[last] > 0) add_live_rays(ends[last], static_cast<double>(ends.size() - 1 - last));
         }
-        add_compute_phase(phase.name, load, phase.turn_cycles);
+        add_compute_phase(phase);
     }
 
   private:
@@ -222,73 +215,26 @@ Load quarter_load(const raya_mapping& m, std::uint64_t (*cycles_of)(std::uint64_
     return load_of(std::move(cycles));
 }
 
-// `slice`: name of the slice of a side's moves. `count`: name of the slice's argument with the number of moves.
-struct MoveNames {
-    const char *slice, *count;
-};
-constexpr std::array<MoveNames, 3> kMoves = {  // in the order of ExchangeMethod
-    {{"rotate", "rotations"}, {"send over the bus", "transfers"}, {"broadcast from each PE", "broadcasts"}}};
+// Names of the slice of a side's moves, and of the slice's argument with their number, in the order of ExchangeMethod.
+constexpr std::pair<const char*, const char*> kMoves[] = {
+    {"rotate", "rotations"}, {"send over the bus", "transfers"}, {"broadcast from each PE", "broadcasts"}};
 
 void add_smoothing(RingTimeline& timeline, const RingSettings& s, const RingResult& r, double communication_ms) {
     const bool filter = s.antialias.method == AntialiasMethod::kFilter;
-    const MoveNames& names = kMoves[static_cast<std::size_t>(s.antialias.exchange)];
+    const auto& [slice, count] = kMoves[static_cast<std::size_t>(s.antialias.exchange)];
     const MovesOfSides moves_of_sides = smoothing_moves(s.antialias, s.mapping);
     const auto all_moves = static_cast<double>(std::max<std::uint64_t>(1, sum_of(moves_of_sides)));
     const std::uint64_t bands = (r.pe_memory.block_pixels + r.pe_memory.band_pixels - 1) / r.pe_memory.band_pixels;
     for (std::uint32_t side = 0; side < RAYA_SIDES; ++side) {
         const std::uint64_t moves = moves_of_sides[side] * bands;
         if (moves > 0)
-            timeline.add_common_phase(fmt::format("{}, for neighbours {}", names.slice, kSides[side]),
+            timeline.add_common_phase(fmt::format("{}, for neighbours {}", slice, kSides[side]),
                                       communication_ms * static_cast<double>(moves_of_sides[side]) / all_moves,
-                                      {{names.count, moves}},
-                                      s.antialias.exchange == ExchangeMethod::kRing ? moves : 1);
-        timeline.add_compute_phase(fmt::format("{} {}", filter ? "filter" : "compare", kSides[side]),
-                                   quarter_load(s.mapping, filter ? filter_cycles : compare_cycles, side));
+                                      {{count, moves}}, s.antialias.exchange == ExchangeMethod::kRing ? moves : 1);
+        timeline.add_compute_phase({.name = fmt::format("{} {}", filter ? "filter" : "compare", kSides[side]),
+                                    .load = quarter_load(s.mapping, filter ? filter_cycles : compare_cycles, side)});
     }
 }
-
-}  // namespace
-
-void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes) {
-    const Communication& c = result.communication;
-    if (pes == 0) {
-        trace.metadata()["machine"] = "left out: the number of PEs to trace is 0";
-        return;
-    }
-    const ModelledTime time = ring_time(settings, result);
-    RingTimeline timeline(trace, settings.machine, traced_pes(result.load.per_pe, pes));
-    timeline.add_common_phase("broadcast", time.objects_ms, {{"words", c.broadcast_words}});
-    const bool smoothed = settings.antialias.method != AntialiasMethod::kNone;
-    constexpr std::uint64_t kMaxShown = 4096;  // rotations that are slices of their own
-    const MachineClock& clock = settings.machine.clock;
-    const auto rotations_of = [&](const Phase& phase) { return phase.turn_cycles.size() * (result.parts - 1); };
-    const auto rotation_ms = [&](const Phase& phase) {  // of the parts, without a set-up
-        const auto words = static_cast<double>(rotations_of(phase) * result.pe_memory.part_words);
-        return rotations_of(phase) ? exchange_ms(clock, rotations_of(phase), words) - clock.setup_ms : 0;
-    };
-    double other_ms = time.communication_ms;
-    for (const Phase& phase : result.phases) other_ms -= rotation_ms(phase);
-    const auto add_tracing = [&](const Phase& phase, double setup_ms) {
-        timeline.add_tracing_phase(phase);
-        if (rotations_of(phase))
-            timeline.add_common_phase("rotate parts", setup_ms + rotation_ms(phase),
-                                      {{"rotations", rotations_of(phase)}},
-                                      rotations_of(phase) <= kMaxShown ? rotations_of(phase) : 1);
-    };
-    add_tracing(result.phases[0], smoothed ? 0 : other_ms);
-    if (smoothed) add_smoothing(timeline, settings, result, other_ms);
-    if (result.phases.size() > 1) add_tracing(result.phases[1], 0);
-    timeline.add_common_phase("gather", time.image_ms, {{"words", c.gather_words}});
-    if (time.display_ms > 0) timeline.add_common_phase("display", time.display_ms, Json::object());
-    trace.metadata()["machine"] = {{"name", settings.machine.name},
-                                   {"modelled_ms", time.total_ms},
-                                   {"pes", settings.mapping.pes},
-                                   {"note",
-                                    "modelled time, from time 0 of the trace; independent of the measured times "
-                                    "above"}};
-}
-
-namespace {
 
 double recomputed_share(const RingResult& result) {
     return static_cast<double>(result.recomputed) / (1.0 * result.image.width * result.image.height);
@@ -429,6 +375,45 @@ std::string accel_line(const RingResult& r, bool all_counted) {
 }
 
 }  // namespace
+
+void add_ring_machine(TraceFile& trace, const RingSettings& settings, const RingResult& result, std::size_t pes) {
+    const Communication& c = result.communication;
+    if (pes == 0) {
+        trace.metadata()["machine"] = "left out: the number of PEs to trace is 0";
+        return;
+    }
+    const ModelledTime time = ring_time(settings, result);
+    RingTimeline timeline(trace, settings.machine, traced_pes(result.load.per_pe, pes));
+    timeline.add_common_phase("broadcast", time.objects_ms, {{"words", c.broadcast_words}});
+    const bool smoothed = settings.antialias.method != AntialiasMethod::kNone;
+    constexpr std::uint64_t kMaxShown = 4096;  // rotations that are slices of their own
+    const MachineClock& clock = settings.machine.clock;
+    const auto rotations_of = [&](const Phase& phase) { return phase.turn_cycles.size() * (result.parts - 1); };
+    const auto rotation_ms = [&](const Phase& phase) {  // of the parts, without a set-up
+        const auto words = static_cast<double>(rotations_of(phase) * result.pe_memory.part_words);
+        return rotations_of(phase) ? exchange_ms(clock, rotations_of(phase), words) - clock.setup_ms : 0;
+    };
+    double other_ms = time.communication_ms;
+    for (const Phase& phase : result.phases) other_ms -= rotation_ms(phase);
+    const auto add_tracing = [&](const Phase& phase, double setup_ms) {
+        timeline.add_tracing_phase(phase);
+        if (rotations_of(phase))
+            timeline.add_common_phase("rotate parts", setup_ms + rotation_ms(phase),
+                                      {{"rotations", rotations_of(phase)}},
+                                      rotations_of(phase) <= kMaxShown ? rotations_of(phase) : 1);
+    };
+    add_tracing(result.phases[0], smoothed ? 0 : other_ms);
+    if (smoothed) add_smoothing(timeline, settings, result, other_ms);
+    if (result.phases.size() > 1) add_tracing(result.phases[1], 0);
+    timeline.add_common_phase("gather", time.image_ms, {{"words", c.gather_words}});
+    if (time.display_ms > 0) timeline.add_common_phase("display", time.display_ms, Json::object());
+    trace.metadata()["machine"] = {{"name", settings.machine.name},
+                                   {"modelled_ms", time.total_ms},
+                                   {"pes", settings.mapping.pes},
+                                   {"note",
+                                    "modelled time, from time 0 of the trace; independent of the measured times "
+                                    "above"}};
+}
 
 MachineReport ring_report(const RingSettings& settings, const RingResult& result) {
     const ModelledTime time = ring_time(settings, result);

@@ -20,11 +20,11 @@ inline constexpr const char *kTracePass = "trace", *kSupersamplePass = "supersam
 
 /// Counts of one phase of a render.
 struct Phase {
-    std::string name;                        // kTracePass, kSupersamplePass
-    EventCounts events{}, rank_events{};     // of all ranks; of this rank
-    Load load;                               // modelled cycles of each PE, from the PE's counters
-    std::optional<CostImage> recorded_cost;  // only with RingSettings::record_costs
-    std::vector<std::uint64_t> turn_cycles;  // of each turn, see PassCounters
+    std::string name;                          // kTracePass, kSupersamplePass
+    EventCounts events{}, rank_events{};       // of all ranks; of this rank
+    Load load{};                               // modelled cycles of each PE, from the PE's counters
+    std::optional<CostImage> recorded_cost{};  // only with RingSettings::record_costs
+    std::vector<std::uint64_t> turn_cycles{};  // of each turn, see PassCounters
 
     /// Modelled cycles of each pixel. Throws std::logic_error if they were not recorded.
     const CostImage& cost() const;

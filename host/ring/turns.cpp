@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "host/error.hpp"
@@ -116,6 +115,20 @@ Words base_of(const PackedJob& job) {
     return base;
 }
 
+constexpr std::uint32_t kMaxDividedLights = 32;  // `meet` marks blocked shadow rays in a word
+
+StoredScene store_in_parts(const PackedJob& job, const RingSettings& settings, const std::string& scene,
+                           std::uint32_t parts) {
+    StoredScene stored;
+    if (parts > 1) stored.parts = divide_objects(job, parts);
+    PeDemand demand = pe_demand(settings, scene, stored.words(job).size());
+    demand.parts = parts;
+    if (stored.parts) demand.part_words = stored.parts->part_words;
+    demand.divisible = parts < settings.mapping.pes && settings.accel.kind == AccelKind::kNone && !settings.dynamic;
+    stored.memory = plan_pe_memory(settings.machine, demand);
+    return stored;
+}
+
 }  // namespace
 
 ObjectParts divide_objects(const PackedJob& job, std::uint32_t parts) {
@@ -134,24 +147,6 @@ ObjectParts divide_objects(const PackedJob& job, std::uint32_t parts) {
     }
     return divided;
 }
-
-namespace {
-
-constexpr std::uint32_t kMaxDividedLights = 32;  // `meet` marks blocked shadow rays in a word
-
-StoredScene store_in_parts(const PackedJob& job, const RingSettings& settings, const std::string& scene,
-                           std::uint32_t parts) {
-    StoredScene stored;
-    if (parts > 1) stored.parts = divide_objects(job, parts);
-    PeDemand demand = pe_demand(settings, scene, stored.words(job).size());
-    demand.parts = parts;
-    if (stored.parts) demand.part_words = stored.parts->part_words;
-    demand.divisible = parts < settings.mapping.pes && settings.accel.kind == AccelKind::kNone && !settings.dynamic;
-    stored.memory = plan_pe_memory(settings.machine, demand);
-    return stored;
-}
-
-}  // namespace
 
 StoredScene store_scene(const PackedJob& job, const RingSettings& settings, const std::string& scene) {
     const std::uint32_t pes = settings.mapping.pes, lights = job.header().lights;
@@ -209,60 +204,58 @@ void Turns::visit_state(RenderState& state, std::uint64_t turns) {
     in_flight_ = true;
 }
 
-void Turns::start(const std::string& label, std::uint32_t pixel) {
-    reset_progress(label, pixel);
-    session_.write(label, state_, std::vector<std::uint32_t>(state_.size()));
+void Turns::start(const TracePass& pass) {
+    reset_progress(pass);
+    session_.write(pass.label, state_, std::vector<std::uint32_t>(state_.size()));
 }
 
-void Turns::warm_up(const Buffer<std::uint32_t>& base, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
-                    PassCounters& counters) {
-    start("warm-up", 0);
+void Turns::warm_up(const TracePass& pass) {
+    start(pass);
     load_parts(0);
-    advance("warm-up", base, {}, RAYA_POINTS_OWN, true, marks, pixels, counters);
-    meet("warm-up", base, 1);
+    advance(pass, true);
+    meet(pass, 1);
 }
 
-void Turns::trace(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,
-                  const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-                  const ProgressCallback& progress) {
+void Turns::trace(const TracePass& pass, const ProgressCallback& progress) {
+    std::vector<std::uint64_t>& turn_cycles = pass.counters.turn_cycles;
     bool fresh = !std::exchange(in_flight_, false);
-    if (fresh) start(label, range.begin);
+    if (fresh) start(pass);
     for (;; fresh = false) {
         double done = 0;
-        advance(label, base, range, points, fresh, marks, pixels, counters);
-        const LaunchEnd ended = read_progress(label, range, [&](double fraction) { done = fraction; });
-        if (ended.truncated) throw truncated_loops_error(label, session_.device().name, "a larger --split");
+        advance(pass, fresh);
+        const LaunchEnd ended = read_progress(pass, [&](double fraction) { done = fraction; });
+        if (ended.truncated) throw truncated_loops_error(pass.label, session_.device().name, "a larger --split");
         if (progress) progress(done);
         const std::vector<std::uint32_t> left = pes_.ranks().all_gather(std::uint32_t{!ended.done});
         const bool ends = std::count(left.begin(), left.end(), 1u) == 0;
         for (std::uint32_t step = 0; step < parts_.parts && !ends; ++step) {
             if (step > 0) ring_.rotate(RingDirection::kUp);
-            meet(label, base, step + 1);
+            meet(pass, step + 1);
         }
-        const std::uint64_t cycles = barrier_cycles(label, ends ? 1 : parts_.parts + 1);
+        const std::uint64_t cycles = barrier_cycles(pass.label, ends ? 1 : parts_.parts + 1);
         if (!ends)
-            counters.turn_cycles.push_back(cycles);
-        else if (!counters.turn_cycles.empty())
-            counters.turn_cycles.back() += cycles;  // the lights of the last hits
+            turn_cycles.push_back(cycles);
+        else if (!turn_cycles.empty())
+            turn_cycles.back() += cycles;  // the lights of the last hits
         if (ends) return;
         if (after_turn_) after_turn_(done);
     }
 }
 
-void Turns::advance(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,
-                    bool fresh, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters) {
-    session_.launch(label, advance_, pes_.count(), options_.group_size, base, Uint<"word_count">{cl_uint(base.size())},
-                    Uint<"window_start">{range.window_start}, Uint<"capacity">{capacity_}, Uint<"end">{range.end},
-                    Uint<"points">{points}, Uint<"first_pe">{pes_.first()}, Uint<"slots">{slots_},
-                    Uint<"stride">{stride_}, Uint<"fresh">{fresh}, marks, LocalMemory<raya_trace_progress>{1},
-                    local_words(base.size()), pixels, counters.cycles, counters.events, progress_, state_, spent_);
+void Turns::advance(const TracePass& pass, bool fresh) {
+    session_.launch(pass.label, advance_, pes_.count(), options_.group_size, pass.job,
+                    Uint<"word_count">{cl_uint(pass.job.size())}, Uint<"window_start">{pass.range.window_start},
+                    Uint<"capacity">{capacity_}, Uint<"end">{pass.range.end}, Uint<"points">{pass.points},
+                    Uint<"first_pe">{pes_.first()}, Uint<"slots">{slots_}, Uint<"stride">{stride_},
+                    Uint<"fresh">{fresh}, pass.marks, LocalMemory<raya_trace_progress>{1}, local_words(pass.job.size()),
+                    pass.pixels, pass.counters.cycles, pass.counters.events, progress_, state_, spent_);
 }
 
-void Turns::meet(const std::string& label, const Buffer<std::uint32_t>& base, std::uint32_t step) {
-    session_.launch(label, meet_, pes_.count(), options_.group_size, base, Uint<"word_count">{cl_uint(base.size())},
-                    ring_.blocks(), Uint<"part_words_count">{parts_.part_words}, Uint<"slots">{slots_},
-                    Uint<"stride">{stride_}, Uint<"step">{step}, local_words(base.size() + parts_.part_words),
-                    progress_, state_, spent_);
+void Turns::meet(const TracePass& pass, std::uint32_t step) {
+    session_.launch(pass.label, meet_, pes_.count(), options_.group_size, pass.job,
+                    Uint<"word_count">{cl_uint(pass.job.size())}, ring_.blocks(),
+                    Uint<"part_words_count">{parts_.part_words}, Uint<"slots">{slots_}, Uint<"stride">{stride_},
+                    Uint<"step">{step}, local_words(pass.job.size() + parts_.part_words), progress_, state_, spent_);
 }
 
 std::uint64_t Turns::barrier_cycles(const std::string& label, std::uint32_t steps) {
@@ -270,13 +263,12 @@ std::uint64_t Turns::barrier_cycles(const std::string& label, std::uint32_t step
     std::vector<std::uint64_t> spent(steps * per_step), busiest(steps);
     session_.read(label, spent_, spent);
     for (std::size_t n = 0; n < spent.size(); n += per_pe) {
-        const auto first = spent.begin() + static_cast<std::ptrdiff_t>(n);
         std::uint64_t& most = busiest[n / per_step];
-        most = std::max(most, std::accumulate(first, first + static_cast<std::ptrdiff_t>(per_pe), std::uint64_t{0}));
+        most = std::max(most, sum_of(std::span(spent).subspan(n, per_pe)));
     }
     const std::vector<std::uint64_t> all = pes_.ranks().all_gather(std::span<const std::uint64_t>(busiest));
     for (std::size_t n = 0; n < all.size(); ++n) busiest[n % steps] = std::max(busiest[n % steps], all[n]);
-    return std::accumulate(busiest.begin(), busiest.end(), std::uint64_t{0});
+    return sum_of(busiest);
 }
 
 }  // namespace raya

@@ -63,12 +63,9 @@ class Turns : public SampleTracer {
     Turns(Kernels& kernels, Communication& communication, const Distribution& pes, std::uint32_t capacity,
           const ObjectParts& parts, std::uint32_t slots);
 
-    void warm_up(const Buffer<std::uint32_t>& base, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels,
-                 PassCounters& counters) override;
+    void warm_up(const TracePass& pass) override;
     /// Appends the turns to counters.turn_cycles. After visit_state() has restored trees in flight, continues them.
-    void trace(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,
-               const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters,
-               const ProgressCallback& progress) override;
+    void trace(const TracePass& pass, const ProgressCallback& progress) override;
 
     /// Sends every part to the PEs that start with it: one broadcast over the bus for each part.
     void broadcast_parts();
@@ -81,12 +78,11 @@ class Turns : public SampleTracer {
 
   private:
     /// Sets the next pixel of every PE, without trees in flight.
-    void start(const std::string& label, std::uint32_t pixel);
+    void start(const TracePass& pass);
     /// Gives every PE the part that it holds after `rotations` rotations.
     void load_parts(std::uint64_t rotations);
-    void advance(const std::string& label, const Buffer<std::uint32_t>& base, PixelRange range, raya_u32 points,
-                 bool fresh, const Buffer<std::uint8_t>& marks, Buffer<float>& pixels, PassCounters& counters);
-    void meet(const std::string& label, const Buffer<std::uint32_t>& base, std::uint32_t step);
+    void advance(const TracePass& pass, bool fresh);
+    void meet(const TracePass& pass, std::uint32_t step);
     /// Returns the sum of the cycles of the busiest PE in each of `steps` steps.
     std::uint64_t barrier_cycles(const std::string& label, std::uint32_t steps);
     LocalMemory<std::uint32_t> local_words(std::size_t words) const { return {options_.words_local ? words : 4}; }

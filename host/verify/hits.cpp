@@ -44,10 +44,7 @@ CheckRunner hit_runner(Session& session, const HitBuild& build) {
 }
 
 PackedJob job_with_grid(const Scene& scene, const NumberFormat& format) {
-    JobSettings settings;
-    settings.image = {16, 16};
-    settings.format = format;
-    PackedJob job = pack_job(scene, settings);
+    PackedJob job = pack_job(scene, {.image = {16, 16}, .format = format});
     append_grid(job, accel_partition(job, format, {.kind = AccelKind::kGrid, .divisions = Divisions{6, 5, 4}}));
     return job;
 }
@@ -207,6 +204,36 @@ Verdict check_filter_bounds(CheckRunner& runner, const NumberFormat& format) {
                                                         .got = fmt::format("0x{:08x}", fmt::join(got, " 0x"))});
 }
 
+// Adds the checks of one build: known hits; the hits of random rays with and without grid, and with and without
+// filters, if the build has them.
+void verify_hits(Verification& v, const HitBuild& build) {
+    const auto check = [&](const std::string& subject, const std::function<Verdict(CheckRunner&, Session&)>& body) {
+        v.check("geometry", fmt::format("{}, {}", subject, build.name()), [&](Session& session) {
+            CheckRunner runner = hit_runner(session, build);
+            return with_options(body(runner, session), runner.options());
+        });
+    };
+    for (const char* const name : {"spheres", "planes", "polygons", "cones"})
+        check(std::string("known hits of ") + name,
+              [&](CheckRunner& runner, Session&) { return check_known_hits(runner, build, name); });
+    const std::size_t rays_per_scene = v.settings().depth == Depth::kBrief ? 128 : 4096;
+    if (build.grid)
+        check("grid", [&](CheckRunner& runner, Session&) {
+            return compare_finders(build.format, {runner, "hits_without_accel"}, {runner, "hits_with_accel"}, "grid",
+                                   {"polygons", "cones", "spheres"}, rays_per_scene, false);
+        });
+    if (build.filter)
+        check("filters", [&](CheckRunner& filtered, Session& session) {
+            const Verdict bounds = check_filter_bounds(filtered, build.format);
+            if (bounds.outcome != Outcome::kPass) return bounds;
+            HitBuild without = build;
+            without.filter = false;
+            CheckRunner reference = hit_runner(session, without);
+            return compare_finders(build.format, {reference, "hits_without_accel"}, {filtered, "hits_without_accel"},
+                                   "filters", {"polygons", "spheres"}, rays_per_scene, true);
+        });
+}
+
 }  // namespace
 
 void Rays::add(const std::array<float, 3>& origin, const std::array<float, 3>& direction, float limit) {
@@ -240,40 +267,6 @@ Hits find_hits(CheckRunner& runner, const std::string& kernel, const std::vector
         kernel, rays.count(), job_words, ray_words, objects, distances);
     return {runner.read(objects), runner.read(distances)};
 }
-
-namespace {
-
-// Adds the checks of one build: known hits; the hits of random rays with and without grid, and with and without
-// filters, if the build has them.
-void verify_hits(Verification& v, const HitBuild& build) {
-    const auto check = [&](const std::string& subject, const std::function<Verdict(CheckRunner&, Session&)>& body) {
-        v.check("geometry", fmt::format("{}, {}", subject, build.name()), [&](Session& session) {
-            CheckRunner runner = hit_runner(session, build);
-            return with_options(body(runner, session), runner.options());
-        });
-    };
-    for (const char* const name : {"spheres", "planes", "polygons", "cones"})
-        check(std::string("known hits of ") + name,
-              [&](CheckRunner& runner, Session&) { return check_known_hits(runner, build, name); });
-    const std::size_t rays_per_scene = v.settings().depth == Depth::kBrief ? 128 : 4096;
-    if (build.grid)
-        check("grid", [&](CheckRunner& runner, Session&) {
-            return compare_finders(build.format, {runner, "hits_without_accel"}, {runner, "hits_with_accel"}, "grid",
-                                   {"polygons", "cones", "spheres"}, rays_per_scene, false);
-        });
-    if (build.filter)
-        check("filters", [&](CheckRunner& filtered, Session& session) {
-            const Verdict bounds = check_filter_bounds(filtered, build.format);
-            if (bounds.outcome != Outcome::kPass) return bounds;
-            HitBuild without = build;
-            without.filter = false;
-            CheckRunner reference = hit_runner(session, without);
-            return compare_finders(build.format, {reference, "hits_without_accel"}, {filtered, "hits_without_accel"},
-                                   "filters", {"polygons", "spheres"}, rays_per_scene, true);
-        });
-}
-
-}  // namespace
 
 void verify_geometry(Verification& v) {
     for (const std::uint32_t lanes : v.lanes())

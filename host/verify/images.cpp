@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,13 +21,8 @@
 namespace raya {
 namespace {
 
-enum class Renderer {
-    kRing,
-    kGrid,
-    kBvh,
-    kPackets,
-    kTorus
-};  // kGrid, kBvh: the ring with it; kPackets: of rays, with a BVH
+// kGrid, kBvh: the ring with it; kPackets: of rays, with a BVH.
+enum class Renderer { kRing, kGrid, kBvh, kPackets, kTorus };
 constexpr auto kGrid = Renderer::kGrid, kBvh = Renderer::kBvh, kPackets = Renderer::kPackets, kTorus = Renderer::kTorus;
 
 /// A reference image and the settings that must not change any bit of it.
@@ -61,12 +55,6 @@ struct Rendering {
     std::string name() const;
 };
 
-// Returns the mapping's name in names of checks.
-std::string mapping_name(const MappingRule& mapping) {
-    if (mapping == column_mapping()) return "column";
-    return mapping.kind == RAYA_RANDOM ? "random" : mapping_text(mapping);
-}
-
 std::string Rendering::check_kind() const {
     if (split > 1) return fmt::format("{} parts", split);
     if (renderer != kTorus) return std::array{"ring", "grid", "bvh", "packets"}[static_cast<std::size_t>(renderer)];
@@ -76,8 +64,10 @@ std::string Rendering::check_kind() const {
 
 std::string Rendering::name() const {
     std::string text = check_kind();
-    if (renderer != kTorus)
-        text = fmt::format("{} on {}{}", mapping_name(mapping), pes, text == "ring" ? "" : ", " + text);
+    const std::string mapping_name = mapping == column_mapping()   ? "column"
+                                     : mapping.kind == RAYA_RANDOM ? "random"
+                                                                   : mapping_text(mapping);
+    if (renderer != kTorus) text = fmt::format("{} on {}{}", mapping_name, pes, text == "ring" ? "" : ", " + text);
     if (mapping.kind == RAYA_FOLD_BLOCK) text += ", block fold";
     if (work_per_launch) text += ", launches of " + counted(work_per_launch, renderer == kTorus ? "unit" : "test");
     if (pe_bytes) text += fmt::format(", PEs of {} bytes", pe_bytes);
@@ -198,25 +188,29 @@ std::vector<Rendering> standard_renderings() {
 // Returns renderings with every number of lanes and groups of 1 and 32 work-items, on both machines, in fp32 and
 // reduced formats.
 std::vector<Rendering> renderings_of_all_builds() {
+    const std::vector<Rendering> renderings = {
+        {.image = "glass fp32"},
+        {.image = "polygons fp32"},
+        {.image = "mirrors spa22"},
+        {.image = "cones e5m10"},
+        {.image = "spheres e8m12t"},
+        {.image = "polygons fp32", .renderer = kGrid},
+        {.image = "polygons fp32", .renderer = kBvh},
+        {.image = "polygons fp32", .renderer = kTorus},
+        {.image = "polygons spa22", .renderer = kGrid},
+        {.image = "polygons spa22", .renderer = kBvh},
+        {.image = "polygons spa22", .renderer = kTorus},
+        {.image = "polygons fp32", .mapping = tiles_mapping(4, 4), .pes = 7, .renderer = kPackets},
+        {.image = "glass fp32 filter"},
+        {.image = "mirrors spa22 axes"}};
     std::vector<Rendering> all;
     for (const std::uint32_t lanes : {1u, 4u, 8u, 16u})
-        for (const std::uint32_t group : {1u, 32u}) {
-            for (const char* image : {"glass fp32", "polygons fp32", "mirrors spa22", "cones e5m10", "spheres e8m12t"})
-                all.push_back({.image = image, .lanes = lanes, .group_size = group});
-            for (const char* image : {"polygons fp32", "polygons spa22"}) {
-                all.push_back({.image = image, .lanes = lanes, .group_size = group, .renderer = kGrid});
-                all.push_back({.image = image, .lanes = lanes, .group_size = group, .renderer = kBvh});
-                all.push_back({.image = image, .lanes = lanes, .group_size = group, .renderer = kTorus});
+        for (const std::uint32_t group : {1u, 32u})
+            for (const Rendering& r : renderings) {
+                all.push_back(r);
+                all.back().lanes = lanes;
+                all.back().group_size = group;
             }
-            all.push_back({.image = "polygons fp32",
-                           .lanes = lanes,
-                           .group_size = group,
-                           .mapping = tiles_mapping(4, 4),
-                           .pes = 7,
-                           .renderer = kPackets});
-            all.push_back({.image = "glass fp32 filter", .lanes = lanes, .group_size = group});
-            all.push_back({.image = "mirrors spa22 axes", .lanes = lanes, .group_size = group});
-        }
     return all;
 }
 
@@ -233,10 +227,6 @@ struct Rendered {
     std::string counts;   // text of counts_text()
     std::string fault{};  // another wrong result; empty: none
 };
-
-std::uint64_t sum(std::span<const std::uint64_t> numbers) {
-    return std::accumulate(numbers.begin(), numbers.end(), std::uint64_t{0});
-}
 
 // Returns a fault if the cycles of a node differ from the sum of the cycles of its tasks.
 std::string history_fault(const TorusResult& result, const History& history) {
@@ -260,8 +250,8 @@ Rendered render_on_ring(const KernelChoice& kernels, Session& session, const Ren
     settings.record_costs = !packets;
     if (r.pe_bytes) settings.machine.pe_memory_bytes = r.pe_bytes;
     RingResult result = RingRenderer(session, scene_of(image), settings).render();
-    std::vector<std::pair<const char*, std::uint64_t>> cycles = {{"cycles", sum(result.load.per_pe)}};
-    if (!packets) cycles.emplace_back("pixel_cycles", sum(result.cost().cycles));
+    std::vector<std::pair<const char*, std::uint64_t>> cycles = {{"cycles", sum_of(result.load.per_pe)}};
+    if (!packets) cycles.emplace_back("pixel_cycles", sum_of(result.cost().cycles));
     if (r.split > 1) {
         std::uint64_t barrier_cycles = 0;
         for (const Phase& phase : result.phases) barrier_cycles += phase.barrier_cycles();
@@ -292,7 +282,7 @@ Rendered render_on_torus(const KernelChoice& kernels, Session& session, const Re
     if (r.history) observers.work = [&](const NodeWork& work) { recorder.add(work); };
     TorusResult result = TorusRenderer(session, scene_of(image), s).render({}, observers);
     std::vector<std::pair<const char*, std::uint64_t>> counts = {
-        {"cycles", sum(result.load.per_pe)}, {"packets", sum(result.made)}, {"hops", result.hops}};
+        {"cycles", sum_of(result.load.per_pe)}, {"packets", sum_of(result.made)}, {"hops", result.hops}};
     // With a short queue, the supersteps depend on the number of packets that a node processes at a time.
     if (r.queue == 0 || (r.lanes == 1 && r.group_size == 1)) {
         std::uint64_t busiest_cycles = 0, busiest_words = 0;
@@ -314,9 +304,6 @@ Rendered render(const KernelChoice& kernels, Session& session, const Rendering& 
 }
 
 Verdict check_rendering(const Verification& v, Session& session, const Rendering& r) {
-    if (r.group_size > v.device().max_group_size)
-        return skipped(fmt::format("needs groups of {} work-items, the device allows {}", r.group_size,
-                                   v.device().max_group_size));
     const StoredImage& stored = stored_image(reference_image_named(r.image));
     const Rendered got = render(v.kernels(r.lanes, r.group_size), session, r);
     Verdict verdict = compare_images(stored.image, got.image);
@@ -365,7 +352,8 @@ void verify_images(Verification& v) {
     };
     for (const Rendering& r : renderings)
         if (v.settings().depth >= r.depth && has_given_lanes(r))
-            v.check("image", r.name(), [&](Session& session) { return check_rendering(v, session, r); });
+            v.check(
+                "image", r.name(), [&](Session& session) { return check_rendering(v, session, r); }, r.group_size);
     if (!v.full()) return;
     for (const Rendering& r : {Rendering{.image = "glass fp32"}, Rendering{.image = "polygons fp32", .renderer = kGrid},
                                Rendering{.image = "polygons fp32", .renderer = kBvh},

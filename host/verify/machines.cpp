@@ -1,8 +1,6 @@
 // Checks of layer "machine": integer arithmetic, local memory, barriers and atomics with kernels/checks/machine.cl, and
 // transfers. All results are exact integers. The host computes the expected results with the headers that the kernels
 // use.
-#include "host/verify/machines.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -60,14 +58,25 @@ std::optional<Verdict> difference(const std::vector<Word>& expected, const std::
 // packet contains the number of its outbox and its position in the outbox.
 struct LinkTraffic {
     LinkTraffic(const raya_torus& torus, std::uint32_t stride, std::size_t words)
-        : status(raya_nodes(torus)), outboxes(words), inboxes(words), expected_inboxes(words) {
+        : status(raya_nodes(torus)),
+          outboxes(words),
+          inboxes(words, kPoison),
+          expected_inboxes(words),
+          expected_sent(words / kMailboxWords) {
         const std::uint32_t nodes = raya_nodes(torus);
-        expected_sent.resize(std::size_t{nodes} * RAYA_LINKS);
-        for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-            for (std::uint32_t node = 0; node < nodes && torus.sides[link / 2] > 1; ++node)
-                fill(link, node, nodes, stride);
-        for (std::size_t at = 0; at < words; ++at)
-            inboxes[at] = at % kMailboxWords ? kPoison : 0;  // 0 packets, even if LinkExchange::clear() is wrong
+        for (std::uint32_t outbox = 0; outbox < expected_sent.size(); ++outbox) {
+            const std::uint32_t link = outbox / nodes, node = outbox % nodes;
+            const bool is_used = torus.sides[link / 2] > 1 && outbox % stride == 0;
+            const std::uint32_t packets = is_used ? 1 + outbox % kCapacity : 0;
+            status.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX + link] = packets;
+            const std::size_t at = std::size_t{outbox} * kMailboxWords;
+            inboxes[at] = 0;  // 0 packets, even if LinkExchange::clear() is wrong
+            outboxes[at] = expected_inboxes[at] = packets;
+            expected_sent[outbox] = packets > 0;
+            for (std::uint32_t w = 0; w < packets * kPacketWords; ++w)
+                outboxes[at + kPacketWords + w] = expected_inboxes[at + kPacketWords + w] = outbox << 12 | (w + 1);
+            packets_sent += packets;
+        }
     }
 
     static constexpr std::uint32_t kCapacity = 5, kPacketWords = RAYA_PACKET_WORDS,
@@ -75,18 +84,6 @@ struct LinkTraffic {
     NodeStatus status;
     Words outboxes, inboxes, expected_inboxes, expected_sent;
     std::uint32_t packets_sent = 0;
-
-  private:
-    void fill(std::uint32_t link, std::uint32_t node, std::uint32_t nodes, std::uint32_t stride) {
-        const std::uint32_t outbox = link * nodes + node, packets = outbox % stride ? 0 : 1 + outbox % kCapacity;
-        status.words[std::size_t{node} * RAYA_STATUS_WORDS + RAYA_STATUS_OUTBOX + link] = packets;
-        const std::size_t at = std::size_t{outbox} * kMailboxWords;
-        outboxes[at] = expected_inboxes[at] = packets;
-        expected_sent[outbox] = packets > 0;
-        for (std::uint32_t w = 0; w < packets * kPacketWords; ++w)
-            outboxes[at + kPacketWords + w] = expected_inboxes[at + kPacketWords + w] = outbox << 12 | (w + 1);
-        packets_sent += packets;
-    }
 };
 
 /// Checks one broadcast and one gather over the bus.
@@ -213,33 +210,6 @@ Verdict check_links(Session& session, const raya_torus& torus, std::uint32_t str
         return *verdict;
     return passed(fmt::format("{} packets over {} links", traffic.packets_sent, RAYA_LINKS * nodes));
 }
-
-}  // namespace
-
-Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies) {
-    const Words source = distinct_words(kCopiedWords);
-    std::size_t copied = 0;
-    for (const BlockCopy& copy : copies) {
-        auto source_buffer = session.buffer<std::uint32_t>("from", kCopiedWords);
-        auto destination = session.buffer<std::uint32_t>("to", kCopiedWords);
-        session.write("from", source_buffer, source);
-        session.fill("to", destination, kPoison);
-        session.copy_blocks("blocks", source_buffer, copy.from, destination, copy.to, copy.block_words, copy.blocks);
-        Words expected(kCopiedWords, kPoison), got(kCopiedWords);
-        const auto index = [&](const Session::Blocks& layout, std::size_t block, std::size_t w) {
-            return layout.first + block * layout.pitch + layout.offset + w;
-        };
-        for (std::size_t block = 0; block < copy.blocks; ++block)
-            for (std::size_t w = 0; w < copy.block_words; ++w, ++copied)
-                expected[index(copy.to, block, w)] = source[index(copy.from, block, w)];
-        session.read("to", destination, got);
-        const std::string transfer = fmt::format("{} blocks of {} words", copy.blocks, copy.block_words);
-        if (auto verdict = difference(expected, got, transfer, kCopiedWords, "buffer")) return *verdict;
-    }
-    return passed(fmt::format("{} words in {} layouts", copied, copies.size()));
-}
-
-namespace {
 
 void verify_transfers(Verification& v) {
     const std::vector<BlockCopy> copies = {{{3, 17, 0}, {0, 5, 2}, 5, 40},
@@ -451,14 +421,12 @@ void verify_kernels(Verification& v) {
     const std::size_t cases = v.full() ? 50'000 : 5'000;
     const auto check = [&](const std::string& name, std::uint32_t group,
                            const std::function<Verdict(CheckRunner&)>& body) {
-        v.check("machine", name, [&](Session& session) {
-            if (group > v.device().max_group_size)
-                return skipped(fmt::format("needs groups of {} work-items, the device allows {}", group,
-                                           v.device().max_group_size));
+        const auto run = [&](Session& session) {
             CheckRunner runner(
                 session, Kernels(session, {.group_size = group}, v.settings().sources).program("checks/machine.cl"));
             return with_options(body(runner), runner.options());
-        });
+        };
+        v.check("machine", name, run, group);
     };
     constexpr std::array<const char*, RAYA_RANDOM + 1> kKinds = {
         "cyclic, cyclic fold", "cyclic, block fold", "rows", "blocks", "grid", "tiles", "random"};
@@ -473,6 +441,29 @@ void verify_kernels(Verification& v) {
 }
 
 }  // namespace
+
+Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies) {
+    const Words source = distinct_words(kCopiedWords);
+    std::size_t copied = 0;
+    for (const BlockCopy& copy : copies) {
+        auto source_buffer = session.buffer<std::uint32_t>("from", kCopiedWords);
+        auto destination = session.buffer<std::uint32_t>("to", kCopiedWords);
+        session.write("from", source_buffer, source);
+        session.fill("to", destination, kPoison);
+        session.copy_blocks("blocks", source_buffer, copy.from, destination, copy.to, copy.block_words, copy.blocks);
+        Words expected(kCopiedWords, kPoison), got(kCopiedWords);
+        const auto index = [&](const Session::Blocks& layout, std::size_t block, std::size_t w) {
+            return layout.first + block * layout.pitch + layout.offset + w;
+        };
+        for (std::size_t block = 0; block < copy.blocks; ++block)
+            for (std::size_t w = 0; w < copy.block_words; ++w, ++copied)
+                expected[index(copy.to, block, w)] = source[index(copy.from, block, w)];
+        session.read("to", destination, got);
+        const std::string transfer = fmt::format("{} blocks of {} words", copy.blocks, copy.block_words);
+        if (auto verdict = difference(expected, got, transfer, kCopiedWords, "buffer")) return *verdict;
+    }
+    return passed(fmt::format("{} words in {} layouts", copied, copies.size()));
+}
 
 void verify_machines(Verification& v) {
     verify_kernels(v);

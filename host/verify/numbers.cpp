@@ -43,103 +43,6 @@ Fault fault_of(const NumberFormat& format, std::size_t operation, const NumberRo
             .got = number_text(got)};
 }
 
-Program build_number_program(Session& session, const NumberBuild& build) {
-    const KernelOptions options{
-        .lanes = build.lanes, .format = build.format, .exact_divide = build.trusted, .exact_fma = build.trusted};
-    KernelSources sources = build.sources;
-    if (!build.optimised) sources.more_options.emplace_back("-cl-opt-disable");
-    if (!build.trusted) sources.more_options.emplace_back(kNoBuiltins);
-    if (build.imprecise) {
-        // The simulated errors are added to the device's results, which are not exact without this option (NVIDIA).
-        sources.more_options.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
-        sources.more_options.emplace_back("-DRAYA_IMPRECISE=1");
-    }
-    return Kernels(session, options, sources).program("checks/numbers.cl");
-}
-
-}  // namespace
-
-void NumberRows::add(float x, float y, float z) {
-    a.push_back(x);
-    b.push_back(y);
-    c.push_back(z);
-}
-
-void NumberRows::pad() {
-    while (count() % kMaxLanes != 0) add(1, 1, 1);
-}
-
-std::string NumberBuild::name() const {
-    return fmt::format("{}, {}{}{}", format_name(format), counted(lanes, "lane"), trusted ? "" : ", fallback code",
-                       optimised ? "" : ", -cl-opt-disable");
-}
-
-namespace {
-
-NumberResults run_operations(CheckRunner& runner, const NumberRows& rows) {
-    std::vector<float> operands = rows.a;
-    operands.insert(operands.end(), rows.b.begin(), rows.b.end());
-    operands.insert(operands.end(), rows.c.begin(), rows.c.end());
-    const auto operand_buffer = runner.filled("operands", operands);
-    auto result_buffer = runner.poisoned("results", kNumberOperations.size() * rows.count());
-    runner.run_rows<const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&>(
-        "operations", rows.count(), operand_buffer, static_cast<cl_uint>(rows.count()), result_buffer);
-    const std::vector<std::uint32_t> columns = runner.read(result_buffer);
-    NumberResults results;
-    for (auto column = columns.begin(); column != columns.end(); column += std::ptrdiff_t(rows.count()))
-        results.emplace_back(column, column + std::ptrdiff_t(rows.count()));
-    return results;
-}
-
-}  // namespace
-
-NumberResults run_numbers(Session& session, const NumberBuild& build, const NumberRows& rows) {
-    CheckRunner runner(session, build_number_program(session, build), build.lanes);
-    return run_operations(runner, rows);
-}
-
-Verdict check_numbers(Session& session, const NumberBuild& build, const NumberRows& rows,
-                      const std::vector<ExpectedNumbers>& expected) {
-    CheckRunner runner(session, build_number_program(session, build), build.lanes);
-    const NumberResults results = run_operations(runner, rows);
-    KnownWords known(results.size() * rows.count());
-    std::size_t wrong = 0, compared = 0, kept = 0, flushed = 0;
-    std::string operations;
-    Fault fault;
-    for (const ExpectedNumbers& answers : expected) {
-        std::size_t wrong_of_operation = 0;
-        for (std::size_t i = 0; i < answers.results.size(); ++i) {
-            const std::size_t row = answers.first_row + i;
-            const std::uint32_t got = results[answers.operation].at(row), correct = answers.results[i];
-            const std::uint32_t zeroed =
-                answers.flushed.empty() || session.device().denormals ? correct : answers.flushed[i];
-            const bool may_flush = !agrees(zeroed, correct), keeps = agrees(got, correct);
-            const bool flushes = may_flush && (agrees(got, zeroed) || (is_zero(got) && is_zero(zeroed)));
-            ++compared;
-            kept += may_flush && keeps;
-            flushed += flushes && !keeps;
-            known.set(answers.operation * rows.count() + row, flushes ? got : correct, is_nan(correct));
-            if (keeps || flushes) continue;
-            if (wrong++ == 0) fault = fault_of(build.format, answers.operation, rows, row, correct, got);
-            ++wrong_of_operation;
-        }
-        if (wrong_of_operation)
-            operations +=
-                fmt::format("{}{} {} of {}", operations.empty() ? "" : ", ", kNumberOperations[answers.operation].name,
-                            wrong_of_operation, answers.results.size());
-    }
-    if (wrong) {
-        report_expected("results", known);
-        return with_options(failed("wrong: " + operations, fault), runner.options());
-    }
-    const std::string denormals =
-        kept + flushed ? fmt::format(", denormal numbers {} times kept, {} times flushed", kept, flushed) : "";
-    return passed(fmt::format("{} answers{}", compared, denormals));
-}
-
-// --- Checks of layer "number": compare all operations in all formats with the known answers
-namespace {
-
 // Launches the kernel once with the rows of all operations. The kernel computes every operation for every row; each
 // operation is compared only in its own rows.
 Verdict check_answers(Session& session, const NumberBuild& build, const FormatAnswers& answers) {
@@ -208,12 +111,96 @@ Verdict check_chains(Session& session, const KernelOptions& options, const Kerne
 // Returns true for a few formats that together cover every code path of the number layer: fp32, reduced formats with
 // fewer exponent bits than fp32, reduced formats with 8 exponent bits as in fp32, and both kinds of rounding.
 bool is_representative(const NumberFormat& format) {
-    for (const char* name : {"fp32", "e6m15", "e6m15t", "e5m10", "e8m12", "e8m21t"})
-        if (format == parse_format(name)) return true;
-    return false;
+    const auto names = {"fp32", "e6m15", "e6m15t", "e5m10", "e8m12", "e8m21t"};
+    return std::ranges::find(names, format_name(format)) != names.end();
 }
 
 }  // namespace
+
+void NumberRows::add(float x, float y, float z) {
+    a.push_back(x);
+    b.push_back(y);
+    c.push_back(z);
+}
+
+void NumberRows::pad() {
+    while (count() % kMaxLanes != 0) add(1, 1, 1);
+}
+
+std::string NumberBuild::name() const {
+    return fmt::format("{}, {}{}{}", format_name(format), counted(lanes, "lane"), trusted ? "" : ", fallback code",
+                       optimised ? "" : ", -cl-opt-disable");
+}
+
+CheckRunner number_runner(Session& session, const NumberBuild& build) {
+    const KernelOptions options{
+        .lanes = build.lanes, .format = build.format, .exact_divide = build.trusted, .exact_fma = build.trusted};
+    KernelSources sources = build.sources;
+    if (!build.optimised) sources.more_options.emplace_back("-cl-opt-disable");
+    if (!build.trusted) sources.more_options.emplace_back(kNoBuiltins);
+    if (build.imprecise) {
+        // The simulated errors are added to the device's results, which are not exact without this option (NVIDIA).
+        sources.more_options.emplace_back("-cl-fp32-correctly-rounded-divide-sqrt");
+        sources.more_options.emplace_back("-DRAYA_IMPRECISE=1");
+    }
+    return {session, Kernels(session, options, sources).program("checks/numbers.cl"), build.lanes};
+}
+
+NumberResults run_numbers(CheckRunner& runner, const NumberRows& rows) {
+    std::vector<float> operands = rows.a;
+    operands.insert(operands.end(), rows.b.begin(), rows.b.end());
+    operands.insert(operands.end(), rows.c.begin(), rows.c.end());
+    const auto operand_buffer = runner.filled("operands", operands);
+    auto result_buffer = runner.poisoned("results", std::size(kNumberOperations) * rows.count());
+    runner.run_rows<const Buffer<float>&, cl_uint, Buffer<std::uint32_t>&>(
+        "operations", rows.count(), operand_buffer, static_cast<cl_uint>(rows.count()), result_buffer);
+    const std::vector<std::uint32_t> columns = runner.read(result_buffer);
+    NumberResults results;
+    for (auto column = columns.begin(); column != columns.end(); column += std::ptrdiff_t(rows.count()))
+        results.emplace_back(column, column + std::ptrdiff_t(rows.count()));
+    return results;
+}
+
+Verdict check_numbers(Session& session, const NumberBuild& build, const NumberRows& rows,
+                      const std::vector<ExpectedNumbers>& expected) {
+    CheckRunner runner = number_runner(session, build);
+    const NumberResults results = run_numbers(runner, rows);
+    KnownWords known(results.size() * rows.count());
+    std::size_t wrong = 0, compared = 0, kept = 0, flushed = 0;
+    std::string operations;
+    Fault fault;
+    for (const ExpectedNumbers& answers : expected) {
+        std::size_t wrong_of_operation = 0;
+        for (std::size_t i = 0; i < answers.results.size(); ++i) {
+            const std::size_t row = answers.first_row + i;
+            const std::uint32_t got = results[answers.operation].at(row), correct = answers.results[i];
+            const std::uint32_t zeroed =
+                answers.flushed.empty() || session.device().denormals ? correct : answers.flushed[i];
+            const bool may_flush = !agrees(zeroed, correct), keeps = agrees(got, correct);
+            const bool flushes = may_flush && (agrees(got, zeroed) || (is_zero(got) && is_zero(zeroed)));
+            ++compared;
+            kept += may_flush && keeps;
+            flushed += flushes && !keeps;
+            known.set(answers.operation * rows.count() + row, flushes ? got : correct, is_nan(correct));
+            if (keeps || flushes) continue;
+            if (wrong++ == 0) fault = fault_of(build.format, answers.operation, rows, row, correct, got);
+            ++wrong_of_operation;
+        }
+        if (wrong_of_operation)
+            operations +=
+                fmt::format("{}{} {} of {}", operations.empty() ? "" : ", ", kNumberOperations[answers.operation].name,
+                            wrong_of_operation, answers.results.size());
+    }
+    if (wrong) {
+        report_expected("results", known);
+        return with_options(failed("wrong: " + operations, fault), runner.options());
+    }
+    const std::string denormals =
+        kept + flushed ? fmt::format(", denormal numbers {} times kept, {} times flushed", kept, flushed) : "";
+    return passed(fmt::format("{} answers{}", compared, denormals));
+}
+
+// --- Checks of layer "number": compare all operations in all formats with the known answers
 
 void verify_numbers(Verification& v) {
     for (const FormatAnswers& answers : known_answers()) {
@@ -245,13 +232,15 @@ std::vector<FormatAnswers> parse_known_answers(const std::string& text) {
         if (fields.at(0).find_first_of("mp") != std::string::npos) {
             const NumberFormat format = parse_format(fields[0]);
             if (all.empty() || all.back().format != format) all.push_back({format, {}});
-            for (operation = 0; fields.at(1) != kNumberOperations.at(operation).name;) ++operation;
+            operation = static_cast<std::size_t>(
+                std::ranges::find(kNumberOperations, fields.at(1), &NumberOperation::name) - kNumberOperations);
             continue;
         }
+        std::vector<KnownAnswer>& answers = all.back().operations.at(operation);
         const std::size_t operands = kNumberOperations[operation].operands;
         KnownAnswer answer{{kOne, kOne, kOne}, word_of(fields.at(operands)), word_of(fields.back())};
         for (std::size_t k = 0; k < operands; ++k) answer.operands[k] = word_of(fields[k]);
-        all.back().operations[operation].push_back(answer);
+        answers.push_back(answer);
     }
     return all;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -20,41 +21,13 @@ struct NumberOperation {
 };
 
 /// The operations in the order in which kernels/checks/numbers.cl returns their results.
-inline constexpr std::array<NumberOperation, 16> kNumberOperations = {{{"add", 2},
-                                                                       {"sub", 2},
-                                                                       {"mul", 2},
-                                                                       {"div", 2},
-                                                                       {"sqrt", 1},
-                                                                       {"mad", 3},
-                                                                       {"mul_add", 3},
-                                                                       {"max", 2},
-                                                                       {"floor", 1},
-                                                                       {"round", 1},
-                                                                       {"from_index", 1},
-                                                                       {"power", 2},
-                                                                       {"neg", 1},
-                                                                       {"abs", 1},
-                                                                       {"log2", 1},
-                                                                       {"exp2", 3}}};
+inline constexpr NumberOperation kNumberOperations[] = {
+    {"add", 2},   {"sub", 2},   {"mul", 2},        {"div", 2},   {"sqrt", 1}, {"mad", 3}, {"mul_add", 3}, {"max", 2},
+    {"floor", 1}, {"round", 1}, {"from_index", 1}, {"power", 2}, {"neg", 1},  {"abs", 1}, {"log2", 1},    {"exp2", 3}};
 /// Indices into kNumberOperations. exp2 reads only operand c.
-enum NumberOperationNumber : std::size_t {
-    kAdd,
-    kSub,
-    kMul,
-    kDiv,
-    kSqrt,
-    kMad,
-    kMulAdd,
-    kMax,
-    kFloor,
-    kRound,
-    kFromIndex,
-    kPower,
-    kNeg,
-    kAbs,
-    kLog2,
-    kExp2
-};
+inline constexpr std::size_t kAdd = 0, kSub = 1, kMul = 2, kDiv = 3, kSqrt = 4, kMad = 5, kMulAdd = 6, kMax = 7,
+                             kFloor = 8, kRound = 9, kFromIndex = 10, kPower = 11, kNeg = 12, kAbs = 13, kLog2 = 14,
+                             kExp2 = 15;
 
 /// Operands a, b and c of each row. An operation ignores the operands that it does not need. For from_index, `a`
 /// contains the bits of an integer.
@@ -92,8 +65,11 @@ struct ExpectedNumbers {
     std::size_t first_row = 0;
 };
 
-/// Returns the results of all operations in one build. The number of rows must be a multiple of kMaxLanes.
-NumberResults run_numbers(Session& session, const NumberBuild& build, const NumberRows& rows);
+/// Builds kernels/checks/numbers.cl.
+CheckRunner number_runner(Session& session, const NumberBuild& build);
+
+/// Returns the results of all operations. The number of rows must be a multiple of kMaxLanes.
+NumberResults run_numbers(CheckRunner& runner, const NumberRows& rows);
 
 /// Computes the operations and compares the results with `expected`. The verdict of a pass has a text such as "357
 /// answers"; that of a failure states the number of wrong results of each operation and the first wrong result. Any NaN
@@ -113,7 +89,7 @@ struct KnownAnswer {
 /// Known answers in one format.
 struct FormatAnswers {
     NumberFormat format;
-    std::array<std::vector<KnownAnswer>, kNumberOperations.size()> operations;  // in the order of kNumberOperations
+    std::array<std::vector<KnownAnswer>, std::size(kNumberOperations)> operations;  // in the order of kNumberOperations
 };
 
 /// Parses known_answers.csv. A line "FORMAT OPERATION" starts a section. Each further line has the bits of the

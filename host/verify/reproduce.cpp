@@ -1,5 +1,3 @@
-#include "host/verify/reproduce.hpp"
-
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -18,6 +16,7 @@
 #include "host/cl/kernel_source.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
+#include "host/verify/supervisor.hpp"
 #include "host/version.hpp"
 
 namespace raya {
@@ -147,15 +146,6 @@ std::vector<CheckRun> references(const CheckRun& failing) {
     throw UserError(fmt::format("--reproduce: no case of '{} {}': {}", check.layer, check.name, reason));
 }
 
-// Copies the outputs of the reference's step to NAME.expected, unless the captured outputs are equal.
-void take_expected(const fs::path& folder, const fs::path& reference,
-                   const std::map<std::string, std::string>& stable) {
-    for (const auto& [name, hash] : stable) {
-        const std::string right = read_file(reference / (name + ".out"));
-        if (right != read_file(folder / (name + ".out"))) write_whole_file(folder / (name + ".expected"), right);
-    }
-}
-
 // Captures the first step with wrong outputs in `folder`. Returns the number of the step and the name of the reference.
 std::pair<std::size_t, std::string> capture_wrong_step(const CheckRun& failing, const Observation& seen,
                                                        const Check& check, const fs::path& folder) {
@@ -173,10 +163,11 @@ std::pair<std::size_t, std::string> capture_wrong_step(const CheckRun& failing, 
         if (step == 0) continue;
         observe(failing, step, folder);
         observe(reference, step, scratch.path());
-        std::map<std::string, std::string> stable;
-        for (const auto& [name, hash] : first.steps[step - 1].outputs)
-            if (second.steps[step - 1].outputs.at(name) == hash) stable[name] = hash;
-        take_expected(folder, scratch.path(), stable);
+        for (const auto& [name, hash] : first.steps[step - 1].outputs) {
+            if (second.steps[step - 1].outputs.at(name) != hash) continue;
+            const std::string right = read_file(scratch.path() / (name + ".out"));
+            if (right != read_file(folder / (name + ".out"))) write_whole_file(folder / (name + ".expected"), right);
+        }
         return {step, reference.name};
     }
     no_case(check, any_passes

@@ -33,16 +33,6 @@ void for_each_setting(Settings& s, const Visit& visit) {
     visit("done", s.done);
 }
 
-}  // namespace
-
-Json settings_json(const VerifySettings& settings, const std::string& selector, std::size_t index) {
-    Json json = {{"device", selector}, {"index", index}};
-    for_each_setting(settings, [&](const char* name, const auto& value) { json[name] = value; });
-    return json;
-}
-
-namespace {
-
 // --- Functions of the child process
 
 struct SelectedDevices {
@@ -115,21 +105,18 @@ class Supervision {
     double check_seconds() const { return seconds_since(start_); }
 
     void take(const Json& line) {
-        if (find_member(line, "devices")) take_device(line);
+        if (find_member(line, "devices") && devices_ == 0) {  // else already reported by the first process
+            devices_ = json_integer(line.at("devices"));
+            all_ = from_json<DeviceChecks>(line.at("device"));
+            all_.names = json_strings(line.at("names"));
+            if (sink_.device) sink_.device(all_, json_strings(line.at("left_out")), devices_);
+        }
         if (const Json* started = find_member(line, "started")) {
             running_ = Check{json_text(started->at("layer")), json_text(started->at("name")), 0, {}};
             start_ = Clock::now();
         }
         if (const Json* check = find_member(line, "check")) finish(from_json<Check>(*check));
         ended_ = ended_ || find_member(line, "ended");
-    }
-
-    void take_device(const Json& line) {
-        if (devices_ > 0) return;  // already reported by the first process
-        devices_ = json_integer(line.at("devices"));
-        all_ = from_json<DeviceChecks>(line.at("device"));
-        all_.names = json_strings(line.at("names"));
-        if (sink_.device) sink_.device(all_, json_strings(line.at("left_out")), devices_);
     }
 
     void finish(Check check) {
@@ -179,6 +166,12 @@ class Supervision {
 
 }  // namespace
 
+Json settings_json(const VerifySettings& settings, const std::string& selector, std::size_t index) {
+    Json json = {{"device", selector}, {"index", index}};
+    for_each_setting(settings, [&](const char* name, const auto& value) { json[name] = value; });
+    return json;
+}
+
 DeviceChecks supervise(const std::string& selector, std::size_t index, const VerifySettings& settings,
                        const SupervisorSink& sink) {
     Supervision supervision(settings, sink);
@@ -196,9 +189,11 @@ void run_checks(int pipe, const Json& request) {
         for (const cl::Device& device : selected.devices) refuse_empty_selection(device, settings);
     const cl::Device& device = selected.devices.at(selector == "all" ? index : 0);
     const VerifySettings full{.depth = Depth::kFull, .sources = settings.sources};
+    const DeviceInfo info = device_info(device);
+    const DeviceChecks unchecked{info.name, info.platform, info.version, info.driver, info.pci_address};
     send_line(pipe, {{"devices", selected.devices.size()},
                      {"left_out", selected.left_out},
-                     {"device", to_json(device_checks_of(device_info(device)))},
+                     {"device", to_json(unchecked)},
                      {"names", check_names(device, full)}});
     std::optional<Capture> capture;
     if (const Json* c = find_member(request, "capture"))

@@ -22,8 +22,6 @@ enum class Outcome {
     kUnexpectedPass  // passed, although VerifySettings::expected_failures lists the check
 };
 
-inline bool has_failed(Outcome outcome) { return outcome == Outcome::kFail || outcome == Outcome::kExpectedFail; }
-
 /// Returns true for an outcome that causes exit code 4.
 inline bool is_unwanted(Outcome outcome) { return outcome == Outcome::kFail || outcome == Outcome::kUnexpectedPass; }
 

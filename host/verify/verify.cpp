@@ -23,18 +23,8 @@ namespace {
 // Begins the result of a check that an exception other than DeviceError has stopped.
 constexpr const char* kCheckStopped = "the check stopped with an error: ";
 
-constexpr const char* kOutcomeNames[] = {"PASS", "FAIL", "SKIP", "XFAIL", "XPASS"};  // by Outcome
-
-constexpr std::pair<const char*, std::string Fault::*> kFaultTexts[] = {
-    {"where", &Fault::where}, {"expected", &Fault::expected}, {"got", &Fault::got}, {"build_options", &Fault::options}};
-
-// A remedy for failures whose result contains one of the texts.
-struct KnownCause {
-    std::vector<const char*> texts;
-    const char* remedy;
-};
-
-const KnownCause kKnownCauses[] = {
+// Texts, and a remedy for failures whose result contains one of them.
+const std::pair<std::vector<const char*>, const char*> kKnownCauses[] = {
     {{"allocating buffer", "allows", "local memory", "CL_MEM_OBJECT_ALLOCATION_FAILURE", "CL_OUT_OF_", "bad_alloc"},
      "out of memory: end other programs that use this device or this machine, and run verify again"},
     {{"SIGKILL"}, "the system may have run out of memory and ended the process: see dmesg"},
@@ -66,9 +56,39 @@ void visit_layers(Verification& verification) {
     verify_images(verification);
 }
 
+// Runs random checks with random numbers of lanes for settings.soak_s seconds, without the first settings.done.
+void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
+    std::vector<VerifySettings> choices;
+    std::vector<std::uint32_t> lanes_choices = {1, 4, 8, 16};
+    if (settings.lanes != 0) lanes_choices = {settings.lanes};
+    for (const std::uint32_t lanes : lanes_choices) {
+        VerifySettings all = settings;
+        all.lanes = lanes;
+        for (const std::string& name : check_names(device, all)) choices.push_back(settings_of_one(all, name));
+    }
+    if (settings.only.empty() && settings.skip.empty()) {
+        choices.push_back(settings_of_one(settings, ""));
+        choices.back().is_whole_name = false;
+        choices.back().random = kRandomBatch;
+    }
+    SplitMix random(settings.seed);
+    const Clock::time_point start = Clock::now();
+    for (std::size_t n = 0; seconds_since(start) < settings.soak_s; ++n) {
+        VerifySettings one = choices[random.next() % choices.size()];
+        if (one.random > 0) one.seed = random.next() % 1'000'000;
+        if (n < settings.done) continue;
+        verify(device, one, {.started = sink.started, .finished = [&](Check check) {
+                                 if (one.lanes != 0) check.verdict.result += fmt::format(", --lanes {}", one.lanes);
+                                 sink.finished(check);
+                             }});
+    }
+}
+
 }  // namespace
 
-const char* outcome_name(Outcome outcome) { return kOutcomeNames[static_cast<std::size_t>(outcome)]; }
+const char* outcome_name(Outcome outcome) {
+    return std::array{"PASS", "FAIL", "SKIP", "XFAIL", "XPASS"}[static_cast<std::size_t>(outcome)];
+}
 
 bool name_matches(const std::string& full_name, const std::string& pattern) {
     std::string glob = "*";
@@ -116,10 +136,9 @@ std::vector<std::string> remedies_of(const Check& check, const VerifySettings& s
         return {"run raya verify without --kernel-dir; if it passes, these kernels are wrong"};
     std::vector<std::string> all;
     if (uses_il()) all.emplace_back("run raya verify without --il; if it passes, the SPIR-V is the cause");
-    for (const KnownCause& cause : kKnownCauses)
-        if (std::ranges::any_of(cause.texts,
-                                [&](const char* text) { return check.verdict.result.find(text) != std::string::npos; }))
-            all.emplace_back(cause.remedy);
+    const auto is_in_result = [&](const char* text) { return check.verdict.result.find(text) != std::string::npos; };
+    for (const auto& [texts, remedy] : kKnownCauses)
+        if (std::ranges::any_of(texts, is_in_result)) all.emplace_back(remedy);
     if (check.layer != "number")
         all.emplace_back("start with the first check that fails: the others rely on what it checks");
     if (settings.lanes != 1) all.emplace_back("run raya verify --lanes 1; if it passes, render with --lanes 1");
@@ -130,8 +149,8 @@ std::vector<std::string> remedies_of(const Check& check, const VerifySettings& s
 }
 
 std::size_t count_of(const std::vector<Check>& checks, Outcome outcome) {
-    return static_cast<std::size_t>(
-        std::count_if(checks.begin(), checks.end(), [&](const Check& c) { return c.verdict.outcome == outcome; }));
+    const auto outcome_of = [](const Check& check) { return check.verdict.outcome; };
+    return static_cast<std::size_t>(std::ranges::count(checks, outcome, outcome_of));
 }
 
 std::string check_lines(const Check& c) {
@@ -139,7 +158,8 @@ std::string check_lines(const Check& c) {
                                     c.name, c.seconds, c.verdict.result);
     if (c.verdict.outcome != Outcome::kFail) return lines;
     const Fault& f = c.verdict.fault;
-    for (const auto& [name, text] : kFaultTexts) lines += indented(replaced(name, "_", " "), f.*text);
+    lines += indented("where", f.where) + indented("expected", f.expected) + indented("got", f.got) +
+             indented("build options", f.options);
     for (const std::string& remedy : f.remedies) lines += indented(&remedy == &f.remedies.front() ? "try" : "", remedy);
     return lines;
 }
@@ -154,7 +174,7 @@ void members_of(Members& m, Check& c) {
     m("result", c.verdict.result, "One line: what was compared, why it was skipped, or what is wrong.");
     for (const Outcome outcome : {Outcome::kFail, Outcome::kSkip, Outcome::kExpectedFail, Outcome::kUnexpectedPass})
         if (status == outcome_name(outcome)) c.verdict.outcome = outcome;
-    const bool failed = has_failed(c.verdict.outcome);
+    const bool failed = c.verdict.outcome == Outcome::kFail || c.verdict.outcome == Outcome::kExpectedFail;
     Fault& f = c.verdict.fault;
     m.when(failed, "where", f.where, "Failed check: first wrong operation, ray, word or pixel, or empty.");
     m.when(failed, "expected", f.expected, "Bits of the expected result, and their meaning.");
@@ -171,7 +191,7 @@ Verification::Verification(const cl::Device& device, const VerifySettings& setti
 }
 
 void Verification::check(const std::string& layer, const std::string& name,
-                         const std::function<Verdict(Session&)>& body) {
+                         const std::function<Verdict(Session&)>& body, std::uint32_t group_size) {
     const std::string full_name = layer + " " + name;
     if (settings_.is_whole_name ? full_name != settings_.only : !name_matches(full_name, settings_.only)) return;
     if (!settings_.skip.empty() && name_matches(full_name, settings_.skip)) return;
@@ -180,6 +200,9 @@ void Verification::check(const std::string& layer, const std::string& name,
     if (!runs_ || names_.size() <= settings_.done) return;
     if (sink_.started) sink_.started(layer, name);
     checks_.push_back(run_check(layer, name, [&] {
+        if (group_size > info_.max_group_size)
+            return skipped(
+                fmt::format("needs groups of {} work-items, the device allows {}", group_size, info_.max_group_size));
         for (std::uint32_t run = 1;; ++run) {
             Session session(device_);
             Verdict verdict = body(session);
@@ -207,38 +230,6 @@ VerifySettings settings_of_one(VerifySettings settings, const std::string& full_
     return settings;
 }
 
-namespace {
-
-// Runs random checks with random numbers of lanes for settings.soak_s seconds, without the first settings.done.
-void verify_at_random(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
-    std::vector<VerifySettings> choices;
-    std::vector<std::uint32_t> lanes_choices = {1, 4, 8, 16};
-    if (settings.lanes != 0) lanes_choices = {settings.lanes};
-    for (const std::uint32_t lanes : lanes_choices) {
-        VerifySettings all = settings;
-        all.lanes = lanes;
-        for (const std::string& name : check_names(device, all)) choices.push_back(settings_of_one(all, name));
-    }
-    if (settings.only.empty() && settings.skip.empty()) {
-        choices.push_back(settings_of_one(settings, ""));
-        choices.back().is_whole_name = false;
-        choices.back().random = kRandomBatch;
-    }
-    SplitMix random(settings.seed);
-    const Clock::time_point start = Clock::now();
-    for (std::size_t n = 0; seconds_since(start) < settings.soak_s; ++n) {
-        VerifySettings one = choices[random.next() % choices.size()];
-        if (one.random > 0) one.seed = random.next() % 1'000'000;
-        if (n < settings.done) continue;
-        verify(device, one, {.started = sink.started, .finished = [&](Check check) {
-                                 if (one.lanes != 0) check.verdict.result += fmt::format(", --lanes {}", one.lanes);
-                                 sink.finished(check);
-                             }});
-    }
-}
-
-}  // namespace
-
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink) {
     if (settings.soak_s > 0) return verify_at_random(device, settings, sink), std::vector<Check>();
     Verification verification(device, settings, sink);
@@ -250,10 +241,6 @@ std::vector<std::string> check_names(const cl::Device& device, const VerifySetti
     Verification verification(device, settings, {}, false);
     visit_layers(verification);
     return verification.take_names();
-}
-
-DeviceChecks device_checks_of(const DeviceInfo& info) {
-    return {info.name, info.platform, info.version, info.driver, info.pci_address};
 }
 
 void members_of(Members& m, DeviceChecks& device) {
@@ -296,8 +283,6 @@ std::string xml_text(const std::string& text) {
     return all;
 }
 
-bool is_left_out(Outcome outcome) { return outcome == Outcome::kSkip || outcome == Outcome::kExpectedFail; }
-
 std::string junit_case(const Check& check) {
     const Verdict& v = check.verdict;
     std::string text = fmt::format("    <testcase classname=\"raya.{}\" name=\"{}\" time=\"{:.3f}\"",
@@ -305,7 +290,7 @@ std::string junit_case(const Check& check) {
     if (is_unwanted(v.outcome))
         return text + fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
                                   xml_text(v.result), xml_text(check_lines(check)));
-    if (is_left_out(v.outcome))
+    if (v.outcome == Outcome::kSkip || v.outcome == Outcome::kExpectedFail)
         return text + fmt::format(">\n      <skipped message=\"{}\"/>\n    </testcase>\n", xml_text(v.result));
     return text + "/>\n";
 }

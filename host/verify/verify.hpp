@@ -114,8 +114,10 @@ class Verification {
     const VerifySettings& settings() const { return settings_; }
     bool full() const { return settings_.depth == Depth::kFull; }
 
-    /// Runs one check in a new session, because a failed command may make an OpenCL context unusable.
-    void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body);
+    /// Runs one check in a new session, because a failed command may make an OpenCL context unusable. Skips it on a
+    /// device that does not allow groups of `group_size` work-items.
+    void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body,
+               std::uint32_t group_size = 1);
 
     /// Returns the sources and options of a renderer's kernels. If `lanes` is 0, the options have settings().lanes.
     KernelChoice kernels(std::uint32_t lanes, std::uint32_t group_size) const {
@@ -149,6 +151,18 @@ void verify_images(Verification& verification);
 /// Layer "random": settings().random random kernels (random_kernel.hpp) of the sequence settings().seed.
 void verify_random(Verification& verification);
 
+/// A copy of blocks between two buffers in which the blocks have different layouts.
+struct BlockCopy {
+    Session::Blocks from, to;         // layouts in source and destination
+    std::size_t block_words, blocks;  // words to copy from the start of each block; number of blocks
+};
+
+/// Size of each of the two buffers of check_copies(), in words.
+inline constexpr std::size_t kCopiedWords = 4096;
+
+/// Checks that each copy is correct and does not change the other words of the destination.
+Verdict check_copies(Session& session, const std::vector<BlockCopy>& copies);
+
 /// Number of kernels in a check of layer "random".
 inline constexpr std::uint32_t kRandomBatch = 25;
 
@@ -174,9 +188,6 @@ struct DeviceChecks {
                count_of(checks, Outcome::kPass) + count_of(checks, Outcome::kExpectedFail) > 0;
     }
 };
-
-/// Returns the properties of a device, without checks.
-DeviceChecks device_checks_of(const DeviceInfo& info);
 
 /// Lists the members of a device, for to_json(), schema_of() and from_json().
 void members_of(Members& m, DeviceChecks& device);

@@ -11,7 +11,7 @@
 #include "host/cl/commands.hpp"
 #include "host/error.hpp"
 #include "host/scene/split_mix.hpp"
-#include "host/verify/machines.hpp"
+#include "host/verify/verify.hpp"
 
 using namespace raya;
 using Catch::Contains;

@@ -53,7 +53,8 @@ inline std::vector<NumberBuild> fp32_builds() {
 /// Returns the results of run_numbers() on the default device.
 inline NumberResults run_numbers(const NumberBuild& build, const NumberRows& rows) {
     Session session(choose_device(""));
-    return run_numbers(session, build, rows);
+    CheckRunner runner = number_runner(session, build);
+    return run_numbers(runner, rows);
 }
 
 /// Returns a description of the wrong results, with details of the first wrong result; an empty text if all results are

@@ -214,7 +214,7 @@ inline std::vector<KnownAnswer> choose_answers(std::size_t operation, const Numb
 
 inline FormatAnswers answers_in(const NumberFormat& format) {
     FormatAnswers all{format, {}};
-    for (std::size_t k = 0; k < kNumberOperations.size(); ++k) all.operations[k] = choose_answers(k, format);
+    for (std::size_t k = 0; k < std::size(kNumberOperations); ++k) all.operations[k] = choose_answers(k, format);
     return all;
 }
 
@@ -227,7 +227,7 @@ inline std::string known_answers_text(const std::vector<FormatAnswers>& all) {
 # fp32 numbers in hexadecimal without trailing zeros.
 )";
     for (const FormatAnswers& answers : all)
-        for (std::size_t k = 0; k < kNumberOperations.size(); ++k) {
+        for (std::size_t k = 0; k < std::size(kNumberOperations); ++k) {
             text += fmt::format("{} {}\n", format_name(answers.format), kNumberOperations[k].name);
             for (const KnownAnswer& answer : answers.operations[k]) {
                 for (std::size_t i = 0; i < kNumberOperations[k].operands; ++i)
