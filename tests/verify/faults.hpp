@@ -62,7 +62,7 @@ inline const char* const kOnTorus = "image polygons fp32: torus3d 2x2x2, launche
 inline const std::vector<CountFault> kCountFaults = {
     {"refracted", {"shading/tree.clh", "count_event(t, RAYA_REFRACTED", "count_event(t, RAYA_REFLECTED"}, kOnGlass},
     {"primary_hits",
-     {"shading/shade.clh", "RAYA_PRIMARY_HITS, met.struck & (t->level == 0u)", "RAYA_PRIMARY_HITS, met.struck"},
+     {"shading/shade.clh", "RAYA_PRIMARY_HITS, met->struck & (t->level == 0u)", "RAYA_PRIMARY_HITS, met->struck"},
      kOnGlass},
     {"shadow_hits", {"shading/shade.clh", "count_event(t, RAYA_SHADOW_HITS, stopped);", ""}, kOnGlass},
     {"highlights", {"shading/shade.clh", "RAYA_HIGHLIGHTS, shines", "RAYA_HIGHLIGHTS, lit"}, kOnGlass},

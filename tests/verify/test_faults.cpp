@@ -92,7 +92,7 @@ TEST_CASE("faults of kernels: exactly the checks that cover the faulty code fail
          "image glass",
          {"glass fp32 filter: cyclic:5 on 10", "glass fp32 filter: cyclic:8 on 7"},
          {"glass fp32: cyclic:8 on 20", "glass fp32 axes: rows on 16", "glass fp32 diagonals: grid:4x4 on 16",
-          "glass fp32: tiles:5x4 on 7"},
+          "glass fp32: tiles:5x4 on 7", "glass fp32 axes: rows on 10"},
          "row 0, column 19",
          "pixels wrong"},
         {kResumedLaunchFault,
@@ -120,7 +120,7 @@ TEST_CASE("faults of kernels: exactly the checks that cover the faulty code fail
          "row",
          "wrong"},
         {kRoundingFault, "image cones e5m10", {"cones e5m10: cyclic:8 on 20"}, {}, "row", "pixels wrong"},
-        {kTieFault, "image ties", {"ties fp32: blocks on 5"}, {}, "row", "pixels wrong"}};
+        {kTieFault, "image ties", {"ties fp32: cyclic:8 on 20", "ties fp32: blocks on 5"}, {}, "row", "pixels wrong"}};
     for (const Row& row : rows) {
         CAPTURE(row.fault.replace, row.only);
         const auto checks = run({row.fault}, row.only);
