@@ -38,18 +38,14 @@ bool any_node_has(std::span<const std::uint32_t> status, std::size_t word) {
 
 NodeArray::NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories,
                      const NodeBuffers& buffers, const KernelOptions& options, const NodeDistribution& distribution)
-    : NodeArray(Kernels(session, choose_words_local(options, memories, session.device()), settings.kernels.sources),
-                settings, memories, buffers, distribution) {}
-
-NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories,
-                     const NodeBuffers& buffers, const NodeDistribution& distribution)
-    : session_(kernels.session()),
+    : session_(session),
       settings_(settings),
       buffers_(buffers),
       distribution_(distribution),
       nodes_(distribution.count()),
       node_words_(max_node_words(memories)),
-      options_(kernels.options()),
+      options_(choose_words_local(options, memories, session.device())),
+      kernels_(session, options_, settings.kernels.sources),
       memories_(session_.buffer_of("node memories", std::span(memories.words))),
       starts_(session_.buffer<std::uint32_t>("starts of node memories", memories.starts.size())),
       run_(session_.buffer<raya_run>("run", 1)),
@@ -64,16 +60,16 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       processed_(session_.buffer<raya_processed>("processed packets", options_.costs ? queues_.size() : 1)),
       ray_links_(session_, distribution, buffers.box,
                  {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX, settings.packets.ray_words},
-                 kernels.get<ExchangeKernel>(), options_.group_size, status_),
+                 kernels_.get<ExchangeKernel>(), options_.group_size, status_),
       return_links_(session_, distribution, buffers.box,
                     {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX,
                      settings.packets.return_words(), RAYA_STATUS_RETURN_CHARGED, 1},
-                    kernels.get<ExchangeKernel>(), options_.group_size, status_),
-      inject_(kernels.get<node_kernels::Inject>()),
-      trace_(kernels.get<node_kernels::TraceVoxel>()),
-      route_(kernels.get<node_kernels::Route>()),
-      accept_(kernels.get<node_kernels::Accept>()),
-      build_options_(kernels.program(node_kernels::TraceVoxel::kFile).options()) {
+                    kernels_.get<ExchangeKernel>(), options_.group_size, status_),
+      inject_(kernels_.get<node_kernels::Inject>()),
+      trace_(kernels_.get<node_kernels::TraceVoxel>()),
+      route_(kernels_.get<node_kernels::Route>()),
+      accept_(kernels_.get<node_kernels::Accept>()),
+      build_options_(kernels_.program(node_kernels::TraceVoxel::kFile).options()) {
     session_.write("scatter", memories_, memories.words);
     session_.write("scatter", starts_, memories.starts);
     write_inbox_table();

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "host/array/render.hpp"
@@ -129,8 +128,6 @@ class NodeArray {
     bool copies_words_to_local() const { return options_.words_local; }  // kernels copy a node's words to local memory
 
   private:
-    NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
-              const NodeDistribution& distribution);
     void write_run_constants();
     void write_inbox_table();
     /// Repeats `launch(work, resume)` until no node has work left.
@@ -145,6 +142,7 @@ class NodeArray {
     const NodeDistribution& distribution_;
     std::uint32_t nodes_, node_words_;  // number of nodes of this rank; number of words of the fullest of these nodes
     KernelOptions options_;
+    Kernels kernels_;
     Buffer<std::uint32_t> memories_, starts_;
     Buffer<raya_run> run_;
     Buffer<raya_packet> queues_;

@@ -97,12 +97,6 @@ NodeNeeds node_needs(const Scene& scene, const TorusSettings& s) {
     return {scale, words, node_bytes(words, buffers, links_of_node(s.torus))};
 }
 
-PackedJob header_only_job(const TorusJobHeader& job) {
-    PackedJob header_only(job.header, std::vector<std::uint32_t>(kWordsOf<raya_job>), job.has_patches);
-    header_only.set_header(job.header);
-    return header_only;
-}
-
 // The words of other ranks' nodes are packed rank by rank, so that this rank never holds all of them.
 TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusSettings& s,
                         const NodeDistribution& distribution, const std::function<void()>& packed) {

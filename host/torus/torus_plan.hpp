@@ -60,9 +60,6 @@ struct TorusJob : TorusJobHeader {
     NodeMemories memories;  // of this rank's nodes
 };
 
-/// Returns a packed job with the job's header, without objects.
-PackedJob header_only_job(const TorusJobHeader& job);
-
 /// Length scale of a scene, and memory that the fullest node needs.
 struct NodeNeeds {
     LengthScale scale;

@@ -60,14 +60,14 @@ void TorusRenderer::build() {
     const SpanLog::Span span = session_.span("set up device");
     const std::jthread notice = session_.compile_notice();
     const Clock::time_point start = Clock::now();
-    KernelOptions options = kernel_options(settings_, header_only_job(job_));
+    KernelOptions options = kernel_options(settings_, job_.header, job_.has_patches);
     options.costs = settings_.history;
     nodes_ = std::make_unique<NodeArray>(session_, settings_, job_.memories, job_.buffers, options, distribution_);
     options.lanes = 1;
-    Kernels kernels(session_, options, settings_.kernels.sources);
-    composer_ = std::make_unique<Composer>(kernels);
+    compose_ = Kernels(session_, options, settings_.kernels.sources).get<ComposeKernel>();
+    sum({{0, 0, 0, 0}, {0, 1}});
     nodes_->clear();
-    // Launches the kernels once with empty queues, because PoCL compiles a kernel at its first launch.
+    // Launches the kernels once, with empty queues, because PoCL compiles a kernel at its first launch.
     nodes_->trace_voxel(Reserve::kWholeTree);
     nodes_->route();
     nodes_->accept(Reserve::kWholeTree, 0);
@@ -192,7 +192,7 @@ void TorusRenderer::compose(TorusResult& result, const std::vector<raya_head>& r
     for (const raya_head& packet : returns) result.returns += (packet.state & RAYA_STATE_CHARGED) != 0;
     const std::uint32_t pixels = settings_.width * settings_.height;
     result.image = {static_cast<int>(settings_.width), static_cast<int>(settings_.height),
-                    composer_->compose(sort_contributions(returns, pixels))};
+                    sum(sort_contributions(returns, pixels))};
 }
 
 void TorusRenderer::collect(TorusResult& result) {
@@ -290,12 +290,10 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
     return sorted;
 }
 
-Composer::Composer(Kernels& kernels)
-    : session_(kernels.session()), group_size_(kernels.options().group_size), compose_(kernels.get<ComposeKernel>()) {
-    compose({{0, 0, 0, 0}, {0, 1}});  // compiles the kernel, because PoCL does so at the first launch
-}
-
-std::vector<float> Composer::compose(const Contributions& contributions) {
+// Sums the contributions of each pixel on the device. Returns [pixel][3]: linear red, green and blue, rounded to the
+// number format.
+std::vector<float> TorusRenderer::sum(const Contributions& contributions) {
+    const std::uint32_t group_size = settings_.kernels.group_size;
     const auto pixels = static_cast<std::uint32_t>(contributions.starts.size() - 1);
     Buffer<float> colours =
         session_.buffer<float>("contributions", std::max<std::size_t>(4, contributions.colours.size()));
@@ -307,12 +305,12 @@ std::vector<float> Composer::compose(const Contributions& contributions) {
     session_.write("compose", starts, contributions.starts);
     constexpr std::size_t kPixelsPerItem = 16, kMaxGroups = 4096;
     std::uint32_t was_cut = 1;
-    for (std::size_t groups = std::min(kMaxGroups, pixels / (kPixelsPerItem * group_size_) + 1); was_cut; groups *= 2) {
+    for (std::size_t groups = std::min(kMaxGroups, pixels / (kPixelsPerItem * group_size) + 1); was_cut; groups *= 2) {
         session_.fill("compose", cut_flag, 0);
-        session_.launch("compose", compose_, groups, group_size_, colours, starts, Uint<"pixels">{pixels}, image,
+        session_.launch("compose", *compose_, groups, group_size, colours, starts, Uint<"pixels">{pixels}, image,
                         cut_flag);
         session_.read("compose", cut_flag, {&was_cut, 1});
-        if (was_cut && groups * group_size_ >= pixels)
+        if (was_cut && groups * group_size >= pixels)
             throw truncated_loops_error("compose", session_.device().name, "fewer --bounces");
     }
     std::vector<float> pixels_of_image(3ull * pixels);
