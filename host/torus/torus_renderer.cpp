@@ -91,17 +91,15 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Render
     Checkpoints checkpoints(checkpointing, session_, distribution_,
                             checkpointing ? state_settings(settings_, job_, distribution_) : StateSettings{});
     run_supersteps(run, checkpoints, progress, own_observers);
-    TorusResult result;
+    TorusResult& result = run.result;
     if (ranks_.is_first()) compose(result, run.returns);
-    result.supersteps = std::move(run.supersteps);
-    result.link_words = std::move(run.link_words);
     collect(result);
     result.earlier_s = checkpoints.earlier_s();
     result.render_s = checkpoints.seconds();
     result.traffic = ranks_.traffic() - traffic_before;
     describe(result);
     if (ranks_.is_first()) check(result);
-    return result;
+    return std::move(result);
 }
 
 // Launches the computation of a superstep, which precedes the transfer of packets.
@@ -117,9 +115,9 @@ void TorusRenderer::compute(Reserve reserve, bool injects, const NodeWorkSink& w
 // charged for each link.
 void TorusRenderer::add_superstep(TorusRun& run, const NodeStatus& status, const MachineState& state,
                                   const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const {
-    run.supersteps.push_back({state.max_cycles, *std::max_element(words.begin(), words.end()), state.live});
-    if (sink) sink({run.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings_.torus)), words});
-    for (std::size_t i = 0; i < words.size(); ++i) run.link_words[i] += words[i];
+    run.result.supersteps.push_back({state.max_cycles, *std::max_element(words.begin(), words.end()), state.live});
+    if (sink) sink({run.result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings_.torus)), words});
+    for (std::size_t i = 0; i < words.size(); ++i) run.result.link_words[i] += words[i];
 }
 
 // Runs supersteps until the image is complete. All ranks read the status of all nodes_, so they make the same
@@ -129,7 +127,7 @@ void TorusRenderer::run_supersteps(TorusRun& run, Checkpoints& checkpoints, cons
     const SpanLog::Span span = session_.span("supersteps");
     const std::uint32_t all_nodes = raya_nodes(settings_.torus), queue = job_.buffers.queue;
     nodes_->clear();
-    run.link_words.assign(std::size_t{all_nodes} * RAYA_LINKS, 0);
+    run.result.link_words.assign(std::size_t{all_nodes} * RAYA_LINKS, 0);
     NodeStatus status(0);
     const auto visit = [&](RenderState& state) { visit_state(state, run, status); };
     bool resumes = checkpoints.resume(visit), injects = true;
@@ -151,7 +149,7 @@ void TorusRenderer::run_supersteps(TorusRun& run, Checkpoints& checkpoints, cons
         injects = !state.all_injected && state.longest_queue <= queue / 4;
         // Packets that a superstep accepts with a tight reserve count as progress only in the next superstep. So only
         // three supersteps without progress prove a deadlock.
-        run.stalled = state.progress == 0 && run.supersteps.back().max_link_words == 0 ? run.stalled + 1 : 0;
+        run.stalled = state.progress == 0 && run.result.supersteps.back().max_link_words == 0 ? run.stalled + 1 : 0;
         if (run.stalled == 3)
             throw TorusDeadlock(
                 fmt::format("{}: deadlock in superstep {}: {} packets wait for each other, {} of {} "
@@ -168,11 +166,11 @@ void TorusRenderer::visit_state(RenderState& state, TorusRun& run, NodeStatus& s
     for (std::uint32_t* number : {&run.superstep, &run.stalled}) state.value(*number);
     state.value(run.reserve);
     state.value(run.max_live);
-    state.rank_0(run.supersteps, true);
-    state.rank_0(run.link_words);
+    state.rank_0(run.result.supersteps, true);
+    state.rank_0(run.result.link_words);
     state.rank_0(run.returns, true);
     if (ranks_.is_first() &&
-        (run.supersteps.size() != run.superstep || run.stalled > 2 || run.reserve > Reserve::kTight))
+        (run.result.supersteps.size() != run.superstep || run.stalled > 2 || run.reserve > Reserve::kTight))
         throw UserError("damaged");
     nodes_->visit_state(state, status);
 }

@@ -129,12 +129,9 @@ struct TorusRun {
     std::uint32_t superstep = 0;
     std::uint32_t stalled = 0;  // consecutive supersteps without progress
     Reserve reserve = Reserve::kWholeTree;
-    std::uint64_t max_live = 0;  // maximum number of live packets so far
-    // Only in rank 0: counts of the finished supersteps; [node][RAYA_LINKS]: words charged for the link; returns that
-    // have reached the host
-    std::vector<Superstep> supersteps{};
-    std::vector<std::uint64_t> link_words{};
-    std::vector<raya_head> returns{};
+    std::uint64_t max_live = 0;        // maximum number of live packets so far
+    TorusResult result{};              // only in rank 0: supersteps and link_words, of the finished supersteps
+    std::vector<raya_head> returns{};  // only in rank 0: returns that have reached the host
 };
 
 // The torus's part of a render report.
