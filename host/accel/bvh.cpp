@@ -50,6 +50,12 @@ void extend(Box4& box, const Box4& added) {
     box.high = larger(box.high, added.high);
 }
 
+// Returns half the surface area of a box that is not empty.
+float half_area(const Box4& box) {
+    const Float4 sides = box.high - box.low;
+    return sides[0] * sides[1] + sides[1] * sides[2] + sides[2] * sides[0];
+}
+
 // An item as it is in memory: low x, y, z, high x; high y, z, number, kind.
 struct Item4 {
     Float4 first, second;
@@ -248,23 +254,11 @@ Sides partition_at(std::span<BvhItem> items, const Split& plane, const Binning& 
     return sides;
 }
 
-using Run = std::span<BvhItem>;  // consecutive items
-
-// Exchanges the items of two lists of runs, which have the same number of items.
-void exchange(std::vector<Run> runs, std::vector<Run> others) {
-    for (std::size_t i = 0, j = 0; i < runs.size() && j < others.size();) {
-        const std::size_t items = std::min(runs[i].size(), others[j].size());
-        std::swap_ranges(others[j].begin(), others[j].begin() + static_cast<std::ptrdiff_t>(items), runs[i].begin());
-        runs[i] = runs[i].subspan(items);
-        others[j] = others[j].subspan(items);
-        i += runs[i].empty();
-        j += others[j].empty();
-    }
-}
-
 // Exchanges items of partitioned chunks so that all items below the plane come first. `below`: their number.
 void join_chunks(const Chunks& chunks, const std::vector<Sides>& sides, std::size_t below) {
-    std::vector<Run> above_first, below_last;  // items above the plane among the first `below` items; the converse
+    // Runs of items above the plane among the first `below` items, and the converse; both have the same number of
+    // items.
+    std::vector<std::span<BvhItem>> above_first, below_last;
     for (std::size_t chunk = 0; chunk < chunks.count; ++chunk) {
         const auto [begin, end] = chunks.range(chunk);
         const std::size_t middle = begin + sides[chunk].below;  // first item of the chunk above the plane
@@ -272,7 +266,15 @@ void join_chunks(const Chunks& chunks, const std::vector<Sides>& sides, std::siz
         const std::size_t first = std::max(begin, below);
         if (first < middle) below_last.push_back(chunks.items.subspan(first, middle - first));
     }
-    exchange(std::move(above_first), std::move(below_last));
+    for (std::size_t i = 0, j = 0; i < above_first.size() && j < below_last.size();) {
+        std::span<BvhItem>&above = above_first[i], &last = below_last[j];
+        const std::size_t items = std::min(above.size(), last.size());
+        std::ranges::swap_ranges(above.first(items), last.first(items));
+        above = above.subspan(items);
+        last = last.subspan(items);
+        i += above.empty();
+        j += last.empty();
+    }
 }
 
 // Splits the items into those in the bins below Split::first_above and the others. The boxes of the parts are the
@@ -365,9 +367,9 @@ constexpr std::size_t kMaxSeparate = 8;
 constexpr float kLargeArea = 1.0F / 8;
 
 void separate_large_items(BvhItems& objects) {
-    Bounds whole = kEmptyBounds;
-    for (const BvhItem& item : objects.items) extend(whole, item.box);
-    const auto is_large = [&](const BvhItem& item) { return half_area(item.box) > kLargeArea * half_area(whole); };
+    Box4 whole = kEmptyBox4;
+    for (const BvhItem& item : objects.items) extend(whole, box_of(item));
+    const auto is_large = [&](const BvhItem& item) { return half_area(box_of(item)) > kLargeArea * half_area(whole); };
     std::vector<std::uint32_t> large;
     for (const BvhItem& item : objects.items) {
         if (is_large(item)) large.push_back(item.number);
@@ -501,13 +503,6 @@ class BvhBuilder {
 };
 
 }  // namespace
-
-void extend(Bounds& box, const Bounds& added) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.low[axis] = std::min(box.low[axis], added.low[axis]);
-        box.high[axis] = std::max(box.high[axis], added.high[axis]);
-    }
-}
 
 std::uint32_t max_leaf_items(std::uint32_t kind) {
     return kind == RAYA_LINK_POLYGON || kind == RAYA_LINK_OBJECT ? 1 : RAYA_BVH_WIDTH;

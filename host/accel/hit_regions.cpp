@@ -212,10 +212,7 @@ HitRegion HitRegions::cone(std::size_t at) const {
         const double end_radius = radius + std::abs(slope) * z_error;
         const double outer_end_radius = std::sqrt(end_radius * end_radius + error);
         max_end_radius = std::max(max_end_radius, outer_end_radius);
-        Vec3 arm;
-        for (int i = 0; i < 3; ++i) arm[i] = outer_end_radius * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
-        region.box.extendBy(region.centre + z * axis - arm);
-        region.box.extendBy(region.centre + z * axis + arm);
+        extend_by_disk(region.box, region.centre + z * axis, outer_end_radius, axis);
     }
     widen(region.box, shift);
     region.capsule_radius = max_end_radius + z_error + shift;

@@ -57,10 +57,6 @@ raya_grid grid_over(const Box& box, const Divisions& divisions, double reach) {
     return grid;
 }
 
-struct VoxelRange {
-    std::uint32_t first, last;
-};
-
 // Finds the voxels that a region overlaps, from the planes between voxels.
 class Voxels {
   public:
@@ -73,15 +69,18 @@ class Voxels {
     /// Calls visit(voxel) for each voxel that, enlarged by the slack on all sides, touches the region.
     template <class Visit>
     void visit(const HitRegion& region, const Visit& visit) const {
-        const VoxelRange x = range(region.box, 0), y = range(region.box, 1), z = range(region.box, 2);
-        for (std::uint32_t k = z.first; k <= z.last; ++k)
-            for (std::uint32_t j = y.first; j <= y.last; ++j)
-                for (std::uint32_t i = x.first; i <= x.last; ++i)
+        const auto [x, last_x] = range(region.box, 0);
+        const auto [y, last_y] = range(region.box, 1);
+        const auto [z, last_z] = range(region.box, 2);
+        for (std::uint32_t k = z; k <= last_z; ++k)
+            for (std::uint32_t j = y; j <= last_y; ++j)
+                for (std::uint32_t i = x; i <= last_x; ++i)
                     if (region.touches(enlarged_voxel(i, j, k))) visit(raya_voxel(grid_, i, j, k));
     }
 
   private:
-    VoxelRange range(const Box& box, int axis) const {
+    // Returns the first and the last voxel along an axis that a box may touch.
+    std::array<std::uint32_t, 2> range(const Box& box, int axis) const {
         const std::vector<float>& planes = planes_[static_cast<std::size_t>(axis)];
         const auto first_plane = std::lower_bound(planes.begin() + 1, planes.end() - 1, box.min[axis] - slack_);
         const auto last_plane = std::upper_bound(first_plane, planes.end() - 1, box.max[axis] + slack_);

@@ -223,7 +223,7 @@ Vec3 turned_from_z(const Vec3& v, const Vec3& axis) {
 
 void add_flake(Scene& scene, int level, const Vec3& centre, double radius, const Vec3& axis) {
     static const std::array<Vec3, 9> directions = nine_directions();
-    scene.spheres.push_back({{rounded(centre.x), rounded(centre.y), rounded(centre.z)}, rounded(radius), 1});
+    scene.spheres.push_back({rounded(centre), rounded(radius), 1});
     if (level == 0) return;
     for (const Vec3& direction : directions) {
         const Vec3 outward = turned_from_z(direction, axis);

@@ -105,20 +105,18 @@ Direction direction_at(double degrees) {
     }
 }
 
-double round_to_millionth(double x) { return std::round(x * 1e6) / 1e6 + 0.0; }
-
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
-/// Extends `box` so that it contains a disk perpendicular to `axis`, which has length 1. Along a coordinate axis, the
-/// disk extends from its centre by its radius times the sine of the angle between `axis` and the coordinate axis.
+}  // namespace
+
+// Along a coordinate axis, the disk extends from its centre by its radius times the sine of the angle between `axis`
+// and the coordinate axis.
 void extend_by_disk(Imath::Box3d& box, const Vec3& centre, double radius, const Vec3& axis) {
     Vec3 extent;
     for (int i = 0; i < 3; ++i) extent[i] = std::abs(radius) * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
     box.extendBy(centre - extent);
     box.extendBy(centre + extent);
 }
-
-}  // namespace
 
 View turned(View view, double degrees) {
     const double angle = std::fmod(degrees, 360);
@@ -142,9 +140,7 @@ Scene random_view(Scene scene, std::uint64_t seed) {
         random.uniform(std::sin(radians(kMinElevationDegrees)), std::sin(radians(kMaxElevationDegrees)));
     const double azimuth = random.uniform(0, 2 * std::numbers::pi), horizontal = std::sqrt(1 - height * height);
     const Vec3 direction = up * height + (east * std::cos(azimuth) + north * std::sin(azimuth)) * horizontal;
-    view.from = view.at + Vec3(round_to_millionth(direction.x), round_to_millionth(direction.y),
-                               round_to_millionth(direction.z)) *
-                              arm.length();
+    view.from = view.at + rounded(direction, 1e6) * arm.length();
     return scene;
 }
 
