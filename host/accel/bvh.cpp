@@ -340,10 +340,7 @@ Bounds bounds_of(const Box& box, double reach) {
 double max_slack(const HitRegions& regions) {
     constexpr double kFractionOfBox = 1.0 / 64;
     double sides = 0;
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-        const Vec3 size = regions.region(i).box.size();
-        sides += std::max({size.x, size.y, size.z});
-    }
+    for (std::size_t i = 0; i < regions.size(); ++i) sides += largest_coordinate(regions.region(i).box.size());
     return regions.size() == 0 ? -1 : kFractionOfBox * (sides / static_cast<double>(regions.size()));
 }
 

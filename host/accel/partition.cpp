@@ -17,17 +17,12 @@ namespace {
 constexpr double kMaxMeanEntries = 16;
 constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 30;  // maximum number of entries of all lists together: 4 GB
 
-double largest_coordinate(const Box& box) {
-    double largest = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        largest = std::max({largest, std::abs(box.min[axis]), std::abs(box.max[axis])});
-    return largest;
-}
-
 // Upper bound of the distance between a point of a ray and the voxel to which the traversal assigns the point, due to
 // rounding errors. The distance t to a plane has a relative error of 3 2^-24, so the point on the plane has an error of
 // 3 2^-24 |plane - O|; the first voxel is computed by five operations on numbers of that magnitude.
-double traversal_error(const Box& box, double reach) { return 16 * 0x1p-24 * (reach + largest_coordinate(box)); }
+double traversal_error(const Box& box, double reach) {
+    return 16 * 0x1p-24 * (reach + std::max(largest_coordinate(box.min), largest_coordinate(box.max)));
+}
 
 // Returns the box of the partition: the bounding box of all regions, with a margin for the traversal's rounding errors,
 // so that the traversal finds points on the border of a region inside the box.
@@ -225,8 +220,6 @@ constexpr double kMinReach = 2;
 constexpr double kLargeSide = 0.75;
 constexpr std::size_t kMaxLarge = 16;  // maximum number of large objects; see large_objects()
 
-double longest_side(const Box& box) { return box.size()[box.majorAxis()]; }
-
 std::uint32_t as_word(std::size_t number) { return static_cast<std::uint32_t>(number); }
 
 }  // namespace
@@ -240,12 +233,13 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
         Box whole;
         for (std::size_t i = 0; i < regions.size(); ++i) {
             const Box box = regions.region(i).box;
-            longest_sides.push_back(longest_side(box));
+            longest_sides.push_back(largest_coordinate(box.size()));
             whole.extendBy(box);
         }
         std::vector<std::uint32_t> new_large;
         for (std::size_t i = 0; i < regions.size(); ++i)
-            if (longest_sides[i] > kLargeSide * longest_side(whole)) new_large.push_back(regions.number(i));
+            if (longest_sides[i] > kLargeSide * largest_coordinate(whole.size()))
+                new_large.push_back(regions.number(i));
         if (new_large.empty() || large.size() + new_large.size() > kMaxLarge) return large;
         large.insert(large.end(), new_large.begin(), new_large.end());
         std::sort(large.begin(), large.end());

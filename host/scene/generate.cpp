@@ -187,9 +187,7 @@ Scene touching_walls(Scene scene) {
     for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {-1.0, 1.0}) {
             const auto extent = [&](const Sphere& sphere) { return sign * sphere.centre[axis] + sphere.radius; };
-            Sphere& outermost_sphere =
-                *std::max_element(scene.spheres.begin(), scene.spheres.end(),
-                                  [&](const Sphere& a, const Sphere& b) { return extent(a) < extent(b); });
+            Sphere& outermost_sphere = *std::ranges::max_element(scene.spheres, {}, extent);
             outermost_sphere.centre[axis] = sign * (1 - outermost_sphere.radius);
         }
     return scene;

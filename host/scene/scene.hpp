@@ -3,6 +3,7 @@
 #include <Imath/ImathBox.h>
 #include <Imath/ImathVec.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -17,6 +18,9 @@ namespace raya {
 
 using Vec3 = Imath::V3d;    // points and directions, scene units
 using Colour = Imath::V3d;  // linear red, green, blue; 1 = full intensity
+
+/// Returns the largest magnitude of the coordinates.
+inline double largest_coordinate(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 /// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six decimals). Rounding keeps
 /// files short, and makes them equal on all platforms although the last bits of sines and cosines differ.
