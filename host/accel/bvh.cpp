@@ -79,13 +79,13 @@ Box4 box_of(const BvhItem& item) { return Item4(item).box(); }
 // box by this number.
 float leaf_count(std::size_t items) { return static_cast<float>((items + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH); }
 
-bool fit_one_leaf(std::span<const BvhItem> items) {
-    return items.size() <= max_leaf_items(items[0].kind) &&
-           std::all_of(items.begin(), items.end(), [&](const BvhItem& i) { return i.kind == items[0].kind; });
+bool are_of_one_kind(std::span<const BvhItem> items) {
+    return std::ranges::all_of(items, [&](const BvhItem& item) { return item.kind == items[0].kind; });
 }
 
 Part make_part(std::span<BvhItem> items, const Box4& box, const Box4& centres) {
-    return {items, box, centres, half_area(box), fit_one_leaf(items)};
+    const bool fits_one_leaf = items.size() <= max_leaf_items(items[0].kind) && are_of_one_kind(items);
+    return {items, box, centres, half_area(box), fits_one_leaf};
 }
 
 // The chunks of the items on which threads work.
@@ -217,18 +217,15 @@ Parts split_after(const Part& part, std::size_t items, unsigned threads) {
 // Splits the items into two equal halves by object number.
 Parts split_by_number(const Part& part, unsigned threads) {
     const std::size_t half = part.items.size() / 2;
-    std::nth_element(part.items.begin(), part.items.begin() + static_cast<std::ptrdiff_t>(half), part.items.end(),
-                     [](const BvhItem& a, const BvhItem& b) { return a.number < b.number; });
+    std::ranges::nth_element(part.items, part.items.begin() + static_cast<std::ptrdiff_t>(half), {}, &BvhItem::number);
     return split_after(part, half, threads);
 }
 
 // Splits the items into those of the lowest kind and the others.
 Parts split_by_kind(const Part& part) {
-    std::uint32_t kind = RAYA_LINK_OBJECT;  // lowest kind
-    for (const BvhItem& item : part.items) kind = std::min(kind, item.kind);
-    const auto second_part =
-        std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) { return item.kind == kind; });
-    return split_after(part, static_cast<std::size_t>(second_part - part.items.begin()), 1);
+    const std::uint32_t lowest = std::ranges::min(part.items, {}, &BvhItem::kind).kind;
+    const auto others = std::ranges::partition(part.items, [&](const BvhItem& item) { return item.kind == lowest; });
+    return split_after(part, part.items.size() - others.size(), 1);
 }
 
 // The items of a chunk below the split plane, which come first, and those above it.
@@ -300,10 +297,8 @@ Bounds bounds_of(const Box4& box) {
 // or no bin boundary separates its items, otherwise at the cheapest split plane. Reorders the part's items. Which item
 // is in which part depends neither on their order nor on the number of threads. `depth`: depth of the node whose child
 // the part is.
-std::array<Part, 2> split(const Part& part, std::uint32_t depth, unsigned threads) {
-    const auto is_of_first_kind = [&](const BvhItem& item) { return item.kind == part.items[0].kind; };
-    if (part.items.size() <= RAYA_BVH_WIDTH && !std::all_of(part.items.begin(), part.items.end(), is_of_first_kind))
-        return split_by_kind(part);
+Parts split(const Part& part, std::uint32_t depth, unsigned threads) {
+    if (part.items.size() <= RAYA_BVH_WIDTH && !are_of_one_kind(part.items)) return split_by_kind(part);
     if (depth >= kMedianDepth) return split_by_number(part, threads);
     const Chunks chunks(part.items, threads);
     const Binning binning(part.centres);
@@ -380,19 +375,14 @@ void separate_large_items(BvhItems& objects) {
 }  // namespace
 
 BvhItems bvh_items(const PackedJob& job, const NumberFormat& format, unsigned threads) {
-    constexpr std::size_t kMinItems = 1 << 12;  // of a thread
     BvhItems objects;
     const HitRegions regions(job, format, reach_for(job, format, max_slack));
     if (!regions.all_bounded()) return objects;
     objects.reach = regions.reach();
     objects.items.resize(regions.size());
-    const std::size_t parts = std::min<std::size_t>(4 * threads, 1 + regions.size() / kMinItems);
-    parallel_for(parts, threads, [&](std::size_t part) {
-        const auto [begin, end] = part_of_range(part, parts, regions.size());
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t number = regions.number(i);
-            objects.items[i] = {bounds_of(regions.region(i).box, objects.reach), number, kind_of(job, format, number)};
-        }
+    parallel_for_items(regions.size(), threads, 1 << 12, [&](std::size_t i) {
+        const std::uint32_t number = regions.number(i);
+        objects.items[i] = {bounds_of(regions.region(i).box, objects.reach), number, kind_of(job, format, number)};
     });
     separate_large_items(objects);
     return objects;
@@ -439,8 +429,7 @@ class BvhBuilder {
     void make_child(BvhChild& child, const Part& part, std::uint32_t depth, unsigned threads) {
         child = {bounds_of(part.box), RAYA_LINK_NODE, 0, 0};
         if (part.is_leaf) {
-            std::sort(part.items.begin(), part.items.end(),
-                      [](const BvhItem& a, const BvhItem& b) { return a.number < b.number; });
+            std::ranges::sort(part.items, {}, &BvhItem::number);
             child.kind = part.items[0].kind;
             child.first = static_cast<std::uint32_t>(part.items.data() - tree_.items.data());
             child.items = static_cast<std::uint32_t>(part.items.size());
@@ -462,7 +451,7 @@ class BvhBuilder {
             for (Part& p : parts)
                 if (!p.is_leaf && (!largest || p.half_area > largest->half_area)) largest = &p;
             if (!largest) break;
-            const std::array<Part, 2> pieces = split(*largest, depth, threads);
+            const Parts pieces = split(*largest, depth, threads);
             *largest = pieces[0];
             parts.push_back(pieces[1]);
         }

@@ -212,7 +212,7 @@ namespace {
 // Measured on SPD's balls, lattice and tetra and on 8,320 uniform spheres (fp32, 16 lanes): grids of 2, 4 and 8 voxels
 // per object are about equally fast. A grid of 1 voxel per object takes up to 1.5 times as long; a grid of 16 takes up
 // to 1.4 times as long and twice the memory.
-constexpr double kVoxelsPerObject = 4;
+constexpr std::uint64_t kVoxelsPerObject = 4;
 
 // Reach for which large objects and divisions are chosen, in multiples of the scene's extent.
 constexpr double kMinReach = 2;
@@ -249,11 +249,9 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
 Partition accel_partition(const PackedJob& job, const NumberFormat& format, const Accel& accel) {
     if (accel.divisions) return partition(job, format, *accel.divisions);
     const std::vector<std::uint32_t> separate = large_objects(job, format);
-    const HitRegions regions(job, format, kMinReach, separate);
-    // If the hit regions are unbounded, every list has all objects, so one voxel is enough.
-    const double voxels =
-        regions.all_bounded() ? std::max(1.0, kVoxelsPerObject * static_cast<double>(regions.size())) : 1;
-    return partition(job, format, divisions_for(job, format, static_cast<std::uint64_t>(voxels), separate), separate);
+    const raya_objects& objects = job.header().objects;
+    const std::uint64_t listed = raya_first_object(objects, RAYA_OBJECT_KINDS) - objects.planes - separate.size();
+    return partition(job, format, divisions_for(job, format, kVoxelsPerObject * listed, separate), separate);
 }
 
 AccelSummary append_grid(PackedJob& job, const Partition& p) {
