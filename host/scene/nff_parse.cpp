@@ -28,17 +28,13 @@ constexpr std::string_view kDirective = "#raya";
 
 enum class CharKind : std::uint8_t { kText, kBlank, kLineEnd, kHash, kBinary };
 
-constexpr std::array<CharKind, 256> kCharKinds = [] {
-    std::array<CharKind, 256> kinds{};
-    for (std::size_t c = 0; c < ' '; ++c) kinds[c] = CharKind::kBinary;
-    kinds[0x7f] = CharKind::kBinary;
-    for (const char c : {' ', '\t', '\v', '\f'}) kinds[static_cast<std::size_t>(c)] = CharKind::kBlank;
-    for (const char c : {'\r', '\n'}) kinds[static_cast<std::size_t>(c)] = CharKind::kLineEnd;
-    kinds['#'] = CharKind::kHash;
-    return kinds;
-}();
-
-CharKind kind_of(char c) { return kCharKinds[static_cast<unsigned char>(c)]; }
+CharKind kind_of(char c) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code > ' ' && c != '#' && code != 0x7f) return CharKind::kText;
+    if (c == '#') return CharKind::kHash;
+    if (c == '\r' || c == '\n') return CharKind::kLineEnd;
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f' ? CharKind::kBlank : CharKind::kBinary;
+}
 
 bool is_blank(char c) { return kind_of(c) == CharKind::kBlank || kind_of(c) == CharKind::kLineEnd; }
 
