@@ -47,10 +47,4 @@ Distribution::Distribution(std::vector<std::uint32_t> rank_of, Ranks& ranks)
     }
 }
 
-std::uint32_t Distribution::max_count() const {
-    std::size_t max = 0;
-    for (const std::vector<std::uint32_t>& pes : pes_of_) max = std::max(max, pes.size());
-    return static_cast<std::uint32_t>(max);
-}
-
 }  // namespace raya

@@ -165,8 +165,6 @@ class Distribution {
     std::uint32_t rank_of(std::size_t pe) const { return rank_of_[pe]; }
     bool has(std::size_t pe) const { return rank_of_[pe] == ranks_.rank(); }
     std::uint32_t slot_of(std::size_t pe) const { return slot_of_[pe]; }
-    /// Maximum number of PEs of a rank.
-    std::uint32_t max_count() const;
 
     /// Returns the number of elements of all PEs.
     template <class Count>
