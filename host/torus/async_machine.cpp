@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "host/error.hpp"
-#include "host/torus/link_exchange.hpp"
 #include "kernels/shared/packet.h"
 
 namespace raya {
@@ -382,7 +381,10 @@ namespace {
 
 constexpr double kUnlimitedBytesPerS = 1e18;  // rate of links whose transfers take no time
 
-std::string channel_name(std::uint32_t node, std::uint32_t link) { return fmt::format("{}{}", node, link_name(link)); }
+// Returns the name of a link of a node: "5+x", "5-x", "5+y", ...
+std::string channel_name(std::uint32_t node, std::uint32_t link) {
+    return fmt::format("{}{}{}", node, link % 2 == 0 ? '+' : '-', "xyz"[link / 2]);
+}
 
 // Returns the name of the wire, whose bandwidth the two channels (directions) of a link share. The name contains the
 // name of the channel in the direction of ascending coordinates.

@@ -72,19 +72,11 @@ NodeArray::NodeArray(Session& session, const TorusSettings& settings, const Node
       build_options_(kernels_.program(node_kernels::TraceVoxel::kFile).options()) {
     session_.write("scatter", memories_, memories.words);
     session_.write("scatter", starts_, memories.starts);
-    write_inbox_table();
-    write_run_constants();
-}
-
-void NodeArray::write_inbox_table() {
     std::vector<std::uint32_t> inboxes;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-        for (const std::uint32_t node : distribution_.own())
-            inboxes.push_back(distribution_.inbox_from(raya_link_end(settings_.torus, node, link ^ 1u), link));
+        for (const std::uint32_t node : distribution.own())
+            inboxes.push_back(distribution.inbox_from(raya_link_end(settings.torus, node, link ^ 1u), link));
     session_.write("scatter", inbox_of_link_, inboxes);
-}
-
-void NodeArray::write_run_constants() {
     const raya_run run{.nodes = nodes_,
                        .inboxes = distribution_.inboxes(),
                        .queue = buffers_.queue,
@@ -202,7 +194,7 @@ NodeStatus NodeArray::read_status() {
     if (any_node_has(own_status, RAYA_STATUS_CUT))
         throw truncated_loops_error("read status", session_.device().name, launches_.remedy());
     superstep_s_ = seconds_since(std::exchange(last_status_, Clock::now()));
-    return NodeStatus(distribution_.all_gather(std::move(own_status), RAYA_STATUS_WORDS));
+    return {distribution_.all_gather(std::move(own_status), RAYA_STATUS_WORDS)};
 }
 
 void NodeArray::report_work(const NodeStatus& injected, const NodeWorkSink& sink) {
@@ -320,8 +312,7 @@ void NodeArray::record_packets(const NodeStatus& status, std::uint32_t superstep
     return_links_.visit_new_packets(status, record_new);
     std::vector<PacketRecord> records = distribution_.ranks().gather(
         std::span<const PacketRecord>(own_records), distribution_.ranks().all_gather(own_records.size()));
-    std::stable_sort(records.begin(), records.end(),
-                     [](const PacketRecord& a, const PacketRecord& b) { return a.source < b.source; });
+    std::ranges::stable_sort(records, {}, &PacketRecord::source);
     for (const PacketRecord& record : records) sink(record);
 }
 

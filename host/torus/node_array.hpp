@@ -10,8 +10,8 @@
 #include "host/cl/kernel_options.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/torus/link_exchange.hpp"
-#include "host/torus/node_memory.hpp"
 #include "host/torus/topology.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_result.hpp"
 #include "kernels/shared/traffic.h"
 
@@ -128,8 +128,6 @@ class NodeArray {
     bool copies_words_to_local() const { return options_.words_local; }  // kernels copy a node's words to local memory
 
   private:
-    void write_run_constants();
-    void write_inbox_table();
     /// Repeats `launch(work, resume)` until no node has work left.
     template <class Launch>
     void launch_until_done(const std::string& label, const Launch& launch);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "host/error.hpp"
 
@@ -23,7 +22,11 @@ std::uint32_t slabs_per_row(const std::array<std::uint32_t, 3>& nodes) {
     return best_slabs;
 }
 
-void check_nodes(const std::array<std::uint32_t, 3>& nodes) {
+}  // namespace
+
+std::string links_name(Links links) { return links == Links::kTorus3d ? "torus3d" : "torus2d"; }
+
+raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links) {
     std::uint64_t count = 1;
     for (const std::uint32_t side : nodes) {
         if (side == 0)
@@ -33,14 +36,6 @@ void check_nodes(const std::array<std::uint32_t, 3>& nodes) {
         if (count > kMaxNodes)
             throw UserError(fmt::format("--nodes {}: more than {} nodes; use fewer", sides_text(nodes), kMaxNodes));
     }
-}
-
-}  // namespace
-
-std::string links_name(Links links) { return links == Links::kTorus3d ? "torus3d" : "torus2d"; }
-
-raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links) {
-    check_nodes(nodes);
     const auto [i, j, k] = nodes;
     if (links == Links::kTorus3d) return {{i, j, k}, {i, j, k}, 1};
     const std::uint32_t slabs = slabs_per_row(nodes);
@@ -48,8 +43,7 @@ raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links) {
 }
 
 std::uint32_t links_of_node(const raya_torus& torus) {
-    return static_cast<std::uint32_t>(
-        2 * std::count_if(std::begin(torus.sides), std::end(torus.sides), [](std::uint32_t side) { return side > 1; }));
+    return 2 * static_cast<std::uint32_t>(std::ranges::count_if(torus.sides, [](auto side) { return side > 1; }));
 }
 
 std::uint32_t destination_of(const raya_torus& torus, std::uint32_t sender, const raya_head& packet) {
@@ -123,8 +117,7 @@ NodeDistribution::NodeDistribution(const raya_torus& torus, Ranks& ranks)
 std::uint32_t NodeDistribution::inbox_from(std::uint32_t sender, std::uint32_t link) const {
     if (has(sender)) return slot_of(sender);
     const std::vector<std::uint32_t>& senders = remote_senders_[link];
-    return count() +
-           static_cast<std::uint32_t>(std::lower_bound(senders.begin(), senders.end(), sender) - senders.begin());
+    return count() + static_cast<std::uint32_t>(std::ranges::lower_bound(senders, sender) - senders.begin());
 }
 
 }  // namespace raya

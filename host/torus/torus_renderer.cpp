@@ -13,7 +13,6 @@
 #include "host/base/log.hpp"
 #include "host/error.hpp"
 #include "host/torus/node_array.hpp"
-#include "host/torus/node_memory.hpp"
 #include "host/torus/torus_plan.hpp"
 
 namespace raya {
@@ -128,7 +127,7 @@ void TorusRenderer::run_supersteps(TorusRun& run, Checkpoints& checkpoints, cons
     const std::uint32_t all_nodes = raya_nodes(settings_.torus), queue = job_.buffers.queue;
     nodes_->clear();
     run.result.link_words.assign(std::size_t{all_nodes} * RAYA_LINKS, 0);
-    NodeStatus status(0);
+    NodeStatus status;
     const auto visit = [&](RenderState& state) { visit_state(state, run, status); };
     bool resumes = checkpoints.resume(visit), injects = true;
     for (;; ++run.superstep, resumes = false) {

@@ -60,7 +60,10 @@ std::optional<Verdict> difference(const std::vector<Word>& expected, const std::
 // packet contains the number of its outbox and its position in the outbox.
 struct LinkTraffic {
     LinkTraffic(const raya_torus& torus, std::uint32_t stride, std::size_t words)
-        : status(raya_nodes(torus)), outboxes(words), inboxes(words), expected_inboxes(words) {
+        : status{std::vector<std::uint32_t>(std::size_t{raya_nodes(torus)} * RAYA_STATUS_WORDS)},
+          outboxes(words),
+          inboxes(words),
+          expected_inboxes(words) {
         const std::uint32_t nodes = raya_nodes(torus);
         expected_sent.resize(std::size_t{nodes} * RAYA_LINKS);
         for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
