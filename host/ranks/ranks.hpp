@@ -181,8 +181,6 @@ struct MessageTime {
 struct Network {
     double alpha_s = 0;
     double beta_s = 0;  // seconds per byte
-
-    double seconds(double bytes) const { return alpha_s + beta_s * bytes; }
 };
 
 /// Fits alpha and beta, both >= 0, by least squares of the relative errors of the times, so that short messages have as
