@@ -83,15 +83,11 @@ double scene_extent(const Scene& scene) {
 
 namespace {
 
-/// Cosine and sine of an angle; exact for quarter turns.
-struct Direction {
-    double cosine, sine;
-};
-
-Direction direction_at(double degrees) {
+/// Returns cosine and sine of an angle; exact for quarter turns.
+std::pair<double, double> direction_at(double degrees) {
     const double quarters = std::round(degrees / 90), remainder = (degrees - 90 * quarters) * std::numbers::pi / 180;
     const double c = std::cos(remainder), s = std::sin(remainder);
-    const std::array<Direction, 4> turns = {{{c, s}, {-s, c}, {-c, -s}, {s, -c}}};
+    const std::array<std::pair<double, double>, 4> turns = {{{c, s}, {-s, c}, {-c, -s}, {s, -c}}};
     return turns[static_cast<std::size_t>(std::fmod(quarters, 4) + 4) % 4];
 }
 

@@ -88,7 +88,7 @@ void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<Outgoin
             if (sends == distribution_.has(end) || !transfers(status, link, sender)) continue;
             const std::uint32_t packets = status.at(sender, class_.outbox_status + link);
             LinkMessage& m = (sends ? outgoing_ : incoming_)[{distribution_.rank_of(sends ? end : sender), link}];
-            m.boxes.push_back({sender, packets});
+            m.boxes.emplace_back(sender, packets);
             m.words += box_words(packets);
             (sends ? words_out : words_in) += box_words(packets);
         }

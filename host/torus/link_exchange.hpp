@@ -83,11 +83,9 @@ class LinkExchange {
 
     /// Message between this rank and another rank: some outboxes of one link direction.
     struct LinkMessage {
-        struct Box {
-            std::uint32_t sender, packets;  // node of the outbox; number of packets in it
-        };
-        std::vector<Box> boxes;  // in ascending order of the senders
-        std::size_t words = 0;   // number of words in the message
+        // (node of the outbox, number of packets in it), in ascending order of the nodes
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> boxes;
+        std::size_t words = 0;  // number of words in the message
     };
     using LinkMessages = std::map<std::pair<std::uint32_t, std::uint32_t>, LinkMessage>;  // by other rank and direction
 

@@ -258,22 +258,16 @@ void NodeArray::visit_state(RenderState& state, NodeStatus& status) {
     });
 }
 
-namespace {
-
-std::uint64_t cycles_of(const NodeStatus& status, std::uint32_t node) {
-    return status.at(node, RAYA_STATUS_CYCLES) | std::uint64_t{status.at(node, RAYA_STATUS_CYCLES + 1)} << 32;
-}
-
-}  // namespace
-
 std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32_t nodes) {
     std::vector<std::uint64_t> cycles;
-    for (std::uint32_t node = 0; node < nodes; ++node) cycles.push_back(cycles_of(status, node));
+    for (std::uint32_t node = 0; node < nodes; ++node)
+        cycles.push_back(status.at(node, RAYA_STATUS_CYCLES) | std::uint64_t{status.at(node, RAYA_STATUS_CYCLES + 1)}
+                                                                   << 32);
     return cycles;
 }
 
 MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity) {
-    MachineState state;
+    MachineState state{.max_cycles = std::ranges::max(cycles_of_nodes(status, nodes))};
     std::uint64_t rows = 0, injected_rows = 0;
     for (std::uint32_t node = 0; node < nodes; ++node) {
         const auto at = [&](std::uint32_t word) { return status.at(node, word); };
@@ -284,7 +278,6 @@ MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::u
         state.longest_queue = std::max(state.longest_queue, at(RAYA_STATUS_QUEUE));
         state.full_queues += at(RAYA_STATUS_QUEUE) >= capacity;
         state.progress += at(RAYA_STATUS_PROGRESS);
-        state.max_cycles = std::max(state.max_cycles, cycles_of(status, node));
         state.all_injected &= at(RAYA_STATUS_NEXT_ROW) >= at(RAYA_STATUS_ROWS);
         rows += at(RAYA_STATUS_ROWS);
         injected_rows += at(RAYA_STATUS_NEXT_ROW);

@@ -101,13 +101,17 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Render
     return std::move(result);
 }
 
-// Launches the computation of a superstep, which precedes the transfer of packets.
-void TorusRenderer::compute(Reserve reserve, bool injects, const NodeWorkSink& work) {
+// Computes a superstep up to the transfer of packets, and starts to read the returns. Returns the status of all nodes.
+NodeStatus TorusRenderer::compute(TorusRun& run, bool injects, const RenderObservers& observers) {
     if (injects) nodes_->inject();
-    if (!work) return nodes_->trace_voxel(reserve);
-    const NodeStatus injected = nodes_->read_status();
-    nodes_->trace_voxel(reserve);
-    nodes_->report_work(injected, work);
+    const NodeStatus injected = observers.work ? nodes_->read_status() : NodeStatus{};
+    nodes_->trace_voxel(run.reserve);
+    if (observers.work) nodes_->report_work(injected, observers.work);
+    nodes_->route();
+    const NodeStatus status = nodes_->read_status();
+    nodes_->continue_gather(status, run.returns);
+    if (observers.packets) nodes_->record_packets(status, run.superstep, observers.packets);
+    return status;
 }
 
 // Adds the counts of a superstep to the run, and passes them to `sink`. `words`: [node][RAYA_LINKS], number of words
@@ -131,10 +135,7 @@ void TorusRenderer::run_supersteps(TorusRun& run, Checkpoints& checkpoints, cons
     const auto visit = [&](RenderState& state) { visit_state(state, run, status); };
     bool resumes = checkpoints.resume(visit), injects = true;
     for (;; ++run.superstep, resumes = false) {
-        if (!resumes) {
-            compute(run.reserve, injects, observers.work);
-            status = route(run, observers);
-        }
+        if (!resumes) status = compute(run, injects, observers);
         const MachineState state = machine_state(status, all_nodes, queue);
         run.max_live = std::max(run.max_live, state.live);
         if (!resumes) checkpoints.save_if_due(progress_of(state, run.returns.size(), run.max_live), visit);
@@ -172,15 +173,6 @@ void TorusRenderer::visit_state(RenderState& state, TorusRun& run, NodeStatus& s
         (run.result.supersteps.size() != run.superstep || run.stalled > 2 || run.reserve > Reserve::kTight))
         throw UserError("damaged");
     nodes_->visit_state(state, status);
-}
-
-// Moves packets from the queues to the outboxes, and starts to read the returns. Returns the status of all nodes_.
-NodeStatus TorusRenderer::route(TorusRun& run, const RenderObservers& observers) {
-    nodes_->route();
-    const NodeStatus status = nodes_->read_status();
-    nodes_->continue_gather(status, run.returns);
-    if (observers.packets) nodes_->record_packets(status, run.superstep, observers.packets);
-    return status;
 }
 
 void TorusRenderer::compose(TorusResult& result, const std::vector<raya_head>& returns) {

@@ -66,8 +66,7 @@ class TorusRenderer {
                         const RenderObservers& observers);
     void add_superstep(TorusRun& run, const NodeStatus& status, const MachineState& state,
                        const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const;
-    NodeStatus route(TorusRun& run, const RenderObservers& observers);
-    void compute(Reserve reserve, bool injects, const NodeWorkSink& work);
+    NodeStatus compute(TorusRun& run, bool injects, const RenderObservers& observers);
     void compose(TorusResult& result, const std::vector<raya_head>& returns);
     std::vector<float> sum(const Contributions& contributions);
     void collect(TorusResult& result);

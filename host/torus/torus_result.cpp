@@ -57,13 +57,6 @@ double busiest_link_ms(const raya_torus& torus, const TorusResult& result) {
     return max_ms;
 }
 
-double stepwise_ms(const std::vector<Superstep>& supersteps) {
-    double total_ms = 0;
-    for (const Superstep& step : supersteps)
-        total_ms += t805_ms(step.max_node_cycles) + t805_link_ms(step.max_link_words, step.max_link_words);
-    return total_ms;
-}
-
 }  // namespace
 
 std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const TorusResult& r) {
@@ -99,11 +92,12 @@ TorusTime torus_time(const raya_torus& torus, const TorusResult& result) {
         processor_cycles = std::max(processor_cycles, result.load.per_pe[node] + messages[node]);
     TorusTime time;
     time.compute_ms = t805_ms(result.load.max);
-    time.messages_ms = t805_ms(*std::max_element(messages.begin(), messages.end()));
+    time.messages_ms = t805_ms(std::ranges::max(messages));
     time.processor_ms = t805_ms(processor_cycles);
     time.links_ms = busiest_link_ms(torus, result);
     time.overlapped_ms = std::max(time.processor_ms, time.links_ms);
-    time.stepwise_ms = stepwise_ms(result.supersteps);
+    for (const Superstep& step : result.supersteps)
+        time.stepwise_ms += t805_ms(step.max_node_cycles) + t805_link_ms(step.max_link_words, step.max_link_words);
     return time;
 }
 
