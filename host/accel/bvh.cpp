@@ -224,8 +224,9 @@ Parts split_by_number(const Part& part, unsigned threads) {
 // Splits the items into those of the lowest kind and the others.
 Parts split_by_kind(const Part& part) {
     const std::uint32_t lowest = std::ranges::min(part.items, {}, &BvhItem::kind).kind;
-    const auto others = std::ranges::partition(part.items, [&](const BvhItem& item) { return item.kind == lowest; });
-    return split_after(part, part.items.size() - others.size(), 1);
+    const auto others =
+        std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) { return item.kind == lowest; });
+    return split_after(part, static_cast<std::size_t>(others - part.items.begin()), 1);
 }
 
 // The items of a chunk below the split plane, which come first, and those above it.
