@@ -260,9 +260,10 @@ void NodeArray::visit_state(RenderState& state, NodeStatus& status) {
 
 std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32_t nodes) {
     std::vector<std::uint64_t> cycles;
-    for (std::uint32_t node = 0; node < nodes; ++node)
-        cycles.push_back(status.at(node, RAYA_STATUS_CYCLES) | std::uint64_t{status.at(node, RAYA_STATUS_CYCLES + 1)}
-                                                                   << 32);
+    for (std::uint32_t node = 0; node < nodes; ++node) {
+        const std::uint64_t high = status.at(node, RAYA_STATUS_CYCLES + 1);
+        cycles.push_back(high << 32 | status.at(node, RAYA_STATUS_CYCLES));
+    }
     return cycles;
 }
 
