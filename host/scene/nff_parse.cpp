@@ -62,8 +62,7 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 bool reads_as_keyword(std::string_view token) {
     constexpr std::size_t kMaxLength = 8;
     return !token.empty() && token.size() <= kMaxLength && is_letter(token[0]) &&
-           std::all_of(token.begin(), token.end(),
-                       [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+           std::ranges::all_of(token, [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 /// A run of characters without white space. At the end of the file `text` is empty.
@@ -398,7 +397,7 @@ class NffReader {
             polygon.normals.push_back(unit_vector(read_vector("a normal")));
         }
         polygon.surface = take_flat_surface();
-        if (std::find(polygon.normals.begin(), polygon.normals.end(), Vec3(0)) != polygon.normals.end()) {
+        if (std::ranges::count(polygon.normals, Vec3(0)) > 0) {
             remark_or_refuse("a normal of the patch is zero", "patch with a normal of 0, taken as a flat polygon");
             polygon.normals.clear();
         }

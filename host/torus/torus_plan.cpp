@@ -247,10 +247,6 @@ void add_voxel(Imath::Box2d& box, const Projection& projection, const raya_grid&
     if (contains_eye) box.makeInfinite();
 }
 
-std::uint32_t clamped(double value, std::uint32_t max) {
-    return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(max)));
-}
-
 }  // namespace
 
 std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& grid, const raya_torus& torus,
@@ -258,6 +254,9 @@ std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& gri
     constexpr int kMinWindowBits = 10;  // with fewer fraction bits there is no error bound, so no window
     const Projection projection(job, format);
     const std::uint32_t width = job.mapping.width, height = job.mapping.height;
+    const auto clamped = [](double value, std::uint32_t max) {
+        return static_cast<std::uint32_t>(std::clamp<double>(value, 0, max));
+    };
     std::vector<PixelWindow> windows;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
         Imath::Box2d box;
