@@ -50,6 +50,12 @@ void extend(Box4& box, const Box4& added) {
     box.high = larger(box.high, added.high);
 }
 
+// Returns half the surface area of a box that is not empty.
+float half_area(const Box4& box) {
+    const Float4 sides = box.high - box.low;
+    return sides[0] * sides[1] + sides[1] * sides[2] + sides[2] * sides[0];
+}
+
 // An item as it is in memory: low x, y, z, high x; high y, z, number, kind.
 struct Item4 {
     Float4 first, second;
@@ -73,13 +79,13 @@ Box4 box_of(const BvhItem& item) { return Item4(item).box(); }
 // box by this number.
 float leaf_count(std::size_t items) { return static_cast<float>((items + RAYA_BVH_WIDTH - 1) / RAYA_BVH_WIDTH); }
 
-bool fit_one_leaf(std::span<const BvhItem> items) {
-    return items.size() <= max_leaf_items(items[0].kind) &&
-           std::all_of(items.begin(), items.end(), [&](const BvhItem& i) { return i.kind == items[0].kind; });
+bool are_of_one_kind(std::span<const BvhItem> items) {
+    return std::ranges::all_of(items, [&](const BvhItem& item) { return item.kind == items[0].kind; });
 }
 
 Part make_part(std::span<BvhItem> items, const Box4& box, const Box4& centres) {
-    return {items, box, centres, half_area(box), fit_one_leaf(items)};
+    const bool fits_one_leaf = items.size() <= max_leaf_items(items[0].kind) && are_of_one_kind(items);
+    return {items, box, centres, half_area(box), fits_one_leaf};
 }
 
 // The chunks of the items on which threads work.
@@ -211,18 +217,16 @@ Parts split_after(const Part& part, std::size_t items, unsigned threads) {
 // Splits the items into two equal halves by object number.
 Parts split_by_number(const Part& part, unsigned threads) {
     const std::size_t half = part.items.size() / 2;
-    std::nth_element(part.items.begin(), part.items.begin() + static_cast<std::ptrdiff_t>(half), part.items.end(),
-                     [](const BvhItem& a, const BvhItem& b) { return a.number < b.number; });
+    std::ranges::nth_element(part.items, part.items.begin() + static_cast<std::ptrdiff_t>(half), {}, &BvhItem::number);
     return split_after(part, half, threads);
 }
 
 // Splits the items into those of the lowest kind and the others.
 Parts split_by_kind(const Part& part) {
-    std::uint32_t kind = RAYA_LINK_OBJECT;  // lowest kind
-    for (const BvhItem& item : part.items) kind = std::min(kind, item.kind);
-    const auto second_part =
-        std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) { return item.kind == kind; });
-    return split_after(part, static_cast<std::size_t>(second_part - part.items.begin()), 1);
+    const std::uint32_t lowest = std::ranges::min(part.items, {}, &BvhItem::kind).kind;
+    const auto others =
+        std::partition(part.items.begin(), part.items.end(), [&](const BvhItem& item) { return item.kind == lowest; });
+    return split_after(part, static_cast<std::size_t>(others - part.items.begin()), 1);
 }
 
 // The items of a chunk below the split plane, which come first, and those above it.
@@ -248,23 +252,11 @@ Sides partition_at(std::span<BvhItem> items, const Split& plane, const Binning& 
     return sides;
 }
 
-using Run = std::span<BvhItem>;  // consecutive items
-
-// Exchanges the items of two lists of runs, which have the same number of items.
-void exchange(std::vector<Run> runs, std::vector<Run> others) {
-    for (std::size_t i = 0, j = 0; i < runs.size() && j < others.size();) {
-        const std::size_t items = std::min(runs[i].size(), others[j].size());
-        std::swap_ranges(others[j].begin(), others[j].begin() + static_cast<std::ptrdiff_t>(items), runs[i].begin());
-        runs[i] = runs[i].subspan(items);
-        others[j] = others[j].subspan(items);
-        i += runs[i].empty();
-        j += others[j].empty();
-    }
-}
-
 // Exchanges items of partitioned chunks so that all items below the plane come first. `below`: their number.
 void join_chunks(const Chunks& chunks, const std::vector<Sides>& sides, std::size_t below) {
-    std::vector<Run> above_first, below_last;  // items above the plane among the first `below` items; the converse
+    // Runs of items above the plane among the first `below` items, and the converse; both have the same number of
+    // items.
+    std::vector<std::span<BvhItem>> above_first, below_last;
     for (std::size_t chunk = 0; chunk < chunks.count; ++chunk) {
         const auto [begin, end] = chunks.range(chunk);
         const std::size_t middle = begin + sides[chunk].below;  // first item of the chunk above the plane
@@ -272,7 +264,15 @@ void join_chunks(const Chunks& chunks, const std::vector<Sides>& sides, std::siz
         const std::size_t first = std::max(begin, below);
         if (first < middle) below_last.push_back(chunks.items.subspan(first, middle - first));
     }
-    exchange(std::move(above_first), std::move(below_last));
+    for (std::size_t i = 0, j = 0; i < above_first.size() && j < below_last.size();) {
+        std::span<BvhItem>&above = above_first[i], &last = below_last[j];
+        const std::size_t items = std::min(above.size(), last.size());
+        std::ranges::swap_ranges(above.first(items), last.first(items));
+        above = above.subspan(items);
+        last = last.subspan(items);
+        i += above.empty();
+        j += last.empty();
+    }
 }
 
 // Splits the items into those in the bins below Split::first_above and the others. The boxes of the parts are the
@@ -298,10 +298,8 @@ Bounds bounds_of(const Box4& box) {
 // or no bin boundary separates its items, otherwise at the cheapest split plane. Reorders the part's items. Which item
 // is in which part depends neither on their order nor on the number of threads. `depth`: depth of the node whose child
 // the part is.
-std::array<Part, 2> split(const Part& part, std::uint32_t depth, unsigned threads) {
-    const auto is_of_first_kind = [&](const BvhItem& item) { return item.kind == part.items[0].kind; };
-    if (part.items.size() <= RAYA_BVH_WIDTH && !std::all_of(part.items.begin(), part.items.end(), is_of_first_kind))
-        return split_by_kind(part);
+Parts split(const Part& part, std::uint32_t depth, unsigned threads) {
+    if (part.items.size() <= RAYA_BVH_WIDTH && !are_of_one_kind(part.items)) return split_by_kind(part);
     if (depth >= kMedianDepth) return split_by_number(part, threads);
     const Chunks chunks(part.items, threads);
     const Binning binning(part.centres);
@@ -338,10 +336,7 @@ Bounds bounds_of(const Box& box, double reach) {
 double max_slack(const HitRegions& regions) {
     constexpr double kFractionOfBox = 1.0 / 64;
     double sides = 0;
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-        const Vec3 size = regions.region(i).box.size();
-        sides += std::max({size.x, size.y, size.z});
-    }
+    for (std::size_t i = 0; i < regions.size(); ++i) sides += largest_coordinate(regions.region(i).box.size());
     return regions.size() == 0 ? -1 : kFractionOfBox * (sides / static_cast<double>(regions.size()));
 }
 
@@ -365,9 +360,9 @@ constexpr std::size_t kMaxSeparate = 8;
 constexpr float kLargeArea = 1.0F / 8;
 
 void separate_large_items(BvhItems& objects) {
-    Bounds whole = kEmptyBounds;
-    for (const BvhItem& item : objects.items) extend(whole, item.box);
-    const auto is_large = [&](const BvhItem& item) { return half_area(item.box) > kLargeArea * half_area(whole); };
+    Box4 whole = kEmptyBox4;
+    for (const BvhItem& item : objects.items) extend(whole, box_of(item));
+    const auto is_large = [&](const BvhItem& item) { return half_area(box_of(item)) > kLargeArea * half_area(whole); };
     std::vector<std::uint32_t> large;
     for (const BvhItem& item : objects.items) {
         if (is_large(item)) large.push_back(item.number);
@@ -381,19 +376,14 @@ void separate_large_items(BvhItems& objects) {
 }  // namespace
 
 BvhItems bvh_items(const PackedJob& job, const NumberFormat& format, unsigned threads) {
-    constexpr std::size_t kMinItems = 1 << 12;  // of a thread
     BvhItems objects;
     const HitRegions regions(job, format, reach_for(job, format, max_slack));
     if (!regions.all_bounded()) return objects;
     objects.reach = regions.reach();
     objects.items.resize(regions.size());
-    const std::size_t parts = std::min<std::size_t>(4 * threads, 1 + regions.size() / kMinItems);
-    parallel_for(parts, threads, [&](std::size_t part) {
-        const auto [begin, end] = part_of_range(part, parts, regions.size());
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t number = regions.number(i);
-            objects.items[i] = {bounds_of(regions.region(i).box, objects.reach), number, kind_of(job, format, number)};
-        }
+    parallel_for_items(regions.size(), threads, 1 << 12, [&](std::size_t i) {
+        const std::uint32_t number = regions.number(i);
+        objects.items[i] = {bounds_of(regions.region(i).box, objects.reach), number, kind_of(job, format, number)};
     });
     separate_large_items(objects);
     return objects;
@@ -440,8 +430,7 @@ class BvhBuilder {
     void make_child(BvhChild& child, const Part& part, std::uint32_t depth, unsigned threads) {
         child = {bounds_of(part.box), RAYA_LINK_NODE, 0, 0};
         if (part.is_leaf) {
-            std::sort(part.items.begin(), part.items.end(),
-                      [](const BvhItem& a, const BvhItem& b) { return a.number < b.number; });
+            std::ranges::sort(part.items, {}, &BvhItem::number);
             child.kind = part.items[0].kind;
             child.first = static_cast<std::uint32_t>(part.items.data() - tree_.items.data());
             child.items = static_cast<std::uint32_t>(part.items.size());
@@ -463,7 +452,7 @@ class BvhBuilder {
             for (Part& p : parts)
                 if (!p.is_leaf && (!largest || p.half_area > largest->half_area)) largest = &p;
             if (!largest) break;
-            const std::array<Part, 2> pieces = split(*largest, depth, threads);
+            const Parts pieces = split(*largest, depth, threads);
             *largest = pieces[0];
             parts.push_back(pieces[1]);
         }
@@ -501,13 +490,6 @@ class BvhBuilder {
 };
 
 }  // namespace
-
-void extend(Bounds& box, const Bounds& added) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.low[axis] = std::min(box.low[axis], added.low[axis]);
-        box.high[axis] = std::max(box.high[axis], added.high[axis]);
-    }
-}
 
 std::uint32_t max_leaf_items(std::uint32_t kind) {
     return kind == RAYA_LINK_POLYGON || kind == RAYA_LINK_OBJECT ? 1 : RAYA_BVH_WIDTH;

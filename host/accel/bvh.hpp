@@ -20,16 +20,6 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 struct Bounds {
     std::array<float, 3> low, high;
 };
-constexpr Bounds kEmptyBounds = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-
-/// Extends `box` so that it contains `added`.
-void extend(Bounds& box, const Bounds& added);
-/// Returns half the surface area of a box (Bounds or Box4) that is not empty.
-template <class AnyBox>
-float half_area(const AnyBox& box) {
-    const float x = box.high[0] - box.low[0], y = box.high[1] - box.low[1], z = box.high[2] - box.low[2];
-    return x * y + y * z + z * x;
-}
 
 /// An object in a BVH.
 struct BvhItem {

@@ -15,13 +15,14 @@ namespace raya {
 namespace {
 
 constexpr std::uint32_t kWidth = RAYA_BVH_WIDTH;
+constexpr std::size_t kMinNodes = 64;  // of a thread
 
 // Writes the rows of a BVH in depth-first order: a node is followed by the rows of its children.
 class BvhWriter {
   public:
     BvhWriter(const Bvh& tree, const PackedJob& job, unsigned threads)
         : tree_(tree), job_(job), threads_(threads), rows_(tree.nodes.size()) {
-        for_nodes([&](std::size_t node) {
+        parallel_for_items(tree.nodes.size(), threads, kMinNodes, [&](std::size_t node) {
             for (std::uint32_t c = 0; c < tree_.nodes[node].count; ++c)
                 rows_[node][c] = rows_of_leaf(tree_.nodes[node].children[c]);
         });
@@ -37,9 +38,7 @@ class BvhWriter {
     std::uint64_t leaves() const {
         std::uint64_t leaves = is_node(tree_.root) ? 0 : 1;
         for (const BvhNode& node : tree_.nodes)
-            leaves +=
-                static_cast<std::uint64_t>(std::count_if(node.children.begin(), node.children.begin() + node.count,
-                                                         [](const BvhChild& child) { return !is_node(child); }));
+            for (std::uint32_t c = 0; c < node.count; ++c) leaves += !is_node(node.children[c]);
         return leaves;
     }
 
@@ -52,24 +51,13 @@ class BvhWriter {
             for_children(node, first_rows[node], [&](const BvhChild& child, std::uint32_t, std::uint32_t row) {
                 if (is_node(child)) first_rows[child.first] = row;
             });
-        for_nodes([&](std::size_t node) { write_node(node, first_rows[node]); });
+        parallel_for_items(tree_.nodes.size(), threads_, kMinNodes,
+                           [&](std::size_t node) { write_node(node, first_rows[node]); });
         return raya_link(RAYA_LINK_NODE, 1, 0);
     }
 
   private:
     static bool is_node(const BvhChild& child) { return child.kind == RAYA_LINK_NODE; }
-
-    /// Calls work(node) for each node, on several threads.
-    template <class Work>
-    void for_nodes(const Work& work) const {
-        constexpr std::size_t kMinNodes = 64;  // of a thread
-        const std::size_t nodes = tree_.nodes.size(),
-                          parts = std::min<std::size_t>(16 * threads_, 1 + nodes / kMinNodes);
-        parallel_for(parts, threads_, [&](std::size_t part) {
-            const auto [begin, end] = part_of_range(part, parts, nodes);
-            for (std::size_t node = begin; node < end; ++node) work(node);
-        });
-    }
 
     /// Calls work(child, column, first row of the child) for each child of the node whose first row is `row`.
     template <class Work>
@@ -90,25 +78,19 @@ class BvhWriter {
     }
 
     bool are_triangles(std::span<const BvhItem> faces) const {
-        return std::all_of(faces.begin(), faces.end(), [&](const BvhItem& item) {
+        return std::ranges::all_of(faces, [&](const BvhItem& item) {
             return job_.object(item.number)[RAYA_POLYGON_CORNERS] < RAYA_BVH_MAX_CORNERS;
         });
     }
 
     /// Returns the number of rows of a leaf; 0 for a node.
     std::uint32_t rows_of_leaf(const BvhChild& child) const {
-        switch (child.kind) {
-            case RAYA_LINK_NODE:
-            case RAYA_LINK_OBJECT:
-                return 0;
-            case RAYA_LINK_FACES:
-                return are_triangles(items_of(child)) ? RAYA_BVH_TRIANGLES : RAYA_BVH_FACES;
-            case RAYA_LINK_POLYGON:
-                return 1 + 3 * raya_outline_rows(job_.object(items_of(child)[0].number)[RAYA_POLYGON_CORNERS]);
-            default:
-                return std::max<std::uint32_t>(
-                    words_of_kind(kind_of_object(job_.header().objects, items_of(child)[0].number)), RAYA_OBJECT_WORDS);
-        }
+        if (child.kind == RAYA_LINK_NODE || child.kind == RAYA_LINK_OBJECT) return 0;
+        if (child.kind == RAYA_LINK_FACES) return are_triangles(items_of(child)) ? RAYA_BVH_TRIANGLES : RAYA_BVH_FACES;
+        const std::uint32_t number = items_of(child)[0].number;
+        if (child.kind == RAYA_LINK_POLYGON)
+            return 1 + 3 * raya_outline_rows(job_.object(number)[RAYA_POLYGON_CORNERS]);
+        return std::max<std::uint32_t>(words_of_kind(kind_of_object(job_.header().objects, number)), RAYA_OBJECT_WORDS);
     }
 
     std::uint32_t& word(std::uint32_t row, std::uint32_t column) { return words_[std::size_t{row} * kWidth + column]; }
@@ -134,18 +116,13 @@ class BvhWriter {
     std::uint32_t write_leaf(const BvhChild& leaf, std::uint32_t row) {
         const std::span<const BvhItem> items = items_of(leaf);
         const auto count = static_cast<std::uint32_t>(items.size());
-        switch (leaf.kind) {
-            case RAYA_LINK_OBJECT:
-                return raya_link_to_object(items[0].number);
-            case RAYA_LINK_POLYGON:
-                write_outline(items[0].number, row);
-                return raya_link(RAYA_LINK_POLYGON, 1, row);
-            case RAYA_LINK_FACES:
-                return raya_link(write_faces(items, row), count, row);
-            default:
-                write_objects(items, row, rows_of_leaf(leaf));
-                return raya_link(leaf.kind, count, row);
-        }
+        if (leaf.kind == RAYA_LINK_OBJECT) return raya_link_to_object(items[0].number);
+        if (leaf.kind == RAYA_LINK_FACES) return raya_link(write_faces(items, row), count, row);
+        if (leaf.kind == RAYA_LINK_POLYGON)
+            write_outline(items[0].number, row);
+        else
+            write_objects(items, row, rows_of_leaf(leaf));
+        return raya_link(leaf.kind, count, row);
     }
 
     // Calls put(column, object number) for each column of a leaf. Unused columns repeat the first item.

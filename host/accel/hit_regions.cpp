@@ -33,6 +33,8 @@
 // finite S satisfies the bound.
 #include "host/accel/hit_regions.hpp"
 
+#include <Imath/ImathBoxAlgo.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -47,13 +49,7 @@ void widen(Box& box, double margin) {
     box.max += Vec3(margin);
 }
 
-// Squared distances from a point to the nearest and the farthest point of a box.
-double nearest_square(const Vec3& p, const Box& box) {
-    Vec3 distance;
-    for (int axis = 0; axis < 3; ++axis)
-        distance[axis] = std::max({box.min[axis] - p[axis], p[axis] - box.max[axis], 0.0});
-    return distance.length2();
-}
+// Squared distance from a point to the farthest point of a box.
 double farthest_square(const Vec3& p, const Box& box) {
     Vec3 distance;
     for (int axis = 0; axis < 3; ++axis) distance[axis] = std::max(p[axis] - box.min[axis], box.max[axis] - p[axis]);
@@ -73,8 +69,9 @@ constexpr int kMinFractionBits = 10;  // minimum Y for which the constants cover
 
 bool HitRegion::touches(const Box& other_box) const {
     if (!box.intersects(other_box)) return false;
-    if (outer_radius < kUnbounded && (nearest_square(centre, other_box) > outer_radius * outer_radius ||
-                                      farthest_square(centre, other_box) < inner_radius * inner_radius))
+    if (outer_radius < kUnbounded &&
+        ((centre - Imath::clip(centre, other_box)).length2() > outer_radius * outer_radius ||
+         farthest_square(centre, other_box) < inner_radius * inner_radius))
         return false;
     const Vec3 box_centre = 0.5 * (other_box.min + other_box.max), half_sides = 0.5 * (other_box.max - other_box.min);
     if (half_thickness < kUnbounded &&
@@ -212,10 +209,7 @@ HitRegion HitRegions::cone(std::size_t at) const {
         const double end_radius = radius + std::abs(slope) * z_error;
         const double outer_end_radius = std::sqrt(end_radius * end_radius + error);
         max_end_radius = std::max(max_end_radius, outer_end_radius);
-        Vec3 arm;
-        for (int i = 0; i < 3; ++i) arm[i] = outer_end_radius * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
-        region.box.extendBy(region.centre + z * axis - arm);
-        region.box.extendBy(region.centre + z * axis + arm);
+        extend_by_disk(region.box, region.centre + z * axis, outer_end_radius, axis);
     }
     widen(region.box, shift);
     region.capsule_radius = max_end_radius + z_error + shift;

@@ -17,17 +17,12 @@ namespace {
 constexpr double kMaxMeanEntries = 16;
 constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 30;  // maximum number of entries of all lists together: 4 GB
 
-double largest_coordinate(const Box& box) {
-    double largest = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        largest = std::max({largest, std::abs(box.min[axis]), std::abs(box.max[axis])});
-    return largest;
-}
-
 // Upper bound of the distance between a point of a ray and the voxel to which the traversal assigns the point, due to
 // rounding errors. The distance t to a plane has a relative error of 3 2^-24, so the point on the plane has an error of
 // 3 2^-24 |plane - O|; the first voxel is computed by five operations on numbers of that magnitude.
-double traversal_error(const Box& box, double reach) { return 16 * 0x1p-24 * (reach + largest_coordinate(box)); }
+double traversal_error(const Box& box, double reach) {
+    return 16 * 0x1p-24 * (reach + std::max(largest_coordinate(box.min), largest_coordinate(box.max)));
+}
 
 // Returns the box of the partition: the bounding box of all regions, with a margin for the traversal's rounding errors,
 // so that the traversal finds points on the border of a region inside the box.
@@ -57,10 +52,6 @@ raya_grid grid_over(const Box& box, const Divisions& divisions, double reach) {
     return grid;
 }
 
-struct VoxelRange {
-    std::uint32_t first, last;
-};
-
 // Finds the voxels that a region overlaps, from the planes between voxels.
 class Voxels {
   public:
@@ -73,15 +64,18 @@ class Voxels {
     /// Calls visit(voxel) for each voxel that, enlarged by the slack on all sides, touches the region.
     template <class Visit>
     void visit(const HitRegion& region, const Visit& visit) const {
-        const VoxelRange x = range(region.box, 0), y = range(region.box, 1), z = range(region.box, 2);
-        for (std::uint32_t k = z.first; k <= z.last; ++k)
-            for (std::uint32_t j = y.first; j <= y.last; ++j)
-                for (std::uint32_t i = x.first; i <= x.last; ++i)
+        const auto [x, last_x] = range(region.box, 0);
+        const auto [y, last_y] = range(region.box, 1);
+        const auto [z, last_z] = range(region.box, 2);
+        for (std::uint32_t k = z; k <= last_z; ++k)
+            for (std::uint32_t j = y; j <= last_y; ++j)
+                for (std::uint32_t i = x; i <= last_x; ++i)
                     if (region.touches(enlarged_voxel(i, j, k))) visit(raya_voxel(grid_, i, j, k));
     }
 
   private:
-    VoxelRange range(const Box& box, int axis) const {
+    // Returns the first and the last voxel along an axis that a box may touch.
+    std::array<std::uint32_t, 2> range(const Box& box, int axis) const {
         const std::vector<float>& planes = planes_[static_cast<std::size_t>(axis)];
         const auto first_plane = std::lower_bound(planes.begin() + 1, planes.end() - 1, box.min[axis] - slack_);
         const auto last_plane = std::upper_bound(first_plane, planes.end() - 1, box.max[axis] + slack_);
@@ -218,15 +212,13 @@ namespace {
 // Measured on SPD's balls, lattice and tetra and on 8,320 uniform spheres (fp32, 16 lanes): grids of 2, 4 and 8 voxels
 // per object are about equally fast. A grid of 1 voxel per object takes up to 1.5 times as long; a grid of 16 takes up
 // to 1.4 times as long and twice the memory.
-constexpr double kVoxelsPerObject = 4;
+constexpr std::uint64_t kVoxelsPerObject = 4;
 
 // Reach for which large objects and divisions are chosen, in multiples of the scene's extent.
 constexpr double kMinReach = 2;
 // An object is large if its longest side exceeds this fraction of the whole box's longest side.
 constexpr double kLargeSide = 0.75;
 constexpr std::size_t kMaxLarge = 16;  // maximum number of large objects; see large_objects()
-
-double longest_side(const Box& box) { return box.size()[box.majorAxis()]; }
 
 std::uint32_t as_word(std::size_t number) { return static_cast<std::uint32_t>(number); }
 
@@ -241,12 +233,13 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
         Box whole;
         for (std::size_t i = 0; i < regions.size(); ++i) {
             const Box box = regions.region(i).box;
-            longest_sides.push_back(longest_side(box));
+            longest_sides.push_back(largest_coordinate(box.size()));
             whole.extendBy(box);
         }
         std::vector<std::uint32_t> new_large;
         for (std::size_t i = 0; i < regions.size(); ++i)
-            if (longest_sides[i] > kLargeSide * longest_side(whole)) new_large.push_back(regions.number(i));
+            if (longest_sides[i] > kLargeSide * largest_coordinate(whole.size()))
+                new_large.push_back(regions.number(i));
         if (new_large.empty() || large.size() + new_large.size() > kMaxLarge) return large;
         large.insert(large.end(), new_large.begin(), new_large.end());
         std::sort(large.begin(), large.end());
@@ -256,11 +249,9 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
 Partition accel_partition(const PackedJob& job, const NumberFormat& format, const Accel& accel) {
     if (accel.divisions) return partition(job, format, *accel.divisions);
     const std::vector<std::uint32_t> separate = large_objects(job, format);
-    const HitRegions regions(job, format, kMinReach, separate);
-    // If the hit regions are unbounded, every list has all objects, so one voxel is enough.
-    const double voxels =
-        regions.all_bounded() ? std::max(1.0, kVoxelsPerObject * static_cast<double>(regions.size())) : 1;
-    return partition(job, format, divisions_for(job, format, static_cast<std::uint64_t>(voxels), separate), separate);
+    const raya_objects& objects = job.header().objects;
+    const std::uint64_t listed = raya_first_object(objects, RAYA_OBJECT_KINDS) - objects.planes - separate.size();
+    return partition(job, format, divisions_for(job, format, kVoxelsPerObject * listed, separate), separate);
 }
 
 AccelSummary append_grid(PackedJob& job, const Partition& p) {

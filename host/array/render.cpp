@@ -11,19 +11,19 @@ std::uint64_t RenderResult::launches(const std::string& label) const {
     return launches;
 }
 
-KernelOptions kernel_options(const RenderSettings& s, const PackedJob& job, bool has_local_words) {
-    const raya_objects objects = job.header().objects;
+KernelOptions kernel_options(const RenderSettings& s, const raya_job& job, bool has_patches) {
+    const raya_objects& objects = job.objects;
     return {.lanes = s.kernels.lanes,
             .group_size = s.kernels.group_size,
             .bounces = s.bounces,
             .format = s.format,
             .exact_divide = s.kernels.exact_arithmetic,
             .exact_fma = s.kernels.exact_arithmetic,
-            .words_local = s.kernels.local_words && has_local_words,
+            .words_local = s.kernels.local_words,
             .filter = s.kernels.filter && (objects.spheres > 0 || objects.polygons > 0) &&
-                      filters_are_valid(s.format, job.header().extent),
+                      filters_are_valid(s.format, job.extent),
 #define RAYA_KIND_OPTION(kind, kinds, KIND) .kinds = objects.kinds > 0,
-            RAYA_SHAPE_LIST(RAYA_KIND_OPTION).patches = job.has_patches(),
+            RAYA_SHAPE_LIST(RAYA_KIND_OPTION).patches = has_patches,
             .sphere_batch = s.kernels.sphere_batch};
 }
 
@@ -45,12 +45,6 @@ Distribution::Distribution(std::vector<std::uint32_t> rank_of, Ranks& ranks)
         slot_of_[pe] = static_cast<std::uint32_t>(pes.size());
         pes.push_back(pe);
     }
-}
-
-std::uint32_t Distribution::max_count() const {
-    std::size_t max = 0;
-    for (const std::vector<std::uint32_t>& pes : pes_of_) max = std::max(max, pes.size());
-    return static_cast<std::uint32_t>(max);
 }
 
 }  // namespace raya

@@ -55,9 +55,8 @@ struct RenderResult {
     std::uint64_t launches(const std::string& label) const;
 };
 
-/// Returns the kernel options that follow from the settings and the job. `has_local_words`: kernels copy the job's
-/// words to local memory, if the settings allow it.
-KernelOptions kernel_options(const RenderSettings& settings, const PackedJob& job, bool has_local_words = true);
+/// Returns the kernel options that follow from the settings and the job. `has_patches`: see PackedJob.
+KernelOptions kernel_options(const RenderSettings& settings, const raya_job& job, bool has_patches);
 
 // Launches of bounded work: a kernel is launched again until no work is left.
 
@@ -166,8 +165,6 @@ class Distribution {
     std::uint32_t rank_of(std::size_t pe) const { return rank_of_[pe]; }
     bool has(std::size_t pe) const { return rank_of_[pe] == ranks_.rank(); }
     std::uint32_t slot_of(std::size_t pe) const { return slot_of_[pe]; }
-    /// Maximum number of PEs of a rank.
-    std::uint32_t max_count() const;
 
     /// Returns the number of elements of all PEs.
     template <class Count>

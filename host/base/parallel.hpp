@@ -1,5 +1,6 @@
 // Loops whose iterations run on several threads, and a timer.
 #pragma once
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -39,6 +40,17 @@ struct IndexRange {
 /// Returns part i of the indices 0 .. count - 1, which are divided into `parts` consecutive ranges of about equal size.
 constexpr IndexRange part_of_range(std::size_t i, std::size_t parts, std::size_t count) {
     return {i * count / parts, (i + 1) * count / parts};
+}
+
+/// Calls work(i) once for each i in 0 .. count - 1, on up to `threads` threads, each of which takes parts of about
+/// `min_part` or more consecutive indices.
+template <class Work>
+void parallel_for_items(std::size_t count, unsigned threads, std::size_t min_part, const Work& work) {
+    const std::size_t parts = std::min<std::size_t>(16 * threads, 1 + count / min_part);
+    parallel_for(parts, threads, [&](std::size_t part) {
+        const auto [begin, end] = part_of_range(part, parts, count);
+        for (std::size_t i = begin; i < end; ++i) work(i);
+    });
 }
 
 // Vectors whose memory is in huge pages.

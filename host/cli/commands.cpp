@@ -25,7 +25,6 @@
 #include "host/cli/parse.hpp"
 #include "host/cli/render_command.hpp"
 #include "host/error.hpp"
-#include "host/ranks/launch.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/report/bench_report.hpp"
 #include "host/report/scene_report.hpp"

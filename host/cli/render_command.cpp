@@ -15,7 +15,7 @@
 #include "host/cli/parse.hpp"
 #include "host/error.hpp"
 #include "host/image/image_io.hpp"
-#include "host/ranks/launch.hpp"
+#include "host/ranks/ranks.hpp"
 #include "host/report/scene_report.hpp"
 #include "host/report/table.hpp"
 #include "host/version.hpp"

@@ -12,7 +12,6 @@
 #include "host/torus/topology.hpp"
 #include "host/torus/torus_renderer.hpp"
 #include "host/torus/torus_result.hpp"
-#include "host/torus/torus_trace.hpp"
 
 namespace raya {
 namespace {

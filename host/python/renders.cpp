@@ -13,8 +13,8 @@
 #include "host/model/t805.hpp"
 #include "host/python/session.hpp"
 #include "host/torus/async_machine.hpp"
-#include "host/torus/node_memory.hpp"
 #include "host/torus/topology.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "kernels/shared/traffic.h"
 
 namespace raya {

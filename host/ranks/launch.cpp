@@ -1,18 +1,15 @@
-#include "host/ranks/launch.hpp"
-
 #include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
-#include <cstring>
 
 #include "host/base/encoding.hpp"
 #include "host/base/module.hpp"
 #include "host/base/parallel.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
+#include "host/ranks/ranks.hpp"
 #include "host/ranks/transport.hpp"
 #include "host/version.hpp"
 
@@ -69,16 +66,14 @@ std::string build_id() {
 }  // namespace
 
 std::optional<Launch> find_launch() {
-    struct VariableNames {
-        const char *rank, *count;
-    };
-    // First entry: Open MPI. Second: MPICH, Intel MPI and Slurm's pmi2. Third: PMIx (Slurm and others).
-    constexpr VariableNames kLaunchers[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
-                                            {"PMI_RANK", "PMI_SIZE"},
-                                            {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}};
-    for (const VariableNames& names : kLaunchers)
-        if (const auto rank = parsed_number<std::uint32_t>(environment_value(names.rank)))
-            return Launch{*rank, parsed_number<std::uint32_t>(environment_value(names.count))};
+    // Variables of rank and count. First entry: Open MPI. Second: MPICH, Intel MPI and Slurm's pmi2. Third: PMIx (Slurm
+    // and others).
+    constexpr std::pair<const char*, const char*> kLaunchers[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
+                                                                  {"PMI_RANK", "PMI_SIZE"},
+                                                                  {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}};
+    for (const auto& [rank_name, count_name] : kLaunchers)
+        if (const auto rank = parsed_number<std::uint32_t>(environment_value(rank_name)))
+            return Launch{*rank, parsed_number<std::uint32_t>(environment_value(count_name))};
     return {};
 }
 

@@ -172,7 +172,8 @@ LaunchWork launch_work(const RingSettings& settings, const KernelOptions& option
 
 KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job, std::size_t pe_words,
                              const AccelSummary& accel, const DeviceInfo& device) {
-    KernelOptions options = kernel_options(settings, job, words_local(pe_words, device, settings.accel.kind));
+    KernelOptions options = kernel_options(settings, job.header(), job.has_patches());
+    options.words_local = options.words_local && words_local(pe_words, device, settings.accel.kind);
     options.accel = static_cast<std::uint32_t>(settings.accel.kind);
     options.stack = (RAYA_BVH_WIDTH - 1) * accel.depth;
     options.packets = settings.packets;

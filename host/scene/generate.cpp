@@ -187,9 +187,7 @@ Scene touching_walls(Scene scene) {
     for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {-1.0, 1.0}) {
             const auto extent = [&](const Sphere& sphere) { return sign * sphere.centre[axis] + sphere.radius; };
-            Sphere& outermost_sphere =
-                *std::max_element(scene.spheres.begin(), scene.spheres.end(),
-                                  [&](const Sphere& a, const Sphere& b) { return extent(a) < extent(b); });
+            Sphere& outermost_sphere = *std::ranges::max_element(scene.spheres, {}, extent);
             outermost_sphere.centre[axis] = sign * (1 - outermost_sphere.radius);
         }
     return scene;
@@ -223,7 +221,7 @@ Vec3 turned_from_z(const Vec3& v, const Vec3& axis) {
 
 void add_flake(Scene& scene, int level, const Vec3& centre, double radius, const Vec3& axis) {
     static const std::array<Vec3, 9> directions = nine_directions();
-    scene.spheres.push_back({{rounded(centre.x), rounded(centre.y), rounded(centre.z)}, rounded(radius), 1});
+    scene.spheres.push_back({rounded(centre), rounded(radius), 1});
     if (level == 0) return;
     for (const Vec3& direction : directions) {
         const Vec3 outward = turned_from_z(direction, axis);

@@ -2,7 +2,6 @@
 // rounded to decimal digits. Equal surfaces are stored once (merge_equal_surfaces()).
 #pragma once
 #include <array>
-#include <cmath>
 #include <cstdint>
 
 #include "host/scene/scene.hpp"
@@ -12,13 +11,6 @@ namespace raya {
 // `count` of generate_uniform() and generate_random()
 inline constexpr int kMaxObjects = 20'000'000;
 inline constexpr int kMaxVoxelsPerAxis = 256;  // each element of `voxels` of generate_uniform()
-
-/// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six decimals). Rounding keeps
-/// files short, and makes them equal on all platforms although the last bits of sines and cosines differ.
-inline double rounded(double x, double parts = 1e9) { return std::round(x * parts) / parts + 0.0; }
-inline Vec3 rounded(const Vec3& v, double parts = 1e9) {
-    return {rounded(v.x, parts), rounded(v.y, parts), rounded(v.z, parts)};
-}
 
 /// SPD's `balls`, the sphereflake: every sphere is touched by nine spheres with a third of its radius, down to
 /// recursion depth `level`. The scene has 9^0 + ... + 9^level spheres above one square polygon, and three lights. The

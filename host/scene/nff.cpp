@@ -12,8 +12,7 @@
 namespace raya {
 
 void add_remark(std::vector<SceneRemark>& remarks, const SceneRemark& remark) {
-    const auto equal_remark = std::find_if(remarks.begin(), remarks.end(),
-                                           [&](const SceneRemark& known) { return known.what == remark.what; });
+    const auto equal_remark = std::ranges::find(remarks, remark.what, &SceneRemark::what);
     if (equal_remark == remarks.end())
         remarks.push_back(remark);
     else
@@ -31,8 +30,6 @@ std::string remark_text(const std::string& file, const SceneRemark& remark) {
 namespace {
 
 std::string text_of(const Vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
-
-std::string with_leading_blank(const Vec3& v) { return fmt::format(" {}", text_of(v)); }
 
 class NffWriter {
   public:
@@ -59,7 +56,7 @@ class NffWriter {
         write_line("v\nfrom {}\nat {}\nup {}", text_of(view.from), text_of(view.at), text_of(view.up));
         write_line("angle {}\nhither {}\nresolution {} {}", view.angle_degrees, view.hither, view.width, view.height);
         for (const Light& light : scene_.lights)
-            write_line("l {}{}", text_of(light.position), light.colour ? with_leading_blank(*light.colour) : "");
+            write_line("l {}{}", text_of(light.position), light.colour ? " " + text_of(*light.colour) : "");
     }
 
     void write(const Sphere& s) {
@@ -77,7 +74,7 @@ class NffWriter {
         const bool patch = !polygon.normals.empty();
         write_line("{} {}", patch ? "pp" : "p", polygon.vertices.size());
         for (std::size_t i = 0; i < polygon.vertices.size(); ++i)
-            write_line("{}{}", text_of(polygon.vertices[i]), patch ? with_leading_blank(polygon.normals[i]) : "");
+            write_line("{}{}", text_of(polygon.vertices[i]), patch ? " " + text_of(polygon.normals[i]) : "");
     }
 
     void write(const Cone& c) {

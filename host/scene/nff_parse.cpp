@@ -1,9 +1,9 @@
 // Parsing of NFF: tokens, dialects, entities.
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <bitset>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -28,17 +28,13 @@ constexpr std::string_view kDirective = "#raya";
 
 enum class CharKind : std::uint8_t { kText, kBlank, kLineEnd, kHash, kBinary };
 
-constexpr std::array<CharKind, 256> kCharKinds = [] {
-    std::array<CharKind, 256> kinds{};
-    for (std::size_t c = 0; c < ' '; ++c) kinds[c] = CharKind::kBinary;
-    kinds[0x7f] = CharKind::kBinary;
-    for (const char c : {' ', '\t', '\v', '\f'}) kinds[static_cast<std::size_t>(c)] = CharKind::kBlank;
-    for (const char c : {'\r', '\n'}) kinds[static_cast<std::size_t>(c)] = CharKind::kLineEnd;
-    kinds['#'] = CharKind::kHash;
-    return kinds;
-}();
-
-CharKind kind_of(char c) { return kCharKinds[static_cast<unsigned char>(c)]; }
+CharKind kind_of(char c) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code > ' ' && c != '#' && code != 0x7f) return CharKind::kText;
+    if (c == '#') return CharKind::kHash;
+    if (c == '\r' || c == '\n') return CharKind::kLineEnd;
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f' ? CharKind::kBlank : CharKind::kBinary;
+}
 
 bool is_blank(char c) { return kind_of(c) == CharKind::kBlank || kind_of(c) == CharKind::kLineEnd; }
 
@@ -59,9 +55,6 @@ ParsedNumber parsed_number(std::string_view text) {
     return number;
 }
 
-/// Returns true if a token starts with a number; more characters may follow it.
-bool reads_as_number(std::string_view text) { return parsed_number(text).error != std::errc::invalid_argument; }
-
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
 /// Returns true if a token may be the keyword of an NFF dialect (`la`, `tt`, `Q`): at most eight letters, digits and
@@ -69,8 +62,7 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 bool reads_as_keyword(std::string_view token) {
     constexpr std::size_t kMaxLength = 8;
     return !token.empty() && token.size() <= kMaxLength && is_letter(token[0]) &&
-           std::all_of(token.begin(), token.end(),
-                       [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+           std::ranges::all_of(token, [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 /// A run of characters without white space. At the end of the file `text` is empty.
@@ -153,7 +145,7 @@ class NffTokens {
     }
 
     /// Returns true if the next token starts with a number; more characters may follow it.
-    bool number_follows() const { return reads_as_number(next_.text); }
+    bool number_follows() const { return parsed_number(next_.text).error != std::errc::invalid_argument; }
 
     int entity_line() const { return entity_line_; }  // line on which the current entity started
 
@@ -172,37 +164,21 @@ class NffTokens {
 
     bool is_at_directive() const {
         const std::string_view rest = text_.substr(position_);
-        if (!rest.starts_with(kDirective)) return false;
-        return rest.size() == kDirective.size() || is_blank(rest[kDirective.size()]);
+        return rest.starts_with(kDirective) && (rest.size() == kDirective.size() || is_blank(rest[kDirective.size()]));
     }
 
     void skip_blanks_and_comments() {
-        bool comment = false;
-        for (; position_ < text_.size(); ++position_) {
-            switch (kind_of(text_[position_])) {
-                case CharKind::kBinary:
-                    refuse_binary();
-                case CharKind::kLineEnd: {
-                    const bool is_cr_of_crlf =
-                        text_[position_] == '\r' && position_ + 1 < text_.size() && text_[position_ + 1] == '\n';
-                    line_ += is_cr_of_crlf ? 0 : 1;
-                    at_line_start_ = true;
-                    comment = false;
-                    break;
-                }
-                case CharKind::kHash:
-                    if (comment) break;
-                    if (is_at_directive()) {
-                        if (at_line_start_) return;
-                        refuse(line_, "'#raya' must be the first word of its line");
-                    }
-                    comment = true;
-                    break;
-                case CharKind::kText:
-                    if (!comment) return;
-                    break;
-                case CharKind::kBlank:
-                    break;
+        for (bool comment = false; position_ < text_.size(); ++position_) {
+            const CharKind kind = kind_of(text_[position_]);
+            if (kind == CharKind::kBinary) refuse_binary();
+            if (kind == CharKind::kLineEnd) {
+                line_ += text_.substr(position_).starts_with("\r\n") ? 0 : 1;
+                at_line_start_ = true;
+                comment = false;
+            } else if (kind != CharKind::kBlank && !comment) {
+                if (kind == CharKind::kText || (at_line_start_ && is_at_directive())) return;
+                if (is_at_directive()) refuse(line_, "'#raya' must be the first word of its line");
+                comment = true;
             }
         }
     }
@@ -320,20 +296,17 @@ class NffReader {
     void read_view() {
         if (has_view_) refuse("a second 'v': a scene has one viewpoint");
         View& view = scene_.view;
-        std::bitset<kParts.size()> seen;
-        while (!seen.all()) {
-            const auto part = std::find(kParts.begin(), kParts.end(), tokens_.peek().text);
-            const auto index = static_cast<std::size_t>(part - kParts.begin());
-            if (part == kParts.end()) refuse_incomplete_view(seen);
-            if (seen[index]) tokens_.refuse(tokens_.peek().line, fmt::format("'{}' occurs twice in 'v'", *part));
-            seen.set(index);
-            tokens_.take_name(*part);
-            if (*part == "from") view.from = read_vector("from");
-            if (*part == "at") view.at = read_vector("at");
-            if (*part == "up") view.up = read_vector("up");
-            if (*part == "angle") view.angle_degrees = tokens_.take_number("angle");
-            if (*part == "hither") view.hither = read_length("hither");
-            if (*part == "resolution") {
+        std::vector<std::string_view> missing(kParts.begin(), kParts.end());
+        while (!missing.empty()) {
+            const std::string_view part = tokens_.peek().text;
+            if (std::erase(missing, part) == 0) refuse_view(missing);
+            tokens_.take_name(part);
+            if (part == "from") view.from = read_vector("from");
+            if (part == "at") view.at = read_vector("at");
+            if (part == "up") view.up = read_vector("up");
+            if (part == "angle") view.angle_degrees = tokens_.take_number("angle");
+            if (part == "hither") view.hither = read_length("hither");
+            if (part == "resolution") {
                 view.width = tokens_.take_integer("the width", 1, kMaxResolution);
                 view.height = tokens_.take_integer("the height", 1, kMaxResolution);
             }
@@ -342,13 +315,13 @@ class NffReader {
         has_view_ = true;
     }
 
-    [[noreturn]] void refuse_incomplete_view(const std::bitset<6>& seen) {
-        std::string missing;
-        for (std::size_t i = 0; i < kParts.size(); ++i)
-            if (!seen[i]) missing += fmt::format(" {}", kParts[i]);
-        const NffToken& token = tokens_.peek();
-        const std::string found = token.text.empty() ? "the file ends" : in_quotes(token.text) + " follows";
-        tokens_.refuse(token.line, fmt::format("'v' is incomplete: {}; missing parts:{}", found, missing));
+    /// Refuses the next token, which is none of the missing parts of the view.
+    [[noreturn]] void refuse_view(const std::vector<std::string_view>& missing) {
+        const auto [text, line, first_on_line] = tokens_.peek();
+        if (std::ranges::find(kParts, text) != kParts.end())
+            tokens_.refuse(line, fmt::format("'{}' occurs twice in 'v'", text));
+        const std::string found = text.empty() ? "the file ends" : in_quotes(text) + " follows";
+        tokens_.refuse(line, fmt::format("'v' is incomplete: {}; missing parts: {}", found, fmt::join(missing, " ")));
     }
 
     void read_background() {
@@ -424,7 +397,7 @@ class NffReader {
             polygon.normals.push_back(unit_vector(read_vector("a normal")));
         }
         polygon.surface = take_flat_surface();
-        if (std::find(polygon.normals.begin(), polygon.normals.end(), Vec3(0)) != polygon.normals.end()) {
+        if (std::ranges::count(polygon.normals, Vec3(0)) > 0) {
             remark_or_refuse("a normal of the patch is zero", "patch with a normal of 0, taken as a flat polygon");
             polygon.normals.clear();
         }

@@ -303,8 +303,7 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
                         scene.name, all_words));
     words.reserve(all_words + settings.spare_words);
     pack_objects(words, job, scene, surface_at);
-    const bool has_patches =
-        std::any_of(scene.polygons.begin(), scene.polygons.end(), [](const Polygon& p) { return !p.normals.empty(); });
+    const bool has_patches = std::ranges::any_of(scene.polygons, [](const Polygon& p) { return !p.normals.empty(); });
     return {job, std::move(words), has_patches};
 }
 

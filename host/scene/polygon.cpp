@@ -128,7 +128,7 @@ void drop_repeats(Polygon& polygon) {
 
 Vec3 unit_vector(const Vec3& v) {
     if (std::abs(v.length2() - 1) <= 8 * kEpsilon) return v;
-    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    const double largest = largest_coordinate(v);
     if (largest == 0) return v;
     const Vec3 scaled = v / largest;
     return scaled / scaled.length();
@@ -139,19 +139,17 @@ OutlineCheck clean_outline(Polygon& polygon) {
     const std::vector<Vec3>& vertices = polygon.vertices;
     if (vertices.size() < 3) return {OutlineFault::kNoArea, "has fewer than three different vertices"};
 
-    double size = 0, largest_coordinate = 0;  // size: longest side of the bounding box
+    double size = 0, farthest = 0;  // longest side of the bounding box; largest coordinate
     Vec3 mean(0);
     for (const Vec3& v : vertices) {
-        for (int axis = 0; axis < 3; ++axis) {
-            size = std::max(size, std::abs(v[axis] - vertices[0][axis]));
-            largest_coordinate = std::max(largest_coordinate, std::abs(v[axis]));
-        }
+        size = std::max(size, largest_coordinate(v - vertices[0]));
+        farthest = std::max(farthest, largest_coordinate(v));
         mean += (v - vertices[0]) / static_cast<double>(vertices.size());
     }
     if (size < kMinSceneLength) return {OutlineFault::kNoArea, fmt::format("is smaller than {}", kMinSceneLength)};
 
     // Upper bound of the doubled area that collinear vertices can have because of rounding errors.
-    const double max_error = 1e-12 * size * size + 8 * kEpsilon * largest_coordinate * size;
+    const double max_error = 1e-12 * size * size + 8 * kEpsilon * farthest * size;
     const Vec3 normal = newell_normal(vertices);
     const double doubled_area = normal.length();
     if (doubled_area <= max_error) return {OutlineFault::kNoArea, "has no area"};

@@ -17,8 +17,6 @@
 namespace raya {
 namespace {
 
-double largest_coordinate(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
-
 /// Intensity of each light without a colour, and of ambient light, in a scene of n lights (SPD).
 double default_intensity(std::size_t lights) {
     const auto n = static_cast<double>(lights);
@@ -85,40 +83,26 @@ double scene_extent(const Scene& scene) {
 
 namespace {
 
-/// Cosine and sine of an angle; exact for quarter turns.
-struct Direction {
-    double cosine, sine;
-};
-
-Direction direction_at(double degrees) {
+/// Returns cosine and sine of an angle; exact for quarter turns.
+std::pair<double, double> direction_at(double degrees) {
     const double quarters = std::round(degrees / 90), remainder = (degrees - 90 * quarters) * std::numbers::pi / 180;
     const double c = std::cos(remainder), s = std::sin(remainder);
-    switch (static_cast<int>(std::fmod(quarters, 4) + 4) % 4) {
-        case 1:
-            return {-s, c};
-        case 2:
-            return {-c, -s};
-        case 3:
-            return {s, -c};
-        default:
-            return {c, s};
-    }
+    const std::array<std::pair<double, double>, 4> turns = {{{c, s}, {-s, c}, {-c, -s}, {s, -c}}};
+    return turns[static_cast<std::size_t>(std::fmod(quarters, 4) + 4) % 4];
 }
-
-double round_to_millionth(double x) { return std::round(x * 1e6) / 1e6 + 0.0; }
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
-/// Extends `box` so that it contains a disk perpendicular to `axis`, which has length 1. Along a coordinate axis, the
-/// disk extends from its centre by its radius times the sine of the angle between `axis` and the coordinate axis.
+}  // namespace
+
+// Along a coordinate axis, the disk extends from its centre by its radius times the sine of the angle between `axis`
+// and the coordinate axis.
 void extend_by_disk(Imath::Box3d& box, const Vec3& centre, double radius, const Vec3& axis) {
     Vec3 extent;
     for (int i = 0; i < 3; ++i) extent[i] = std::abs(radius) * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
     box.extendBy(centre - extent);
     box.extendBy(centre + extent);
 }
-
-}  // namespace
 
 View turned(View view, double degrees) {
     const double angle = std::fmod(degrees, 360);
@@ -142,9 +126,7 @@ Scene random_view(Scene scene, std::uint64_t seed) {
         random.uniform(std::sin(radians(kMinElevationDegrees)), std::sin(radians(kMaxElevationDegrees)));
     const double azimuth = random.uniform(0, 2 * std::numbers::pi), horizontal = std::sqrt(1 - height * height);
     const Vec3 direction = up * height + (east * std::cos(azimuth) + north * std::sin(azimuth)) * horizontal;
-    view.from = view.at + Vec3(round_to_millionth(direction.x), round_to_millionth(direction.y),
-                               round_to_millionth(direction.z)) *
-                              arm.length();
+    view.from = view.at + rounded(direction, 1e6) * arm.length();
     return scene;
 }
 
@@ -184,38 +166,22 @@ void for_each_small_length(const Scene& scene, Visit&& visit) {
 
 double largest_length(const Scene& scene) {
     double largest = scene_extent(scene);
-    for (const Light& l : scene.lights)
-        for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(l.position[axis]));
+    for (const Light& l : scene.lights) largest = std::max(largest, largest_coordinate(l.position));
     for (const Plane& p : scene.planes) largest = std::max(largest, std::abs(p.distance));
     return largest;
 }
 
-/// The margins between the lengths of an unscaled scene and the limits of a format, as exponents of two. A margin is
-/// negative if its limit is exceeded.
-struct ScaleMargins {
-    double to_upper;  // to the upper limit
-    double to_lower;  // to the nearer of the two lower limits
-};
-
-ScaleMargins margins_of(const LengthScale& scale, const NumberFormat& format) {
+/// Returns the exponent of the scale, from the margins between the lengths of the unscaled scene and the limits of the
+/// format: the upper one, and the nearer of the two lower ones. A margin is negative if its limit is exceeded.
+int exponent_for(const LengthScale& scale, const NumberFormat& format, bool has_planes) {
     const double smallest_of_format = smallest_number(format);
-    return {std::log2(farthest_hit(format) / (4 * scale.largest_length)),
-            std::min(std::log2(scale.smallest_length / std::sqrt(smallest_of_format)),
-                     std::log2(std::ldexp(scale.largest_length, -format.fraction_bits - 1) / smallest_of_format))};
-}
-
-int exponent_for(const ScaleMargins& margins, bool has_planes) {
-    if (margins.to_upper >= 0 && margins.to_lower >= kMinMargin) return 0;
-    return static_cast<int>(std::floor(
-        std::min((margins.to_upper - margins.to_lower + 1) / 2, margins.to_upper - (has_planes ? kPlaneMargin : 0))));
-}
-
-[[noreturn]] void refuse(const Scene& scene, const LengthScale& scale, const NumberFormat& format) {
-    throw UserError(
-        fmt::format("{}: the range of its lengths, {:.3g} to {:.3g}, is too wide for {}: scaled to the largest length, "
-                    "all objects are below the smallest visible length, {:.3g}; remedy: --format fp32, or move distant "
-                    "objects closer",
-                    scene.name, scale.smallest_length, scale.largest_length, format_name(format), scale.min_visible));
+    const double to_upper = std::log2(farthest_hit(format) / (4 * scale.largest_length));
+    const double to_lower =
+        std::min(std::log2(scale.smallest_length / std::sqrt(smallest_of_format)),
+                 std::log2(std::ldexp(scale.largest_length, -format.fraction_bits - 1) / smallest_of_format));
+    if (to_upper >= 0 && to_lower >= kMinMargin) return 0;
+    return static_cast<int>(
+        std::floor(std::min((to_upper - to_lower + 1) / 2, to_upper - (has_planes ? kPlaneMargin : 0))));
 }
 
 }  // namespace
@@ -229,11 +195,16 @@ LengthScale length_scale(const Scene& scene, const NumberFormat& format) {
         scale.smallest_length = std::min(scale.smallest_length, length);
         ++lengths;
     });
-    scale.exponent = exponent_for(margins_of(scale, format), !scene.planes.empty());
+    scale.exponent = exponent_for(scale, format, !scene.planes.empty());
     scale.min_visible = std::ldexp(std::sqrt(smallest_number(format)), -scale.exponent);
     for_each_small_length(scene, [&](double length) { scale.vanishing_count += length < scale.min_visible; });
     const bool has_flat_objects = !scene.polygons.empty() || !scene.planes.empty();
-    if (scale.vanishing_count == lengths && lengths > 0 && !has_flat_objects) refuse(scene, scale, format);
+    if (scale.vanishing_count == lengths && lengths > 0 && !has_flat_objects)
+        throw UserError(fmt::format(
+            "{}: the range of its lengths, {:.3g} to {:.3g}, is too wide for {}: scaled to the largest length, all "
+            "objects "
+            "are below the smallest visible length, {:.3g}; remedy: --format fp32, or move distant objects closer",
+            scene.name, scale.smallest_length, scale.largest_length, format_name(format), scale.min_visible));
     return scale;
 }
 

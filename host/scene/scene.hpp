@@ -3,6 +3,8 @@
 #include <Imath/ImathBox.h>
 #include <Imath/ImathVec.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,6 +18,16 @@ namespace raya {
 
 using Vec3 = Imath::V3d;    // points and directions, scene units
 using Colour = Imath::V3d;  // linear red, green, blue; 1 = full intensity
+
+/// Returns the largest magnitude of the coordinates.
+inline double largest_coordinate(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+/// Rounds to a multiple of 1 / `parts`; by default to nine decimals (SPD's own files have six decimals). Rounding keeps
+/// files short, and makes them equal on all platforms although the last bits of sines and cosines differ.
+inline double rounded(double x, double parts = 1e9) { return std::round(x * parts) / parts + 0.0; }
+inline Vec3 rounded(const Vec3& v, double parts = 1e9) {
+    return {rounded(v.x, parts), rounded(v.y, parts), rounded(v.z, parts)};
+}
 
 /// The camera (`v` of NFF): the eye at `from` looks at `at`; `up` points upwards in the image. The image spans
 /// `angle_degrees` from top to bottom. Pixels are square.
@@ -146,6 +158,9 @@ inline constexpr double kMinElevationDegrees = 5, kMaxElevationDegrees = 75;
 /// perpendicular to `up`. The result depends only on the arguments, not on the platform: directions are rounded to six
 /// decimals.
 Scene random_view(Scene scene, std::uint64_t seed);
+
+/// Extends `box` so that it contains a disk perpendicular to `axis`, which has length 1.
+void extend_by_disk(Imath::Box3d& box, const Vec3& centre, double radius, const Vec3& axis);
 
 /// Returns the axis-aligned bounding box of all spheres, polygons and cones, in scene units; the box is empty
 /// (isEmpty()) if the scene has only planes.

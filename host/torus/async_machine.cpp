@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "host/error.hpp"
-#include "host/torus/link_exchange.hpp"
 #include "kernels/shared/packet.h"
 
 namespace raya {
@@ -55,7 +54,8 @@ class AsyncSimulation {
         while (!events_.empty()) {
             const Event event = events_.top();
             events_.pop();
-            handle(event);
+            now_ = event.time;
+            event.action();
         }
         if (finished_tasks_ < history_.tasks.size() || result_.delivered < history_.messages.size())
             throw std::runtime_error(fmt::format("deadlock of the asynchronous torus: {} of {} messages delivered",
@@ -68,14 +68,10 @@ class AsyncSimulation {
     static constexpr std::uint32_t kClasses = 2;  // number of message classes: class 0 is returns, class 1 rays
     static constexpr double kMsPerNs = 1e-6;
 
-    enum class EventKind : std::uint8_t { kJobDone, kTaskDone, kTransferDone };
     struct Event {
         double time = 0;           // ns
         std::uint64_t number = 0;  // index in the order of scheduling; orders events of equal time
-        EventKind kind{};
-        std::uint32_t location = 0;  // node (kJobDone, kTaskDone) or channel
-        // Version of the node or channel at the time of scheduling. After a later change the event is obsolete.
-        std::uint32_t version = 0;
+        std::function<void()> action{};
         bool operator>(const Event& other) const {
             return time != other.time ? time > other.time : number > other.number;
         }
@@ -95,7 +91,7 @@ class AsyncSimulation {
         std::array<bool, kClasses> input_occupied{};                  // [class]: the input thread's slot is occupied
         // Message that is being sent, from the start of the sender's job to the end of the transfer.
         std::optional<std::uint32_t> sending{};
-        std::uint32_t sent_class = 0, version = 0;  // class of `sending`; number of set_rate() calls
+        std::uint32_t sent_class = 0, version = 0;  // class of `sending`; number of set_rate() calls, see schedule()
         bool transferring = false;
         double words_left = 0, rate = 0, rate_since = 0, transfer_start = 0;  // words, words/ns, ns, ns
     };
@@ -109,7 +105,7 @@ class AsyncSimulation {
     struct Node {
         std::deque<MessageJob> jobs{};
         bool in_job = false;                          // the processor works on jobs.front()
-        std::deque<std::uint32_t> queue{};            // messages that wait for the main task
+        std::deque<std::uint32_t> queue{};            // tasks whose messages wait for the main task
         std::deque<std::uint32_t> injection_tasks{};  // tasks that no message causes and that have not started
         std::uint32_t task = kNone;                   // current task of the main task
         std::uint32_t sent_count = 0;  // number of messages of `task` that are sent; kNone until its computation ends
@@ -117,7 +113,7 @@ class AsyncSimulation {
         // Remaining computation time of `task` at time `remaining_since_ns`.
         double remaining_ns = 0, remaining_since_ns = 0;
         double blocked_since_ns = 0;  // time at which the main task began to wait for a port
-        std::uint32_t version = 0;    // number of starts and preemptions of the computation
+        std::uint32_t version = 0;    // number of starts and preemptions of the computation, see schedule()
     };
 
     std::uint32_t class_of(std::uint32_t message) const {
@@ -130,28 +126,27 @@ class AsyncSimulation {
         run_processor(node);
     }
 
-    void preempt_main(Node& n) {
-        if (n.task == kNone || !n.computing) return;
-        n.remaining_ns -= now_ - n.remaining_since_ns;
-        n.computing = false;
-        ++n.version;
-    }
-
     void run_processor(std::uint32_t node) {
         Node& n = nodes_[node];
         if (n.in_job) return;
         if (!n.jobs.empty()) {
-            preempt_main(n);
+            if (n.computing) {
+                n.remaining_ns -= now_ - n.remaining_since_ns;
+                n.computing = false;
+                ++n.version;
+            }
             n.in_job = true;
             const std::uint32_t words = history_.messages[n.jobs.front().message].words;
             const double ns = machine_.cycle_ns * (machine_.message_cycles + machine_.word_cycles * words);
             result_.nodes[node].messages_ms += ns * kMsPerNs;
-            return schedule(ns, EventKind::kJobDone, node, 0);
+            return schedule(ns, [=, this] { finish_job(node); });
         }
         if (n.task == kNone || n.computing || n.sent_count != kNone) return;
         n.computing = true;
         n.remaining_since_ns = now_;
-        schedule(std::max(0.0, n.remaining_ns), EventKind::kTaskDone, node, ++n.version);
+        schedule(n.remaining_ns, [=, this, version = ++n.version] {
+            if (version == nodes_[node].version) finish_task(node);
+        });
     }
 
     void finish_job(std::uint32_t node) {
@@ -169,14 +164,10 @@ class AsyncSimulation {
     // Starts the task of the first ray in the queue or, if the queue is empty, the node's next task without a cause.
     void start_next_task(std::uint32_t node) {
         Node& n = nodes_[node];
-        if (n.task != kNone || (n.queue.empty() && n.injection_tasks.empty())) return;
-        if (!n.queue.empty()) {
-            n.task = task_of_message_[n.queue.front()];
-            n.queue.pop_front();
-        } else {
-            n.task = n.injection_tasks.front();
-            n.injection_tasks.pop_front();
-        }
+        std::deque<std::uint32_t>& tasks = n.queue.empty() ? n.injection_tasks : n.queue;
+        if (n.task != kNone || tasks.empty()) return;
+        n.task = tasks.front();
+        tasks.pop_front();
         n.sent_count = kNone;
         n.remaining_ns = machine_.cycle_ns * static_cast<double>(history_.tasks[n.task].cycles);
         result_.nodes[node].compute_ms += n.remaining_ns * kMsPerNs;
@@ -188,6 +179,7 @@ class AsyncSimulation {
         n.computing = false;
         n.sent_count = 0;
         ++finished_tasks_;
+        result_.finish_ms = now_ * kMsPerNs;
         send_outputs(node);
     }
 
@@ -216,10 +208,11 @@ class AsyncSimulation {
 
     void deliver(std::uint32_t message) {
         ++result_.delivered;
+        result_.finish_ms = now_ * kMsPerNs;
         if (task_of_message_[message] == HistoryTask::kNoCause) return;
         const std::uint32_t node = history_.messages[message].destination;
         auto& queue = nodes_[node].queue;
-        queue.push_back(message);
+        queue.push_back(task_of_message_[message]);
         result_.nodes[node].queue_max = std::max<std::uint64_t>(result_.nodes[node].queue_max, queue.size());
         start_next_task(node);
     }
@@ -306,7 +299,9 @@ class AsyncSimulation {
                            (kBytesPerWord * kNsPerS);
             ns = channel.words_left / channel.rate;
         }
-        schedule(std::max(0.0, ns), EventKind::kTransferDone, channel_index, ++channel.version);
+        schedule(ns, [=, this, version = ++channel.version] {
+            if (version == channels_[channel_index].version) end_transfer(channel_index);
+        });
     }
 
     void end_transfer(std::uint32_t channel_index) {
@@ -342,20 +337,10 @@ class AsyncSimulation {
         start_sending(channel_index);
     }
 
-    void schedule(double delay_ns, EventKind kind, std::uint32_t location, std::uint32_t version) {
-        events_.push({now_ + delay_ns, event_count_++, kind, location, version});
-    }
-
-    void handle(const Event& event) {
-        const bool valid = event.kind == EventKind::kJobDone ||
-                           event.version == (event.kind == EventKind::kTaskDone ? nodes_[event.location].version
-                                                                                : channels_[event.location].version);
-        if (!valid) return;  // the event is obsolete
-        now_ = event.time;
-        result_.finish_ms = now_ * kMsPerNs;
-        if (event.kind == EventKind::kJobDone) finish_job(event.location);
-        if (event.kind == EventKind::kTaskDone) finish_task(event.location);
-        if (event.kind == EventKind::kTransferDone) end_transfer(event.location);
+    // Calls action() after `delay_ns`, or at once if rounding has made it negative. The action does nothing if the
+    // event is obsolete: if the version of its node or channel has changed.
+    void schedule(double delay_ns, std::function<void()> action) {
+        events_.push({now_ + std::max(0.0, delay_ns), event_count_++, std::move(action)});
     }
 
     const raya_torus& torus_;
@@ -396,7 +381,10 @@ namespace {
 
 constexpr double kUnlimitedBytesPerS = 1e18;  // rate of links whose transfers take no time
 
-std::string channel_name(std::uint32_t node, std::uint32_t link) { return fmt::format("{}{}", node, link_name(link)); }
+// Returns the name of a link of a node: "5+x", "5-x", "5+y", ...
+std::string channel_name(std::uint32_t node, std::uint32_t link) {
+    return fmt::format("{}{}{}", node, link % 2 == 0 ? '+' : '-', "xyz"[link / 2]);
+}
 
 // Returns the name of the wire, whose bandwidth the two channels (directions) of a link share. The name contains the
 // name of the channel in the direction of ascending coordinates.

@@ -6,8 +6,6 @@
 
 namespace raya {
 
-std::string link_name(std::uint32_t link) { return std::string(link % 2 == 0 ? "+" : "-") + "xyz"[link / 2]; }
-
 LinkExchange::LinkExchange(Session& session, const NodeDistribution& distribution, std::uint32_t capacity,
                            const PacketClass& packet_class, const ExchangeKernel& kernel, std::uint32_t group_size,
                            Buffer<std::uint32_t>& status)
@@ -27,9 +25,9 @@ LinkExchange::LinkExchange(Session& session, const NodeDistribution& distributio
     std::vector<std::uint32_t> end_slots;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
         for (const std::uint32_t node : distribution_.own()) {
-            const bool stays_on_device = torus_.sides[link / 2] > 1 && !crosses_ranks(link, node);
-            end_slots.push_back(stays_on_device ? distribution_.slot_of(raya_link_end(torus_, node, link))
-                                                : RAYA_NO_SLOT);
+            const std::uint32_t end = raya_link_end(torus_, node, link);
+            const bool stays_on_device = torus_.sides[link / 2] > 1 && distribution_.has(end);
+            end_slots.push_back(stays_on_device ? distribution_.slot_of(end) : RAYA_NO_SLOT);
         }
     session_.write("scatter", end_slots_, end_slots);
 }
@@ -51,10 +49,6 @@ void LinkExchange::clear() {
 bool LinkExchange::transfers(const NodeStatus& status, std::uint32_t link, std::uint32_t sender) const {
     return status.at(sender, class_.outbox_status + link) > 0 &&
            status.at(raya_link_end(torus_, sender, link), class_.inbox_status + link) == 0;
-}
-
-bool LinkExchange::crosses_ranks(std::uint32_t link, std::uint32_t sender) const {
-    return distribution_.rank_of(raya_link_end(torus_, sender, link)) != distribution_.rank_of(sender);
 }
 
 void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>& words) {
@@ -81,17 +75,12 @@ void LinkExchange::exchange(const NodeStatus& status, std::vector<std::uint64_t>
                     inboxes_, flag_buffer_, status_);
 }
 
-std::size_t LinkExchange::words_of(const LinkMessages& messages) {
-    std::size_t words = 0;
-    for (const auto& [key, message] : messages) words += message.words;
-    return words;
-}
-
 // Sender and receiver of a message read the number of packets in each mailbox from the status, so both know the length.
 void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<OutgoingMessage>& out,
                                    std::vector<IncomingMessage>& in) {
     outgoing_.clear();
     incoming_.clear();
+    std::size_t words_out = 0, words_in = 0;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
         for (std::uint32_t sender = 0; sender < raya_nodes(torus_); ++sender) {
             const std::uint32_t end = raya_link_end(torus_, sender, link);
@@ -99,16 +88,15 @@ void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<Outgoin
             if (sends == distribution_.has(end) || !transfers(status, link, sender)) continue;
             const std::uint32_t packets = status.at(sender, class_.outbox_status + link);
             LinkMessage& m = (sends ? outgoing_ : incoming_)[{distribution_.rank_of(sends ? end : sender), link}];
-            m.boxes.push_back({sender, packets});
+            m.boxes.emplace_back(sender, packets);
             m.words += box_words(packets);
+            (sends ? words_out : words_in) += box_words(packets);
         }
     const auto tag = [&](std::uint32_t link) {
         return class_.tag * static_cast<int>(RAYA_LINKS) + static_cast<int>(link);
     };
     const std::string label = class_.label + " outgoing";
-    if (const std::size_t words = words_of(outgoing_);
-        words > 0 && (!outgoing_words_ || outgoing_words_->size() < words))
-        outgoing_words_.emplace(words);
+    if (words_out > (outgoing_words_ ? outgoing_words_->size() : 0)) outgoing_words_.emplace(words_out);
     std::size_t at = 0;
     for (const auto& [key, m] : outgoing_) {
         const auto [rank, link] = key;
@@ -120,7 +108,7 @@ void LinkExchange::begin_transfers(const NodeStatus& status, std::vector<Outgoin
         out.push_back({rank, tag(link), std::as_bytes(outgoing_words_->first(at).last(m.words))});
     }
     if (at > 0) session_.wait(label, *outgoing_words_);
-    incoming_words_.resize(words_of(incoming_));
+    incoming_words_.resize(words_in);
     std::span<std::uint32_t> unused = incoming_words_;
     for (const auto& [key, m] : incoming_) {
         in.push_back({key.first, tag(key.second), std::as_writable_bytes(unused.first(m.words))});

@@ -18,9 +18,6 @@
 
 namespace raya {
 
-/// Returns the direction of a link: "+x", "-x", "+y", ...
-std::string link_name(std::uint32_t link);
-
 using ExchangeKernel = DescribedKernel<"torus/exchange.cl", "exchange", const Buffer<std::uint32_t>&, Uint<"nodes">,
                                        Uint<"inboxes_of_link">, Uint<"capacity">, Uint<"packet_words">,
                                        Uint<"outbox_status">, Uint<"inbox_status">, const Buffer<std::uint32_t>&,
@@ -83,18 +80,14 @@ class LinkExchange {
 
   private:
     bool transfers(const NodeStatus& status, std::uint32_t link, std::uint32_t sender) const;
-    bool crosses_ranks(std::uint32_t link, std::uint32_t sender) const;
 
     /// Message between this rank and another rank: some outboxes of one link direction.
     struct LinkMessage {
-        struct Box {
-            std::uint32_t sender, packets;  // node of the outbox; number of packets in it
-        };
-        std::vector<Box> boxes;  // in ascending order of the senders
-        std::size_t words = 0;   // number of words in the message
+        // (node of the outbox, number of packets in it), in ascending order of the nodes
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> boxes;
+        std::size_t words = 0;  // number of words in the message
     };
     using LinkMessages = std::map<std::pair<std::uint32_t, std::uint32_t>, LinkMessage>;  // by other rank and direction
-    static std::size_t words_of(const LinkMessages& messages);
 
     Session& session_;
     const NodeDistribution& distribution_;

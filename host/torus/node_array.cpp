@@ -38,18 +38,14 @@ bool any_node_has(std::span<const std::uint32_t> status, std::size_t word) {
 
 NodeArray::NodeArray(Session& session, const TorusSettings& settings, const NodeMemories& memories,
                      const NodeBuffers& buffers, const KernelOptions& options, const NodeDistribution& distribution)
-    : NodeArray(Kernels(session, choose_words_local(options, memories, session.device()), settings.kernels.sources),
-                settings, memories, buffers, distribution) {}
-
-NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories,
-                     const NodeBuffers& buffers, const NodeDistribution& distribution)
-    : session_(kernels.session()),
+    : session_(session),
       settings_(settings),
       buffers_(buffers),
       distribution_(distribution),
       nodes_(distribution.count()),
       node_words_(max_node_words(memories)),
-      options_(kernels.options()),
+      options_(choose_words_local(options, memories, session.device())),
+      kernels_(session, options_, settings.kernels.sources),
       memories_(session_.buffer_of("node memories", std::span(memories.words))),
       starts_(session_.buffer<std::uint32_t>("starts of node memories", memories.starts.size())),
       run_(session_.buffer<raya_run>("run", 1)),
@@ -64,31 +60,23 @@ NodeArray::NodeArray(Kernels kernels, const TorusSettings& settings, const NodeM
       processed_(session_.buffer<raya_processed>("processed packets", options_.costs ? queues_.size() : 1)),
       ray_links_(session_, distribution, buffers.box,
                  {"exchange", RAYA_PACKET_WORDS, RAYA_STATUS_OUTBOX, RAYA_STATUS_INBOX, settings.packets.ray_words},
-                 kernels.get<ExchangeKernel>(), options_.group_size, status_),
+                 kernels_.get<ExchangeKernel>(), options_.group_size, status_),
       return_links_(session_, distribution, buffers.box,
                     {"return", RAYA_RETURN_WORDS, RAYA_STATUS_RETURN_OUTBOX, RAYA_STATUS_RETURN_INBOX,
                      settings.packets.return_words(), RAYA_STATUS_RETURN_CHARGED, 1},
-                    kernels.get<ExchangeKernel>(), options_.group_size, status_),
-      inject_(kernels.get<node_kernels::Inject>()),
-      trace_(kernels.get<node_kernels::TraceVoxel>()),
-      route_(kernels.get<node_kernels::Route>()),
-      accept_(kernels.get<node_kernels::Accept>()),
-      build_options_(kernels.program(node_kernels::TraceVoxel::kFile).options()) {
+                    kernels_.get<ExchangeKernel>(), options_.group_size, status_),
+      inject_(kernels_.get<node_kernels::Inject>()),
+      trace_(kernels_.get<node_kernels::TraceVoxel>()),
+      route_(kernels_.get<node_kernels::Route>()),
+      accept_(kernels_.get<node_kernels::Accept>()),
+      build_options_(kernels_.program(node_kernels::TraceVoxel::kFile).options()) {
     session_.write("scatter", memories_, memories.words);
     session_.write("scatter", starts_, memories.starts);
-    write_inbox_table();
-    write_run_constants();
-}
-
-void NodeArray::write_inbox_table() {
     std::vector<std::uint32_t> inboxes;
     for (std::uint32_t link = 0; link < RAYA_LINKS; ++link)
-        for (const std::uint32_t node : distribution_.own())
-            inboxes.push_back(distribution_.inbox_from(raya_link_end(settings_.torus, node, link ^ 1u), link));
+        for (const std::uint32_t node : distribution.own())
+            inboxes.push_back(distribution.inbox_from(raya_link_end(settings.torus, node, link ^ 1u), link));
     session_.write("scatter", inbox_of_link_, inboxes);
-}
-
-void NodeArray::write_run_constants() {
     const raya_run run{.nodes = nodes_,
                        .inboxes = distribution_.inboxes(),
                        .queue = buffers_.queue,
@@ -206,7 +194,7 @@ NodeStatus NodeArray::read_status() {
     if (any_node_has(own_status, RAYA_STATUS_CUT))
         throw truncated_loops_error("read status", session_.device().name, launches_.remedy());
     superstep_s_ = seconds_since(std::exchange(last_status_, Clock::now()));
-    return NodeStatus(distribution_.all_gather(std::move(own_status), RAYA_STATUS_WORDS));
+    return {distribution_.all_gather(std::move(own_status), RAYA_STATUS_WORDS)};
 }
 
 void NodeArray::report_work(const NodeStatus& injected, const NodeWorkSink& sink) {
@@ -270,22 +258,17 @@ void NodeArray::visit_state(RenderState& state, NodeStatus& status) {
     });
 }
 
-namespace {
-
-std::uint64_t cycles_of(const NodeStatus& status, std::uint32_t node) {
-    return status.at(node, RAYA_STATUS_CYCLES) | std::uint64_t{status.at(node, RAYA_STATUS_CYCLES + 1)} << 32;
-}
-
-}  // namespace
-
 std::vector<std::uint64_t> cycles_of_nodes(const NodeStatus& status, std::uint32_t nodes) {
     std::vector<std::uint64_t> cycles;
-    for (std::uint32_t node = 0; node < nodes; ++node) cycles.push_back(cycles_of(status, node));
+    for (std::uint32_t node = 0; node < nodes; ++node) {
+        const std::uint64_t high = status.at(node, RAYA_STATUS_CYCLES + 1);
+        cycles.push_back(high << 32 | status.at(node, RAYA_STATUS_CYCLES));
+    }
     return cycles;
 }
 
 MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::uint32_t capacity) {
-    MachineState state;
+    MachineState state{.max_cycles = std::ranges::max(cycles_of_nodes(status, nodes))};
     std::uint64_t rows = 0, injected_rows = 0;
     for (std::uint32_t node = 0; node < nodes; ++node) {
         const auto at = [&](std::uint32_t word) { return status.at(node, word); };
@@ -296,7 +279,6 @@ MachineState machine_state(const NodeStatus& status, std::uint32_t nodes, std::u
         state.longest_queue = std::max(state.longest_queue, at(RAYA_STATUS_QUEUE));
         state.full_queues += at(RAYA_STATUS_QUEUE) >= capacity;
         state.progress += at(RAYA_STATUS_PROGRESS);
-        state.max_cycles = std::max(state.max_cycles, cycles_of(status, node));
         state.all_injected &= at(RAYA_STATUS_NEXT_ROW) >= at(RAYA_STATUS_ROWS);
         rows += at(RAYA_STATUS_ROWS);
         injected_rows += at(RAYA_STATUS_NEXT_ROW);
@@ -324,8 +306,7 @@ void NodeArray::record_packets(const NodeStatus& status, std::uint32_t superstep
     return_links_.visit_new_packets(status, record_new);
     std::vector<PacketRecord> records = distribution_.ranks().gather(
         std::span<const PacketRecord>(own_records), distribution_.ranks().all_gather(own_records.size()));
-    std::stable_sort(records.begin(), records.end(),
-                     [](const PacketRecord& a, const PacketRecord& b) { return a.source < b.source; });
+    std::ranges::stable_sort(records, {}, &PacketRecord::source);
     for (const PacketRecord& record : records) sink(record);
 }
 

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "host/array/render.hpp"
@@ -11,8 +10,8 @@
 #include "host/cl/kernel_options.hpp"
 #include "host/ranks/ranks.hpp"
 #include "host/torus/link_exchange.hpp"
-#include "host/torus/node_memory.hpp"
 #include "host/torus/topology.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_result.hpp"
 #include "kernels/shared/traffic.h"
 
@@ -129,10 +128,6 @@ class NodeArray {
     bool copies_words_to_local() const { return options_.words_local; }  // kernels copy a node's words to local memory
 
   private:
-    NodeArray(Kernels kernels, const TorusSettings& settings, const NodeMemories& memories, const NodeBuffers& buffers,
-              const NodeDistribution& distribution);
-    void write_run_constants();
-    void write_inbox_table();
     /// Repeats `launch(work, resume)` until no node has work left.
     template <class Launch>
     void launch_until_done(const std::string& label, const Launch& launch);
@@ -145,6 +140,7 @@ class NodeArray {
     const NodeDistribution& distribution_;
     std::uint32_t nodes_, node_words_;  // number of nodes of this rank; number of words of the fullest of these nodes
     KernelOptions options_;
+    Kernels kernels_;
     Buffer<std::uint32_t> memories_, starts_;
     Buffer<raya_run> run_;
     Buffer<raya_packet> queues_;

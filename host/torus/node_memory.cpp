@@ -1,6 +1,4 @@
 // Divides the words of a job among the memories of the torus nodes.
-#include "host/torus/node_memory.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "host/model/number_format.hpp"
 #include "host/scene/packer.hpp"
 #include "host/torus/topology.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "kernels/shared/packet.h"
 
 namespace raya {
@@ -25,16 +24,6 @@ struct VoxelLists {
 #define RAYA_NUMBERS_OF_KIND(kind, kinds, KIND) ObjectNumbers kinds;
     RAYA_OBJECT_LIST(RAYA_NUMBERS_OF_KIND)
 };
-
-VoxelLists lists_of(const raya_objects& objects, const Partition& partition, std::uint32_t voxel) {
-    const auto first = partition.objects.begin() + partition.starts[voxel];
-    const auto last = partition.objects.begin() + partition.starts[voxel + 1];
-    const auto begin = [&](std::uint32_t kind) {
-        return std::lower_bound(first, last, raya_first_object(objects, kind));
-    };
-#define RAYA_PART_OF_LIST(kind, kinds, KIND) {begin(RAYA_##KIND), begin(RAYA_##KIND + 1)},
-    return {{first, last}, RAYA_OBJECT_LIST(RAYA_PART_OF_LIST)};
-}
 
 // Packs the words of the nodes, one node after another.
 class NodePacker {
@@ -83,7 +72,14 @@ class NodePacker {
     }
 
     VoxelLists voxel_lists(std::uint32_t node, std::uint32_t local) const {
-        return lists_of(job_header_.objects, partition_, raya_voxel_of_node(torus_, partition_.grid, node, local));
+        const std::uint32_t voxel = raya_voxel_of_node(torus_, partition_.grid, node, local);
+        const auto objects = partition_.objects.begin();
+        const ObjectNumbers all(objects + partition_.starts[voxel], objects + partition_.starts[voxel + 1]);
+        const auto begin = [&](std::uint32_t kind) {
+            return std::ranges::lower_bound(all, raya_first_object(job_header_.objects, kind));
+        };
+#define RAYA_PART_OF_LIST(kind, kinds, KIND) {begin(RAYA_##KIND), begin(RAYA_##KIND + 1)},
+        return {all, RAYA_OBJECT_LIST(RAYA_PART_OF_LIST)};
     }
 
     // Returns the current offset from the node's first word.
@@ -117,8 +113,7 @@ class NodePacker {
 
     void append_voxels(const raya_node& header) {
         for (std::uint32_t local = 0; local < header.voxels; ++local) {
-            const VoxelLists lists = voxel_lists(header.number, local);
-            const raya_voxel_memory voxel = append_voxel(lists, header.job.objects);
+            const raya_voxel_memory voxel = append_voxel(voxel_lists(header.number, local), header.job.objects);
             put_record(*words_, start_ + header.voxels_at + local * kWordsOf<raya_voxel_memory>, voxel);
         }
     }
@@ -135,17 +130,15 @@ class NodePacker {
     voxel.objects.kinds##_at = current_offset();                          \
     for (const std::uint32_t number : lists.kinds) append_object(job_.object(number), RAYA_##KIND##_WORDS);
         RAYA_FIXED_LIST(RAYA_APPEND_KIND)
-        voxel.objects.polygons = static_cast<std::uint32_t>(lists.polygons.size());
-        voxel.objects.polygons_at = current_offset();
-        append_polygons(lists.polygons);
+        RAYA_APPEND_KIND(polygon, polygons, POLYGON)
+        append_details(lists.polygons, start_ + voxel.objects.polygons_at);
         voxel.numbers_at = current_offset();
         append_words(lists.all.data(), lists.all.size());
         return voxel;
     }
 
-    void append_polygons(ObjectNumbers polygons) {
-        std::size_t record = words_->size();
-        for (const std::uint32_t number : polygons) append_object(job_.object(number), RAYA_POLYGON_WORDS);
+    // Appends the corners and normals of polygons, whose words begin at (*words_)[record].
+    void append_details(ObjectNumbers polygons, std::size_t record) {
         for (const std::uint32_t number : polygons) {
             const std::uint32_t* const polygon = job_.object(number);
             (*words_)[record + RAYA_POLYGON_CORNERS_AT] = current_offset();
@@ -169,30 +162,26 @@ class NodePacker {
 
 }  // namespace
 
-std::uint32_t NodeSizes::fullest() const {
-    return static_cast<std::uint32_t>(std::max_element(words.begin(), words.end()) - words.begin());
-}
-
 NodeSizes node_sizes(const PackedJob& job, const Partition& partition, const raya_torus& torus) {
     NodePacker packer(job, partition, torus);
-    NodeSizes sizes{.words = {}, .copies = partition.copies()};
+    NodeSizes sizes;
     std::vector<std::uint32_t> words;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
         words.clear();
         packer.append(node, words);
-        sizes.words.push_back(words.size());
+        sizes.push_back(words.size());
     }
     return sizes;
 }
 
 void check_words(const NodeSizes& sizes, std::span<const std::uint32_t> nodes) {
     std::uint64_t total = 0;
-    for (const std::uint32_t node : nodes) total += sizes.words[node];
+    for (const std::uint32_t node : nodes) total += sizes[node];
     if (total > kMaxWords)
         throw UserError(fmt::format(
             "{} nodes: the memories of {} nodes need {} words, more than the limit of {}; use fewer nodes or "
             "voxels, or more processes (mpirun)",
-            sizes.words.size(), nodes.size(), total, kMaxWords));
+            sizes.size(), nodes.size(), total, kMaxWords));
 }
 
 NodeMemories pack_nodes(const PackedJob& job, const Partition& partition, const raya_torus& torus,
@@ -244,17 +233,17 @@ NodeBuffers plan_buffers(const std::string& scene, const NodeSizes& sizes, const
                         queue, min_queue, min_queue));
     const std::uint32_t max_queue = queue > 0 ? queue : std::max(default_queue(raya_nodes(torus)), min_queue);
     if (!memory_bytes) return buffers_for(max_queue);
-    const std::uint32_t links = links_of_node(torus), fullest = sizes.fullest();
-    const std::uint64_t words = sizes.words[fullest], limit = *memory_bytes;
-    const std::uint32_t chosen = queue > 0 ? queue : min_queue;
+    const auto fullest = std::ranges::max_element(sizes);
+    const std::uint64_t words = *fullest, limit = *memory_bytes;
+    const std::uint32_t links = links_of_node(torus), chosen = queue > 0 ? queue : min_queue;
     const auto bytes = [&](std::uint64_t node_words) { return node_bytes(node_words, buffers_for(chosen), links); };
     if (bytes(words) <= limit) return buffers_for(longest_queue(words, links, limit, chosen, max_queue));
-    const auto fitting = std::ranges::count_if(sizes.words, [&](std::uint64_t w) { return bytes(w) <= limit; });
+    const auto fitting = std::ranges::count_if(sizes, [&](std::uint64_t w) { return bytes(w) <= limit; });
     const bool shorter_fits = node_bytes(words, buffers_for(min_queue), links) <= limit;
     throw DoesNotFit(
         fmt::format("{}: does not fit: {} of {} nodes can hold their voxels; node {} needs {} for the scene and {} for "
                     "buffers, a node has {}; use {} or --pe-memory {}",
-                    scene, fitting, raya_nodes(torus), fullest, required_size_text(4 * words),
+                    scene, fitting, raya_nodes(torus), fullest - sizes.begin(), required_size_text(4 * words),
                     required_size_text(bytes(0)), available_size_text(limit),
                     shorter_fits ? fmt::format("--queue {}", longest_queue(words, links, limit, min_queue, chosen))
                                  : "more --nodes",

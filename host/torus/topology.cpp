@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "host/error.hpp"
 
@@ -15,18 +14,19 @@ namespace {
 // Returns C, the number of slabs in a row (see make_torus()). The product of the sides I C and J K / C does not depend
 // on C. So the C with the smallest difference of the sides also has the ratio of the sides nearest to 1.
 std::uint32_t slabs_per_row(const std::array<std::uint32_t, 3>& nodes) {
-    const std::uint32_t i = nodes[0], j = nodes[1], k = nodes[2];
-    const auto side_difference = [&](std::uint32_t c) {
-        const std::uint32_t first = i * c, second = j * (k / c);
-        return first > second ? first - second : second - first;
-    };
+    const std::int64_t i = nodes[0], j = nodes[1], k = nodes[2];
+    const auto side_difference = [&](std::uint32_t c) { return std::abs(i * c - j * (k / c)); };
     std::uint32_t best_slabs = 1;
     for (std::uint32_t c = 2; c <= k; ++c)
         if (k % c == 0 && side_difference(c) < side_difference(best_slabs)) best_slabs = c;
     return best_slabs;
 }
 
-void check_nodes(const std::array<std::uint32_t, 3>& nodes) {
+}  // namespace
+
+std::string links_name(Links links) { return links == Links::kTorus3d ? "torus3d" : "torus2d"; }
+
+raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links) {
     std::uint64_t count = 1;
     for (const std::uint32_t side : nodes) {
         if (side == 0)
@@ -36,14 +36,6 @@ void check_nodes(const std::array<std::uint32_t, 3>& nodes) {
         if (count > kMaxNodes)
             throw UserError(fmt::format("--nodes {}: more than {} nodes; use fewer", sides_text(nodes), kMaxNodes));
     }
-}
-
-}  // namespace
-
-std::string links_name(Links links) { return links == Links::kTorus3d ? "torus3d" : "torus2d"; }
-
-raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links) {
-    check_nodes(nodes);
     const auto [i, j, k] = nodes;
     if (links == Links::kTorus3d) return {{i, j, k}, {i, j, k}, 1};
     const std::uint32_t slabs = slabs_per_row(nodes);
@@ -51,8 +43,7 @@ raya_torus make_torus(const std::array<std::uint32_t, 3>& nodes, Links links) {
 }
 
 std::uint32_t links_of_node(const raya_torus& torus) {
-    return static_cast<std::uint32_t>(
-        2 * std::count_if(std::begin(torus.sides), std::end(torus.sides), [](std::uint32_t side) { return side > 1; }));
+    return 2 * static_cast<std::uint32_t>(std::ranges::count_if(torus.sides, [](auto side) { return side > 1; }));
 }
 
 std::uint32_t destination_of(const raya_torus& torus, std::uint32_t sender, const raya_head& packet) {
@@ -76,30 +67,28 @@ struct Cuboid {
     std::uint32_t nodes() const { return side(0) * side(1) * side(2); }
 };
 
-// Divides the cuboid among the ranks `first_rank` to `first_rank` + `ranks` - 1; `ranks` must not exceed the number of
-// nodes in the cuboid. Sets rank_of[node].
-void divide(const raya_torus& torus, const Cuboid& cuboid, std::uint32_t ranks, std::uint32_t first_rank,
-            std::vector<std::uint32_t>& rank_of) {
-    if (ranks == 1) {
-        raya_place p{};
-        for (p.at[2] = cuboid.first.at[2]; p.at[2] < cuboid.end.at[2]; ++p.at[2])
-            for (p.at[1] = cuboid.first.at[1]; p.at[1] < cuboid.end.at[1]; ++p.at[1])
-                for (p.at[0] = cuboid.first.at[0]; p.at[0] < cuboid.end.at[0]; ++p.at[0])
-                    rank_of[raya_node_at(torus, p)] = first_rank;
-        return;
+// Returns the rank of the node at `place`: divides the cuboid of all nodes, then the part that contains the node, until
+// a part has one rank. `ranks` must not exceed the number of nodes.
+std::uint32_t rank_of_place(const raya_torus& torus, const raya_place& place, std::uint32_t ranks) {
+    Cuboid cuboid{{{0, 0, 0}}, {{torus.sides[0], torus.sides[1], torus.sides[2]}}};
+    std::uint32_t first_rank = 0;
+    while (ranks > 1) {
+        std::uint32_t axis = 0;
+        for (std::uint32_t candidate : {1, 2})
+            if (cuboid.side(candidate) > cuboid.side(axis)) axis = candidate;
+        const double layers = cuboid.side(axis);
+        const double low_layers = std::clamp(std::round(layers * (ranks / 2) / ranks), 1.0, layers - 1);
+        Cuboid low = cuboid, high = cuboid;
+        low.end.at[axis] = high.first.at[axis] = cuboid.first.at[axis] + static_cast<std::uint32_t>(low_layers);
+        // Each part has at least one node for each of its ranks.
+        const std::uint32_t low_ranks =
+            std::clamp(ranks / 2, ranks - std::min(ranks - 1, high.nodes()), std::min(ranks - 1, low.nodes()));
+        const bool is_low = place.at[axis] < low.end.at[axis];
+        cuboid = is_low ? low : high;
+        first_rank += is_low ? 0 : low_ranks;
+        ranks = is_low ? low_ranks : ranks - low_ranks;
     }
-    std::uint32_t axis = 0;
-    for (std::uint32_t candidate : {1, 2})
-        if (cuboid.side(candidate) > cuboid.side(axis)) axis = candidate;
-    const double layers = cuboid.side(axis);
-    const double low_layers = std::clamp(std::round(layers * (ranks / 2) / ranks), 1.0, layers - 1);
-    Cuboid low = cuboid, high = cuboid;
-    low.end.at[axis] = high.first.at[axis] = cuboid.first.at[axis] + static_cast<std::uint32_t>(low_layers);
-    // Each part has at least one node for each of its ranks.
-    const std::uint32_t low_ranks =
-        std::clamp(ranks / 2, ranks - std::min(ranks - 1, high.nodes()), std::min(ranks - 1, low.nodes()));
-    divide(torus, low, low_ranks, first_rank, rank_of);
-    divide(torus, high, ranks - low_ranks, first_rank + low_ranks, rank_of);
+    return first_rank;
 }
 
 }  // namespace
@@ -110,8 +99,9 @@ std::vector<std::uint32_t> ranks_of_nodes(const raya_torus& torus, std::uint32_t
             fmt::format("{} ranks for {} nodes: a rank needs at least one node; start {} ranks or fewer, or use more "
                         "nodes (--nodes)",
                         ranks, raya_nodes(torus), raya_nodes(torus)));
-    std::vector<std::uint32_t> rank_of(raya_nodes(torus));
-    divide(torus, {{{0, 0, 0}}, {{torus.sides[0], torus.sides[1], torus.sides[2]}}}, ranks, 0, rank_of);
+    std::vector<std::uint32_t> rank_of;
+    for (std::uint32_t node = 0; node < raya_nodes(torus); ++node)
+        rank_of.push_back(rank_of_place(torus, raya_torus_place(torus, node), ranks));
     return rank_of;
 }
 
@@ -127,8 +117,7 @@ NodeDistribution::NodeDistribution(const raya_torus& torus, Ranks& ranks)
 std::uint32_t NodeDistribution::inbox_from(std::uint32_t sender, std::uint32_t link) const {
     if (has(sender)) return slot_of(sender);
     const std::vector<std::uint32_t>& senders = remote_senders_[link];
-    return count() +
-           static_cast<std::uint32_t>(std::lower_bound(senders.begin(), senders.end(), sender) - senders.begin());
+    return count() + static_cast<std::uint32_t>(std::ranges::lower_bound(senders, sender) - senders.begin());
 }
 
 }  // namespace raya

@@ -71,10 +71,7 @@ class NodeDistribution : public Distribution {
 };
 
 /// Host copy of the nodes' status words: [node][RAYA_STATUS_WORDS].
-class NodeStatus {
-  public:
-    explicit NodeStatus(std::uint32_t nodes) : words(std::size_t{nodes} * RAYA_STATUS_WORDS) {}
-    explicit NodeStatus(std::vector<std::uint32_t> status_words) : words(std::move(status_words)) {}
+struct NodeStatus {
     std::uint32_t at(std::uint32_t node, std::uint32_t word) const {
         return words[std::size_t{node} * RAYA_STATUS_WORDS + word];
     }

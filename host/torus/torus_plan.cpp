@@ -92,15 +92,9 @@ NodeNeeds node_needs(const Scene& scene, const TorusSettings& s) {
     const LengthScale scale = length_scale(scene, s.format);
     const PackedJob job = pack_job(scene, job_settings(s, scale));
     const NodeSizes sizes = node_sizes(job, partition(job, s.format, s.voxels), s.torus);
-    const std::uint64_t words = sizes.words[sizes.fullest()];
+    const std::uint64_t words = std::ranges::max(sizes);
     const NodeBuffers buffers = buffers_of(scene, sizes, s);
     return {scale, words, node_bytes(words, buffers, links_of_node(s.torus))};
-}
-
-PackedJob header_only_job(const TorusJobHeader& job) {
-    PackedJob header_only(job.header, std::vector<std::uint32_t>(kWordsOf<raya_job>), job.has_patches);
-    header_only.set_header(job.header);
-    return header_only;
 }
 
 // The words of other ranks' nodes are packed rank by rank, so that this rank never holds all of them.
@@ -128,8 +122,8 @@ TorusJob make_torus_job(const Session& session, const Scene& scene, const TorusS
         return memories;
     };
     TorusJobHeader header{
-        job.header(), job.has_patches(), scale, buffers_of(scene, sizes, s), sizes.words[sizes.fullest()],
-        sizes.copies};
+        job.header(),      job.has_patches(), scale, buffers_of(scene, sizes, s), std::ranges::max(sizes),
+        partition.copies()};
     if (ranks.has_several()) ranks.broadcast(header);
     for (std::uint32_t rank = 1; rank < ranks.count(); ++rank) {
         const NodeMemories memories = memories_of(rank);
@@ -198,12 +192,6 @@ struct Projection {
     double max_distance = 0;  // maximum |P - eye| of a pixel at depth c = 1
 };
 
-// Bounds of projected points: columns x and rows y.
-struct ScreenBounds {
-    Imath::Box2d pixels;
-    bool whole = false;  // true: no bound is known, so the window is the whole image
-};
-
 // Clips a face to the points with depth >= `min_depth` (Sutherland & Hodgman 1974).
 std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4>& face, double min_depth) {
     std::vector<Vec3> polygon;
@@ -217,9 +205,9 @@ std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4
     return polygon;
 }
 
-// Extends the bounds by a face of the voxel at place `at`. The face lies in plane `k` of the grid planes perpendicular
-// to `axis`. `distance`: distance of plane `k` from the eye.
-void add_face(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, const raya_place& at,
+// Extends the box, of columns x and rows y, by a face of the voxel at place `at`. The face lies in plane `k` of the
+// grid planes perpendicular to `axis`. `distance`: distance of plane `k` from the eye.
+void add_face(Imath::Box2d& box, const Projection& projection, const raya_grid& grid, const raya_place& at,
               std::uint32_t axis, std::uint32_t k, double distance) {
     const std::uint32_t second = (axis + 1) % 3, third = (axis + 2) % 3;
     std::array<Vec3, 4> face;
@@ -230,10 +218,11 @@ void add_face(ScreenBounds& bounds, const Projection& projection, const raya_gri
     }
     // The clipping depth is smaller than the depth of any visible point of the face.
     for (const Vec3& p : clipped(projection, face, distance / projection.max_distance / 2))
-        bounds.pixels.extendBy(projection.pixel(p));
+        box.extendBy(projection.pixel(p));
 }
 
-void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
+// Extends the box by a voxel. The box is infinite if no bound is known.
+void add_voxel(Imath::Box2d& box, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
     const raya_place at = raya_place_of(voxel, grid.divisions[0], grid.divisions[1]);
     bool contains_eye = true;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -252,14 +241,10 @@ void add_voxel(ScreenBounds& bounds, const Projection& projection, const raya_gr
             distance_below > 0 ? low <= box_low + slack : distance_above > 0 && high >= box_high - slack;
         if (!faces_eye) continue;
         // No bound is known if the eye is so close to the face that rounding may move the entry point by a pixel.
-        bounds.whole = bounds.whole || slack * projection.max_distance > distance * projection.pixel_distance;
-        add_face(bounds, projection, grid, at, axis, at.at[axis] + (distance_above > 0 ? 1 : 0), distance);
+        if (slack * projection.max_distance > distance * projection.pixel_distance) box.makeInfinite();
+        add_face(box, projection, grid, at, axis, at.at[axis] + (distance_above > 0 ? 1 : 0), distance);
     }
-    bounds.whole = bounds.whole || contains_eye;
-}
-
-std::uint32_t clamped(double value, std::uint32_t max) {
-    return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(max)));
+    if (contains_eye) box.makeInfinite();
 }
 
 }  // namespace
@@ -269,18 +254,18 @@ std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& gri
     constexpr int kMinWindowBits = 10;  // with fewer fraction bits there is no error bound, so no window
     const Projection projection(job, format);
     const std::uint32_t width = job.mapping.width, height = job.mapping.height;
+    const auto clamped = [](double value, std::uint32_t max) {
+        return static_cast<std::uint32_t>(std::clamp<double>(value, 0, max));
+    };
     std::vector<PixelWindow> windows;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
-        ScreenBounds bounds;
+        Imath::Box2d box;
         const std::uint32_t voxels = raya_node_voxels(torus, grid, node);
-        bounds.whole = voxels > 0 && format.fraction_bits < kMinWindowBits;
-        for (std::uint32_t i = 0; i < voxels && !bounds.whole; ++i)
-            add_voxel(bounds, projection, grid, raya_voxel_of_node(torus, grid, node, i));
-        const Imath::Box2d& box = bounds.pixels;
+        if (voxels > 0 && format.fraction_bits < kMinWindowBits) box.makeInfinite();
+        for (std::uint32_t i = 0; i < voxels && !box.isInfinite(); ++i)
+            add_voxel(box, projection, grid, raya_voxel_of_node(torus, grid, node, i));
         const double m = projection.margin;
-        if (bounds.whole)
-            windows.push_back({{0, height}, {0, width}});
-        else if (box.isEmpty())
+        if (box.isEmpty())
             windows.push_back({});
         else
             windows.push_back(

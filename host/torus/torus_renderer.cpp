@@ -13,7 +13,6 @@
 #include "host/base/log.hpp"
 #include "host/error.hpp"
 #include "host/torus/node_array.hpp"
-#include "host/torus/node_memory.hpp"
 #include "host/torus/torus_plan.hpp"
 
 namespace raya {
@@ -60,14 +59,14 @@ void TorusRenderer::build() {
     const SpanLog::Span span = session_.span("set up device");
     const std::jthread notice = session_.compile_notice();
     const Clock::time_point start = Clock::now();
-    KernelOptions options = kernel_options(settings_, header_only_job(job_));
+    KernelOptions options = kernel_options(settings_, job_.header, job_.has_patches);
     options.costs = settings_.history;
     nodes_ = std::make_unique<NodeArray>(session_, settings_, job_.memories, job_.buffers, options, distribution_);
     options.lanes = 1;
-    Kernels kernels(session_, options, settings_.kernels.sources);
-    composer_ = std::make_unique<Composer>(kernels);
+    compose_ = Kernels(session_, options, settings_.kernels.sources).get<ComposeKernel>();
+    sum({{0, 0, 0, 0}, {0, 1}});
     nodes_->clear();
-    // Launches the kernels once with empty queues, because PoCL compiles a kernel at its first launch.
+    // Launches the kernels once, with empty queues, because PoCL compiles a kernel at its first launch.
     nodes_->trace_voxel(Reserve::kWholeTree);
     nodes_->route();
     nodes_->accept(Reserve::kWholeTree, 0);
@@ -91,35 +90,37 @@ TorusResult TorusRenderer::render(const ProgressCallback& progress, const Render
     Checkpoints checkpoints(checkpointing, session_, distribution_,
                             checkpointing ? state_settings(settings_, job_, distribution_) : StateSettings{});
     run_supersteps(run, checkpoints, progress, own_observers);
-    TorusResult result;
+    TorusResult& result = run.result;
     if (ranks_.is_first()) compose(result, run.returns);
-    result.supersteps = std::move(run.supersteps);
-    result.link_words = std::move(run.link_words);
     collect(result);
     result.earlier_s = checkpoints.earlier_s();
     result.render_s = checkpoints.seconds();
     result.traffic = ranks_.traffic() - traffic_before;
     describe(result);
     if (ranks_.is_first()) check(result);
-    return result;
+    return std::move(result);
 }
 
-// Launches the computation of a superstep, which precedes the transfer of packets.
-void TorusRenderer::compute(Reserve reserve, bool injects, const NodeWorkSink& work) {
+// Computes a superstep up to the transfer of packets, and starts to read the returns. Returns the status of all nodes.
+NodeStatus TorusRenderer::compute(TorusRun& run, bool injects, const RenderObservers& observers) {
     if (injects) nodes_->inject();
-    if (!work) return nodes_->trace_voxel(reserve);
-    const NodeStatus injected = nodes_->read_status();
-    nodes_->trace_voxel(reserve);
-    nodes_->report_work(injected, work);
+    const NodeStatus injected = observers.work ? nodes_->read_status() : NodeStatus{};
+    nodes_->trace_voxel(run.reserve);
+    if (observers.work) nodes_->report_work(injected, observers.work);
+    nodes_->route();
+    const NodeStatus status = nodes_->read_status();
+    nodes_->continue_gather(status, run.returns);
+    if (observers.packets) nodes_->record_packets(status, run.superstep, observers.packets);
+    return status;
 }
 
 // Adds the counts of a superstep to the run, and passes them to `sink`. `words`: [node][RAYA_LINKS], number of words
 // charged for each link.
 void TorusRenderer::add_superstep(TorusRun& run, const NodeStatus& status, const MachineState& state,
                                   const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const {
-    run.supersteps.push_back({state.max_cycles, *std::max_element(words.begin(), words.end()), state.live});
-    if (sink) sink({run.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings_.torus)), words});
-    for (std::size_t i = 0; i < words.size(); ++i) run.link_words[i] += words[i];
+    run.result.supersteps.push_back({state.max_cycles, *std::max_element(words.begin(), words.end()), state.live});
+    if (sink) sink({run.result.supersteps.back(), cycles_of_nodes(status, raya_nodes(settings_.torus)), words});
+    for (std::size_t i = 0; i < words.size(); ++i) run.result.link_words[i] += words[i];
 }
 
 // Runs supersteps until the image is complete. All ranks read the status of all nodes_, so they make the same
@@ -129,15 +130,12 @@ void TorusRenderer::run_supersteps(TorusRun& run, Checkpoints& checkpoints, cons
     const SpanLog::Span span = session_.span("supersteps");
     const std::uint32_t all_nodes = raya_nodes(settings_.torus), queue = job_.buffers.queue;
     nodes_->clear();
-    run.link_words.assign(std::size_t{all_nodes} * RAYA_LINKS, 0);
-    NodeStatus status(0);
+    run.result.link_words.assign(std::size_t{all_nodes} * RAYA_LINKS, 0);
+    NodeStatus status;
     const auto visit = [&](RenderState& state) { visit_state(state, run, status); };
     bool resumes = checkpoints.resume(visit), injects = true;
     for (;; ++run.superstep, resumes = false) {
-        if (!resumes) {
-            compute(run.reserve, injects, observers.work);
-            status = route(run, observers);
-        }
+        if (!resumes) status = compute(run, injects, observers);
         const MachineState state = machine_state(status, all_nodes, queue);
         run.max_live = std::max(run.max_live, state.live);
         if (!resumes) checkpoints.save_if_due(progress_of(state, run.returns.size(), run.max_live), visit);
@@ -151,7 +149,7 @@ void TorusRenderer::run_supersteps(TorusRun& run, Checkpoints& checkpoints, cons
         injects = !state.all_injected && state.longest_queue <= queue / 4;
         // Packets that a superstep accepts with a tight reserve count as progress only in the next superstep. So only
         // three supersteps without progress prove a deadlock.
-        run.stalled = state.progress == 0 && run.supersteps.back().max_link_words == 0 ? run.stalled + 1 : 0;
+        run.stalled = state.progress == 0 && run.result.supersteps.back().max_link_words == 0 ? run.stalled + 1 : 0;
         if (run.stalled == 3)
             throw TorusDeadlock(
                 fmt::format("{}: deadlock in superstep {}: {} packets wait for each other, {} of {} "
@@ -168,22 +166,13 @@ void TorusRenderer::visit_state(RenderState& state, TorusRun& run, NodeStatus& s
     for (std::uint32_t* number : {&run.superstep, &run.stalled}) state.value(*number);
     state.value(run.reserve);
     state.value(run.max_live);
-    state.rank_0(run.supersteps, true);
-    state.rank_0(run.link_words);
+    state.rank_0(run.result.supersteps, true);
+    state.rank_0(run.result.link_words);
     state.rank_0(run.returns, true);
     if (ranks_.is_first() &&
-        (run.supersteps.size() != run.superstep || run.stalled > 2 || run.reserve > Reserve::kTight))
+        (run.result.supersteps.size() != run.superstep || run.stalled > 2 || run.reserve > Reserve::kTight))
         throw UserError("damaged");
     nodes_->visit_state(state, status);
-}
-
-// Moves packets from the queues to the outboxes, and starts to read the returns. Returns the status of all nodes_.
-NodeStatus TorusRenderer::route(TorusRun& run, const RenderObservers& observers) {
-    nodes_->route();
-    const NodeStatus status = nodes_->read_status();
-    nodes_->continue_gather(status, run.returns);
-    if (observers.packets) nodes_->record_packets(status, run.superstep, observers.packets);
-    return status;
 }
 
 void TorusRenderer::compose(TorusResult& result, const std::vector<raya_head>& returns) {
@@ -192,7 +181,7 @@ void TorusRenderer::compose(TorusResult& result, const std::vector<raya_head>& r
     for (const raya_head& packet : returns) result.returns += (packet.state & RAYA_STATE_CHARGED) != 0;
     const std::uint32_t pixels = settings_.width * settings_.height;
     result.image = {static_cast<int>(settings_.width), static_cast<int>(settings_.height),
-                    composer_->compose(sort_contributions(returns, pixels))};
+                    sum(sort_contributions(returns, pixels))};
 }
 
 void TorusRenderer::collect(TorusResult& result) {
@@ -290,12 +279,10 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
     return sorted;
 }
 
-Composer::Composer(Kernels& kernels)
-    : session_(kernels.session()), group_size_(kernels.options().group_size), compose_(kernels.get<ComposeKernel>()) {
-    compose({{0, 0, 0, 0}, {0, 1}});  // compiles the kernel, because PoCL does so at the first launch
-}
-
-std::vector<float> Composer::compose(const Contributions& contributions) {
+// Sums the contributions of each pixel on the device. Returns [pixel][3]: linear red, green and blue, rounded to the
+// number format.
+std::vector<float> TorusRenderer::sum(const Contributions& contributions) {
+    const std::uint32_t group_size = settings_.kernels.group_size;
     const auto pixels = static_cast<std::uint32_t>(contributions.starts.size() - 1);
     Buffer<float> colours =
         session_.buffer<float>("contributions", std::max<std::size_t>(4, contributions.colours.size()));
@@ -307,12 +294,12 @@ std::vector<float> Composer::compose(const Contributions& contributions) {
     session_.write("compose", starts, contributions.starts);
     constexpr std::size_t kPixelsPerItem = 16, kMaxGroups = 4096;
     std::uint32_t was_cut = 1;
-    for (std::size_t groups = std::min(kMaxGroups, pixels / (kPixelsPerItem * group_size_) + 1); was_cut; groups *= 2) {
+    for (std::size_t groups = std::min(kMaxGroups, pixels / (kPixelsPerItem * group_size) + 1); was_cut; groups *= 2) {
         session_.fill("compose", cut_flag, 0);
-        session_.launch("compose", compose_, groups, group_size_, colours, starts, Uint<"pixels">{pixels}, image,
+        session_.launch("compose", *compose_, groups, group_size, colours, starts, Uint<"pixels">{pixels}, image,
                         cut_flag);
         session_.read("compose", cut_flag, {&was_cut, 1});
-        if (was_cut && groups * group_size_ >= pixels)
+        if (was_cut && groups * group_size >= pixels)
             throw truncated_loops_error("compose", session_.device().name, "fewer --bounces");
     }
     std::vector<float> pixels_of_image(3ull * pixels);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "host/array/checkpoints.hpp"
@@ -20,8 +21,6 @@
 
 namespace raya {
 
-// Sorts the contributions that the root has received, by pixel and by position in the pixel's ray tree, and sums them.
-
 /// Contributions, sorted by pixel, then by position in the pixel's ray tree. This is the order of summation.
 struct Contributions {
     std::vector<float> colours;         // [contribution][4]: red, green, blue, weight
@@ -35,22 +34,6 @@ Contributions sort_contributions(const std::vector<raya_head>& returns, std::uin
 
 using ComposeKernel = DescribedKernel<"torus/compose.cl", "compose", const Buffer<float>&, const Buffer<std::uint32_t>&,
                                       Uint<"pixels">, Buffer<float>&, Buffer<std::uint32_t>&>;
-
-/// Sums the contributions of each pixel on the device.
-class Composer {
-  public:
-    /// `kernels` must be built for one lane.
-    explicit Composer(Kernels& kernels);
-
-    /// Returns [pixel][3]: linear red, green and blue, rounded to the kernels' number format. Throws DeviceError if
-    /// the device ends loops early (kernels/shared/loop_canary.clh).
-    std::vector<float> compose(const Contributions& contributions);
-
-  private:
-    Session& session_;
-    std::uint32_t group_size_;
-    ComposeKernel compose_;
-};
 
 /// Renders images of one scene. All ranks must make the same calls in the same order.
 class TorusRenderer {
@@ -83,9 +66,9 @@ class TorusRenderer {
                         const RenderObservers& observers);
     void add_superstep(TorusRun& run, const NodeStatus& status, const MachineState& state,
                        const std::vector<std::uint64_t>& words, const SuperstepSink& sink) const;
-    NodeStatus route(TorusRun& run, const RenderObservers& observers);
-    void compute(Reserve reserve, bool injects, const NodeWorkSink& work);
+    NodeStatus compute(TorusRun& run, bool injects, const RenderObservers& observers);
     void compose(TorusResult& result, const std::vector<raya_head>& returns);
+    std::vector<float> sum(const Contributions& contributions);
     void collect(TorusResult& result);
     void check(const TorusResult& result) const;
     void describe(TorusResult& result) const;
@@ -98,7 +81,7 @@ class TorusRenderer {
     NodeDistribution distribution_;
     TorusJob job_;
     std::unique_ptr<NodeArray> nodes_;
-    std::unique_ptr<Composer> composer_;
+    std::optional<ComposeKernel> compose_;  // for one lane
     double build_s_ = 0;
 };
 

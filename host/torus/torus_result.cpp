@@ -57,13 +57,6 @@ double busiest_link_ms(const raya_torus& torus, const TorusResult& result) {
     return max_ms;
 }
 
-double stepwise_ms(const std::vector<Superstep>& supersteps) {
-    double total_ms = 0;
-    for (const Superstep& step : supersteps)
-        total_ms += t805_ms(step.max_node_cycles) + t805_link_ms(step.max_link_words, step.max_link_words);
-    return total_ms;
-}
-
 }  // namespace
 
 std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const TorusResult& r) {
@@ -80,17 +73,16 @@ std::vector<KernelWork> torus_kernel_work(const TorusSettings& settings, const T
     trace.bytes = copied_bytes("trace_voxel") + kWordBytes * RAYA_PACKET_WORDS * r.rank_events[RAYA_STEPS] +
                   packet_bytes(other_packets);
     trace.rays += inject_events[RAYA_PRIMARY];  // trace_voxel also traces the primary rays
-    KernelWork route, accept, compose;
-    route.label = "route";
-    route.bytes =
-        copied_bytes("route") +
-        2 * kWordBytes * (r.sent_rays * RAYA_PACKET_WORDS + r.rank_made[RAYA_KIND_RETURN] * RAYA_RETURN_WORDS);
-    accept.label = "accept";
-    accept.bytes = 2 * kWordBytes * (r.received_rays * RAYA_PACKET_WORDS + r.received_returns * RAYA_RETURN_WORDS);
-    compose.label = "compose";  // three multiply-adds for each contribution
-    compose.operations = 3 * r.contributions;
-    compose.bytes = r.contributions * 4 * sizeof(float) + kWordBytes * (pixels + 1) + 3 * sizeof(float) * pixels;
-    return {inject, trace, route, accept, compose};
+    const std::uint64_t routed = r.sent_rays * RAYA_PACKET_WORDS + r.rank_made[RAYA_KIND_RETURN] * RAYA_RETURN_WORDS;
+    const std::uint64_t accepted = r.received_rays * RAYA_PACKET_WORDS + r.received_returns * RAYA_RETURN_WORDS;
+    const std::uint64_t composed =
+        r.contributions * 4 * sizeof(float) + kWordBytes * (pixels + 1) + 3 * sizeof(float) * pixels;
+    return {inject,
+            trace,
+            {.label = "route", .bytes = copied_bytes("route") + 2 * kWordBytes * routed},
+            {.label = "accept", .bytes = 2 * kWordBytes * accepted},
+            // Three multiply-adds for each contribution.
+            {.label = "compose", .operations = 3 * r.contributions, .bytes = composed}};
 }
 
 TorusTime torus_time(const raya_torus& torus, const TorusResult& result) {
@@ -100,11 +92,12 @@ TorusTime torus_time(const raya_torus& torus, const TorusResult& result) {
         processor_cycles = std::max(processor_cycles, result.load.per_pe[node] + messages[node]);
     TorusTime time;
     time.compute_ms = t805_ms(result.load.max);
-    time.messages_ms = t805_ms(*std::max_element(messages.begin(), messages.end()));
+    time.messages_ms = t805_ms(std::ranges::max(messages));
     time.processor_ms = t805_ms(processor_cycles);
     time.links_ms = busiest_link_ms(torus, result);
     time.overlapped_ms = std::max(time.processor_ms, time.links_ms);
-    time.stepwise_ms = stepwise_ms(result.supersteps);
+    for (const Superstep& step : result.supersteps)
+        time.stepwise_ms += t805_ms(step.max_node_cycles) + t805_link_ms(step.max_link_words, step.max_link_words);
     return time;
 }
 

@@ -12,6 +12,7 @@
 #include "host/model/machine.hpp"
 #include "host/model/t805.hpp"
 #include "host/report/render_report.hpp"
+#include "host/report/trace_file.hpp"
 #include "host/torus/topology.hpp"
 #include "kernels/shared/packet.h"
 #include "kernels/shared/torus.h"
@@ -78,7 +79,7 @@ struct TorusResult : RenderResult {  // pixels outside TorusSettings::pixels are
     std::uint64_t sent_rays = 0, received_rays = 0;  // of this rank's nodes: numbers of packets over links
     std::uint64_t received_returns = 0;              // of this rank's nodes
     std::uint64_t queue_max = 0;                     // maximum number of packets in a queue
-    std::uint64_t copies = 0;                        // see NodeSizes
+    std::uint64_t copies = 0;                        // Partition::copies()
     NodeBuffers buffers;
     std::uint64_t node_bytes = 0;     // number of bytes of the fullest node: words and buffers
     std::uint64_t copied_words = 0;   // number of words that this rank's nodes copy to local memory in each launch
@@ -129,12 +130,9 @@ struct TorusRun {
     std::uint32_t superstep = 0;
     std::uint32_t stalled = 0;  // consecutive supersteps without progress
     Reserve reserve = Reserve::kWholeTree;
-    std::uint64_t max_live = 0;  // maximum number of live packets so far
-    // Only in rank 0: counts of the finished supersteps; [node][RAYA_LINKS]: words charged for the link; returns that
-    // have reached the host
-    std::vector<Superstep> supersteps{};
-    std::vector<std::uint64_t> link_words{};
-    std::vector<raya_head> returns{};
+    std::uint64_t max_live = 0;        // maximum number of live packets so far
+    TorusResult result{};              // only in rank 0: supersteps and link_words, of the finished supersteps
+    std::vector<raya_head> returns{};  // only in rank 0: returns that have reached the host
 };
 
 // The torus's part of a render report.
@@ -149,5 +147,16 @@ void torus_members(Members& m, const TorusSettings& settings, const TorusResult&
 
 /// Lists the numbers of operations of all counted events on T805s (host/model/t805.hpp).
 void t805_members(Members& m, const EventCounts& events, const PacketCharge& packets);
+
+// Trace of the modelled torus: the work of each node in each superstep, in modelled time.
+
+/// Adds a track for the supersteps and a track for each of `nodes` nodes to `trace`, from time 0 on, in the stepwise
+/// time of torus_time(): in each superstep a node computes and waits for the busiest node, then it sends and waits for
+/// the busiest link. Counters: live packets, load imbalance u of the superstep, words over the busiest link and mean
+/// words over a link. `cycles`, [superstep][node], and `link_words`, [superstep][node][RAYA_LINKS], are those of the
+/// same render (SuperstepDetail). If `nodes` is 0, adds only a remark to the metadata.
+void add_torus_machine(TraceFile& trace, const raya_torus& torus, const TorusResult& result,
+                       const std::vector<std::uint64_t>& cycles, const std::vector<std::uint64_t>& link_words,
+                       std::size_t nodes);
 
 }  // namespace raya

@@ -1,5 +1,3 @@
-#include "host/torus/torus_trace.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "host/model/t805.hpp"
 #include "host/torus/topology.hpp"
+#include "host/torus/torus_result.hpp"
 
 namespace raya {
 namespace {

@@ -58,7 +58,7 @@ std::optional<Verdict> difference(const std::vector<Word>& expected, const std::
 // packet contains the number of its outbox and its position in the outbox.
 struct LinkTraffic {
     LinkTraffic(const raya_torus& torus, std::uint32_t stride, std::size_t words)
-        : status(raya_nodes(torus)),
+        : status{std::vector<std::uint32_t>(std::size_t{raya_nodes(torus)} * RAYA_STATUS_WORDS)},
           outboxes(words),
           inboxes(words, kPoison),
           expected_inboxes(words),

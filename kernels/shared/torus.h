@@ -148,15 +148,4 @@ RAYA_SHARED_FUNCTION raya_u32 raya_link_end(raya_torus t, raya_u32 node, raya_u3
     return raya_node_at(t, p);
 }
 
-// Returns the number of links on the route from one node to another.
-RAYA_SHARED_FUNCTION raya_u32 raya_node_distance(raya_torus t, raya_u32 from, raya_u32 to) {
-    const raya_place a = raya_torus_place(t, from), b = raya_torus_place(t, to);
-    raya_u32 distance = 0;
-    for (raya_u32 d = 0; d < 3; ++d) {
-        int up = 0;
-        distance += raya_side_distance(a.at[d], b.at[d], t.sides[d], &up);
-    }
-    return distance;
-}
-
 #endif

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/ranks/launch.hpp"
+#include "host/ranks/ranks.hpp"
 
 namespace raya {
 

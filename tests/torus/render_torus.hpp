@@ -106,15 +106,17 @@ inline std::string ring_image_and_counts(const Scene& scene, const TorusCase& c)
 }
 
 /// Adds the packet's number of words to words[node][link] for each link of the packet's route. The routing rules define
-/// this route.
-inline void add_route(std::vector<std::uint64_t>& words, const raya_torus& torus, const PacketRecord& p) {
-    for (std::uint32_t node = p.source; node != p.destination;) {
+/// this route. Returns its number of links.
+inline std::uint64_t add_route(std::vector<std::uint64_t>& words, const raya_torus& torus, const PacketRecord& p) {
+    std::uint64_t links = 0;
+    for (std::uint32_t node = p.source; node != p.destination; ++links) {
         const bool is_return = raya_state_kind(p.head.state) == RAYA_KIND_RETURN;
         const std::uint32_t link =
             is_return ? raya_return_link(torus, node) : raya_next_link(torus, node, p.destination);
         words.at(std::size_t{node} * RAYA_LINKS + link) += p.words;
         node = raya_link_end(torus, node, link);
     }
+    return links;
 }
 
 inline std::uint32_t lights_of(const Scene& scene) { return static_cast<std::uint32_t>(scene.lights.size()); }

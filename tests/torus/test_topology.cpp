@@ -36,12 +36,13 @@ std::vector<std::uint32_t> searched_distances(const raya_torus& torus, std::uint
     return distances;
 }
 
-// Returns the links that a packet takes. Stops after one link more than there are nodes. Returns RAYA_NO_LINK alone if
-// the route ends in a wrong node.
-std::vector<std::uint32_t> route_of(const raya_torus& torus, std::uint32_t source, std::uint32_t destination) {
+// Returns the links that a ray, or a return, takes. Stops after one link more than there are nodes. Returns
+// RAYA_NO_LINK alone if the route ends in a wrong node.
+std::vector<std::uint32_t> route_of(const raya_torus& torus, std::uint32_t source, std::uint32_t destination,
+                                    bool is_return = false) {
     std::vector<std::uint32_t> links;
     for (std::uint32_t node = source; links.size() <= raya_nodes(torus);) {
-        const std::uint32_t link = raya_next_link(torus, node, destination);
+        const std::uint32_t link = is_return ? raya_return_link(torus, node) : raya_next_link(torus, node, destination);
         if (link == RAYA_NO_LINK) return node == destination ? links : std::vector<std::uint32_t>{RAYA_NO_LINK};
         links.push_back(link);
         node = raya_link_end(torus, node, link);
@@ -147,8 +148,8 @@ TEST_CASE("packets take the documented route, which is a shortest route", "[toru
                 const std::vector<std::uint32_t> links = route_of(t, source, end);
                 if (links.size() != distances[end])
                     FAIL("not a shortest route: " << links.size() << " links from " << source << " to " << end);
-                if (raya_node_distance(t, source, end) != distances[end])
-                    FAIL("wrong raya_node_distance() from " << source << " to " << end);
+                if (end == RAYA_ROOT && route_of(t, source, end, true).size() != distances[end])
+                    FAIL("not a shortest route of a return from " << source);
                 if (links != defined_route(t, source, end))
                     FAIL("not the documented route from " << source << " to " << end);
             }

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "host/torus/node_memory.hpp"
+#include "host/torus/torus_plan.hpp"
 #include "host/torus/torus_result.hpp"
 #include "tests/base/test_checkpointing.hpp"
 #include "tests/torus/render_torus.hpp"

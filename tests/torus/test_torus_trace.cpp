@@ -4,7 +4,6 @@
 
 #include "host/model/budget.hpp"
 #include "host/torus/torus_result.hpp"
-#include "host/torus/torus_trace.hpp"
 #include "tests/document.hpp"
 #include "tests/report/trace_schema.hpp"
 #include "tests/torus/render_torus.hpp"
