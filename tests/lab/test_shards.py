@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 raya = pytest.importorskip("raya", reason="the module is not built; configure with -DRAYA_PYTHON=ON")
-from raya.lab import __main__ as program, shards, store, worker  # noqa: E402
+from raya.lab import __main__ as program, manifest, shards, store, worker  # noqa: E402
 from raya.lab.store import Store  # noqa: E402
 
 STUDY = '''"""Squares
@@ -67,7 +67,7 @@ class SameProcess:
 
 @pytest.fixture
 def study(tmp_path, monkeypatch):
-    monkeypatch.setattr(program, "Worker", SameProcess)
+    monkeypatch.setattr("raya.lab.run.Worker", SameProcess)
     monkeypatch.setattr(worker, "laboratory", None)
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "squares.py"
@@ -200,8 +200,8 @@ def test_a_killed_shard_continues(study, capsys, ending):
     """The kernel ends the whole program (SIGKILL), or the driver crashes in the child process."""
     path = os.pathsep.join([str(Path(raya.__file__).absolute().parents[1]), os.environ.get("PYTHONPATH", "")])
     code = "import raya.lab.__main__ as m, sys; m.main(sys.argv[1:])" if ending == "driver" else (
-        "import raya.lab.__main__ as m, raya.lab.worker as w, sys\n"
-        "m.Worker = type('W', (), {'run': staticmethod(w.run_study), 'close': lambda self: None})\nm.main(sys.argv[1:])")
+        "import raya.lab.__main__ as m, raya.lab.run as r, raya.lab.worker as w, sys\n"
+        "r.Worker = type('W', (), {'run': staticmethod(w.run_study), 'close': lambda self: None})\nm.main(sys.argv[1:])")
     Path("run.py").write_text(f"if __name__ == '__main__':\n    {code.replace(chr(10), chr(10) + '    ')}\n")
     command = [sys.executable, "run.py", study, "--shard", "1/1", "-o", "s1"]
     stopped = subprocess.run(command, env={**os.environ, "PYTHONPATH": path, "KILLED_AT": "5"}, capture_output=True, text=True, timeout=120)
@@ -239,7 +239,7 @@ def test_merge_refuses_another_program_study_or_scene(study, monkeypatch):
     with pytest.raises(ValueError, match="s1: it is of study squares.py, not of fig7"):
         run("fig7", "--merge", "s1", "-o", "merged")
     with monkeypatch.context() as patch:
-        patch.setattr(program.manifest, "program_version", lambda: "raya 9.9.9")
+        patch.setattr(manifest, "program_version", lambda: "raya 9.9.9")
         with pytest.raises(ValueError, match="this is raya 9.9.9; remedy: merge with that version"):
             run(study, "a.nff", "--merge", "s1", "-o", "merged")
     Path("a.nff").rename("b.nff")

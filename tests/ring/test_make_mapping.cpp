@@ -2,8 +2,10 @@
 // tests/cli/transcripts/refusals.txt.
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <functional>
 
 #include "host/ring/mapping.hpp"
+#include "host/ring/ring_plan.hpp"
 
 using namespace raya;
 
@@ -43,4 +45,30 @@ TEST_CASE("the text of a mapping identifies it, except for the fold", "[mapping]
     CHECK(mapping_text(grid_mapping(8, 9)) == "grid:8x9");
     CHECK(mapping_text(tiles_mapping(32, 50)) == "tiles:32x50");
     CHECK(mapping_text(random_mapping(99)) == "random:99");
+}
+
+TEST_CASE("use_packets: only with a BVH, fp32, no schedule, and tiles that divide the image", "[ring][mapping]") {
+    const auto chosen = [](std::uint32_t width, std::uint32_t height, const std::function<void(RingSettings&)>& change,
+                           bool may_change_mapping = true) {
+        RingSettings s;
+        s.accel.kind = AccelKind::kBvh;
+        s.mapping = make_mapping(cyclic_mapping(0), {width, height}, 4);
+        change(s);
+        use_packets(s, may_change_mapping);
+        return s.packets ? mapping_text(s.mapping) : "none";
+    };
+    const auto nothing = [](RingSettings&) {};
+    CHECK(chosen(12, 8, nothing) == "tiles:4x4");
+    CHECK(chosen(8, 6, nothing) == "tiles:8x2");
+    CHECK(chosen(6, 16, nothing) == "tiles:2x8");
+    CHECK(chosen(16, 7, nothing) == "tiles:16x1");
+    CHECK(chosen(15, 15, nothing) == "none");
+    CHECK(chosen(12, 8, nothing, false) == "none");
+    CHECK(chosen(12, 8, [](RingSettings& s) { s.accel.kind = AccelKind::kGrid; }) == "none");
+    CHECK(chosen(12, 8, [](RingSettings& s) { s.format = parse_format("spa22"); }) == "none");
+    CHECK(chosen(12, 8, [](RingSettings& s) { s.dynamic = DynamicPlan{}; }) == "none");
+    CHECK(chosen(12, 8, [](RingSettings& s) { s.antialias.method = AntialiasMethod::kFilter; }) == "none");
+    const auto tiles = [](RingSettings& s) { s.mapping = make_mapping(tiles_mapping(2, 3), {12, 9}, 4); };
+    CHECK(chosen(12, 9, tiles, false) == "tiles:2x3");
+    CHECK(chosen(12, 9, tiles) == "tiles:2x3");
 }

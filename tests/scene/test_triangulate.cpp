@@ -63,6 +63,14 @@ TEST_CASE("Newell's normal points to the counter-clockwise side, and its length 
     CHECK(newell_normal({{1e9, 0, 0}, {1e9 + 1, 0, 0}, {1e9, 1, 0}}) == Vec3(0, 0, 1));
 }
 
+TEST_CASE("clean_outline: vertices on a line have no area, also if rounding far from the origin gives them some") {
+    Polygon polygon{{{1e6 + 0.1, 0.1, 0}, {1e6 + 0.2, 0.2, 0}, {1e6 + 0.7, 0.7, 0}}, {}, 0};
+    CHECK(newell_normal(polygon.vertices) != Vec3(0));
+    CHECK(clean_outline(polygon).fault == OutlineFault::kNoArea);
+    polygon.vertices.back().y = 0.7001;
+    CHECK(clean_outline(polygon).fault == OutlineFault::kNone);
+}
+
 TEST_CASE("the dropped axis is that of the largest component, the first such axis in a tie") {
     CHECK(dropped_axis({1, 0, 0}) == 0);
     CHECK(dropped_axis({0.1, -0.9, 0.5}) == 1);

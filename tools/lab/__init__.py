@@ -4,6 +4,7 @@ A study is one Python file: its docstring has the title, the question and the me
 Example: docs/my_study.py. The built-in studies are in tools/lab/studies; `raya study NAME` runs them.
 """
 import sys
+from importlib import import_module
 from importlib.util import find_spec
 
 _MISSING = [name for name in ("numpy", "scipy", "pandas", "matplotlib", "jinja2", "tqdm") if find_spec(name) is None]
@@ -15,11 +16,19 @@ if _MISSING:
     print(f"raya: {_TEXT}", file=sys.stderr)  # `python3 -m raya.lab` imports this file before __main__.py
     sys.exit(2)
 
-from raya.lab import papers
-from raya.lab.claims import Claim, Judgement, decide, judged
-from raya.lab.laboratory import Costs, Ensemble, Laboratory, first_scene, mean_seconds, time_calls
-from raya.lab.page import Comparison, Page, Picture, Plot, Series, Table, format_value, series_by, with_paper
-from raya.lab.statistics import (COMPATIBLE, NOT_REPRODUCED, REPRODUCED, UNTESTABLE, Estimate, Test, above, below, bonferroni_confidence, counted,
-                                 estimate, estimates, every, fitted_exponent, next_value_within, prediction_interval, prediction_text, proportion,
-                                 range_text, tail_where, within)
-from raya.lab.study import study
+# Modules are imported when one of their names is used, because pandas, scipy and matplotlib take seconds to load: help and errors come at once.
+_NAMES = {"papers": "",
+          "claims": "Claim Judgement decide judged",
+          "laboratory": "Costs Ensemble Laboratory first_scene mean_seconds time_calls",
+          "page": "Comparison Page Picture Plot Series Table format_value series_by with_paper",
+          "registry": "study",
+          "statistics": "COMPATIBLE NOT_REPRODUCED REPRODUCED UNTESTABLE Estimate Test above below bonferroni_confidence counted estimate estimates every "
+                        "fitted_exponent next_value_within prediction_interval prediction_text proportion range_text tail_where within"}
+_MODULES = {name: module for module, names in _NAMES.items() for name in names.split()}
+__all__ = ["papers", *_MODULES]
+
+
+def __getattr__(name):
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__} has no attribute {name}")
+    return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)

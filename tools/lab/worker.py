@@ -10,7 +10,7 @@ import raya
 from raya.lab.laboratory import Laboratory
 from raya.lab.page import Page
 from raya.lab.store import Store
-from raya.lab.study import studies, study_of_file
+from raya.lab.registry import studies, study_of_file
 
 laboratory = None  # the Laboratory of this process; all studies use its device session
 

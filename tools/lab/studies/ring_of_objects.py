@@ -125,10 +125,11 @@ def family_estimates(rows):
     for parts in FAMILY_PARTS:
         column, cyclic = (rows[(rows["G"] == parts) & (rows["p"] == p)].reset_index() for p in (0, root))
         gain = (column["compute (ms)"] / cyclic["compute (ms)"]).to_numpy()
-        bus = ((cyclic["bus, transfers (ms)"] - cyclic["time (ms)"]) / cyclic["time (ms)"]).to_numpy()
+        bus = {way: (cyclic[f"bus, {way} (ms)"] / cyclic["time (ms)"]).to_numpy() for way in ("transfers", "broadcasts")}
         names = cyclic["family"].tolist()
         table.append({"G": parts, "u": estimate(cyclic["u"], names), "u with waits": estimate(cyclic["u with waits"], names),
-                      "computing time, p = 0 / cyclic": estimate(gain, names), "extra time over the bus": estimate(bus, names)})
+                      "computing time, p = 0 / cyclic": estimate(gain, names),
+                      **{f"time, bus with {way} / ring": estimate(ratios, names) for way, ratios in bus.items()}})
     return table
 
 
@@ -241,8 +242,8 @@ def answers_of(estimated, fewest, crossings):
             f"The fewest parts that fit are the best in {int(holds.sum())} of {len(holds)} pictures that do not fit in one part (95 %: "
             f"{proportion(holds, 0.5).interval}); they take at most {fewest['time, fewest / best'].max():.2f} times as long as the best.",
             f"The cyclic mapping still pays with G = {split['G']}: with p = 0 computing takes {split['computing time, p = 0 / cyclic'].text(2)} times as long.",
-            f"With G = {split['G']} a bus instead of the ring makes the whole {1 + split['extra time over the bus'].mean:.1f} +- "
-            f"{split['extra time over the bus'].half:.1f} times as long."]
+            f"With G = {split['G']} a bus instead of the ring makes the whole {split['time, bus with transfers / ring'].text(1)} times as long if the PEs "
+            f"send each other their parts, but {split['time, bus with broadcasts / ring'].text(2)} times if the host broadcasts each part once a turn."]
 
 
 def findings_of(rows, memory, estimated, evens_of, frames):
@@ -253,7 +254,8 @@ def findings_of(rows, memory, estimated, evens_of, frames):
     return [f"Objects from which on the torus is faster than the ring that fits 32 KB: {objects['overlapped']} (overlapped); {objects['stepwise']} (stepwise).",
             "The best number of parts for a memory: " + "; ".join(f"{row[0]}, {row[1]} KB: {row[4]} (fewest that fit: {row[2]})" for row in few) + ".",
             *(f"G = {row['G']}, families: u {row['u'].text()}, with waits {row['u with waits'].text()}. With p = 0 computing takes "
-              f"{row['computing time, p = 0 / cyclic'].text(2)} times as long as with the cyclic mapping; over the bus the whole takes "
-              f"{row['extra time over the bus'].text(2)} times more." for row in estimated),
+              f"{row['computing time, p = 0 / cyclic'].text(2)} times as long as with the cyclic mapping; the whole takes "
+              f"{row['time, bus with transfers / ring'].text(2)} times as long with transfers over the bus, "
+              f"{row['time, bus with broadcasts / ring'].text(2)} times with broadcasts." for row in estimated),
             f"If the rays rotate instead, the time is {rays.min():.2f} to {rays.max():.2f} times that of rotating objects, at least.",
             "A frame of a series: " + "; ".join(f"{name} {ms:.0f} ms" for name, ms in zip(frames["frames"], frames["ms"])) + " (modelled)."]
