@@ -9,7 +9,8 @@ How does a ring render scenes that exceed the memory of a PE, and when is a toru
   part. "enough memory" is a PE that holds the whole scene, G = 1.
 - Times: compute, rotations, broadcast of the objects and gathering of the image, without display. u: imbalance of the PEs' cycles; "with waits": of the
   cycles of all turns, in each step of which all PEs wait for the busiest one, against the mean load.
-- Over the bus instead: each rotation is P transfers, one after another, or the host broadcasts each part to all PEs at the same time, once a turn.
+- Over the bus instead: each rotation is P transfers, one after another, or the host broadcasts each part to all PEs at the same time, once a turn. Each
+  transfer or broadcast takes the synchronisation of a rotation.
 - "rays rotate": each PE keeps its part, and the ring passes the rays with what they have found, {ray_words} words each. It is a model on the counted
   figures: the same cycles, G rotations a turn, words of the mean number of rays in flight (lower bound) or of all that fit (upper bound).
 - Torus: {torus_nodes} as many nodes as PEs, each with one voxel and enough memory, overlapped and stepwise. Hybrid: groups of such nodes that share
@@ -65,7 +66,7 @@ def figures(result, pes):
             "u with waits": split.get("barrier_cycles", load["max"]) / load["mean"] - 1, "compute (ms)": ms["compute"],
             "rotations (ms)": ms["communication"], "time (ms)": other + ms["communication"],
             "bus, transfers (ms)": other + link_ms(sent["rotations"] * pes, sent["rotation_words"]),
-            "bus, broadcasts (ms)": other + 1e3 * turns * parts * part_words / SPA["broadcast_words_per_s"],
+            "bus, broadcasts (ms)": other + turns * parts * (SPA["rotation_sync_ms"] + 1e3 * part_words / SPA["broadcast_words_per_s"]),
             "rays rotate, at least (ms)": other + rotating[0], "rays rotate, at most (ms)": other + rotating[1]}
 
 
