@@ -1,4 +1,5 @@
 // Trace of the modelled ring machine: the times are those of the time model, and the work is the counted work.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -101,6 +102,25 @@ TEST_CASE("the trace of the machine ends at the modelled time and has the counte
             CHECK(rotations_of(slices) + single_rotations(json) == r.result.communication.rotations);
         }
     }
+}
+
+TEST_CASE("a PE of the traced ring is live until it has computed its load", "[ring]") {
+    const Rendered r = render({.width = 24, .height = 16, .pes = 24, .machine = "spa", .lanes = 4});
+    const std::vector<std::uint64_t>& loads = r.result.phases[0].load.per_pe;
+    const double cycle_us = 1e3 * compute_ms(machine_named("spa").clock, 1);
+    double begin_us = -1;
+    std::size_t counters = 0;
+    const Document trace = trace_of(r, 24);
+    for (const Document& e : trace["traceEvents"]) {
+        if (e["name"] != "live rays") continue;
+        if (begin_us < 0) begin_us = e["ts"].get<double>();
+        const double cycles = (e["ts"].get<double>() - begin_us) / cycle_us;
+        CHECK(e["args"].front() == std::ranges::count_if(loads, [&](std::uint64_t load) {
+                  return static_cast<double>(load) > cycles + 0.5;
+              }));
+        ++counters;
+    }
+    CHECK(counters == 1 + std::ranges::count_if(loads, [](std::uint64_t load) { return load > 0; }));
 }
 
 TEST_CASE("the work of the ring's kernels agrees with the counts", "[ring]") {

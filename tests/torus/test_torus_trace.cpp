@@ -1,6 +1,7 @@
 // Trace of the modelled torus machine in stepwise time.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "host/model/budget.hpp"
 #include "host/torus/torus_result.hpp"
@@ -53,8 +54,14 @@ TEST_CASE("the traced torus ends at the stepwise time, and its nodes compute for
         const Slices& steps = schema.slices().at({kTraceMachine, 1});
         REQUIRE(steps.size() == t.result.supersteps.size());
         std::size_t counters = 0;
-        for (const Document& e : t.trace["traceEvents"])
+        double mean_words = 0;  // of a link
+        for (const Document& e : t.trace["traceEvents"]) {
             if (e["name"] == "live rays") CHECK(e["args"]["packets"] == t.result.supersteps.at(counters++).live);
+            if (e["name"] == "link words") mean_words += e["args"]["mean"].get<double>();
+        }
+        const int links = c.links == Links::kTorus2d ? 4 : 6;
+        const auto& words = t.result.link_words;
+        CHECK(8 * links * mean_words == Approx(std::accumulate(words.begin(), words.end(), 0.0)));
         CHECK(counters == steps.size());
         const double stepwise = 1e6 * torus_time(t.settings.torus, t.result).stepwise_ms;
         CHECK(std::abs(static_cast<double>(end_of(steps)) - stepwise) < 2);
