@@ -103,7 +103,7 @@ TEST_CASE("an import process that hangs is ended after RAYA_MESH_TIMEOUT seconds
     const std::string pipe = fake.folder_ / "pipe.ply";
     REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
     const std::string program = std::filesystem::path(RAYA_PROGRAM).parent_path() / "raya_import";
-    const int status = std::system(("exec " + program + " 1 " + pipe + " 1").c_str());  // waits for a writer
+    const int status = std::system(("exec '" + program + "' 1 " + pipe + " 1").c_str());  // waits for a writer
     CHECK((WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM));
     for (const char* text : {"0", "x", "-1", "1e9", "9999999999"}) {
         ::setenv("RAYA_MESH_TIMEOUT", text, 1);
