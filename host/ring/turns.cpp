@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
+#include <numeric>
 #include <utility>
 
 #include "host/error.hpp"
@@ -16,93 +16,20 @@ constexpr std::uint32_t kSlotAlignment = 16;  // maximum number of lanes
 
 using Words = std::vector<std::uint32_t>;
 
-// Packs one part of a job's objects.
-class PartPacker {
-  public:
-    PartPacker(const PackedJob& job, std::uint32_t begin, std::uint32_t end) : job_(job), begin_(begin), end_(end) {
-        words_.resize(kWordsOf<raya_part>);
-        for (std::uint32_t object = begin; object < end; ++object) append_surface(surface_of(object));
-        fill_row();
-        append_spheres();
-        append_kind(RAYA_PLANE, RAYA_PLANE_WORDS, part_.objects.planes, part_.objects.planes_at);
-#define RAYA_APPEND_FIXED(kind, kinds, KIND) \
-    append_kind(RAYA_##KIND, RAYA_##KIND##_WORDS, part_.objects.kinds, part_.objects.kinds##_at);
-        RAYA_FIXED_LIST(RAYA_APPEND_FIXED)
-        const std::size_t polygons = words_.size();
-        append_kind(RAYA_POLYGON, RAYA_POLYGON_WORDS, part_.objects.polygons, part_.objects.polygons_at);
-        append_outlines(polygons);
-        fill_row();
-        part_.first = begin;
-        put_record(words_, 0, part_);
-    }
-
-    Words words() && { return std::move(words_); }
-
-  private:
-    struct Range {
-        std::uint32_t begin, end;
-        std::uint32_t size() const { return end - begin; }
-    };
-
-    const raya_objects& all() const { return job_.header().objects; }
-    // The part's objects of a kind.
-    Range range(std::uint32_t kind) const {
-        const std::uint32_t first = raya_first_object(all(), kind), last = raya_first_object(all(), kind + 1);
-        const std::uint32_t begin = std::clamp(begin_, first, last);
-        return {begin, std::max(begin, std::clamp(end_, first, last))};
-    }
-    std::uint32_t offset() const { return static_cast<std::uint32_t>(words_.size()); }
-    void fill_row() { words_.resize(padded_to_rows(words_.size())); }
-    void append(std::uint32_t at, std::size_t count) {
-        const auto from = job_.words().begin() + at;
-        words_.insert(words_.end(), from, from + static_cast<std::ptrdiff_t>(count));
-    }
-    std::uint32_t surface_of(std::uint32_t object) const {
-        return object < all().spheres ? job_.words()[raya_sphere_surfaces_at(all().spheres_at, all().spheres) + object]
-                                      : job_.object(object)[RAYA_OBJECT_SURFACE_AT];
-    }
-    void append_surface(std::uint32_t at) {
-        if (surfaces_.try_emplace(at, offset()).second) append(at, RAYA_SURFACE_WORDS);
-    }
-
-    void append_spheres() {
-        const Range spheres = range(RAYA_SPHERE);
-        part_.objects.spheres = spheres.size();
-        part_.objects.spheres_at = offset();
-        append(all().spheres_at + spheres.begin * RAYA_SPHERE_WORDS, std::size_t{spheres.size()} * RAYA_SPHERE_WORDS);
-        for (std::uint32_t i = spheres.begin; i < spheres.end; ++i) words_.push_back(surfaces_.at(surface_of(i)));
-    }
-
-    void append_kind(std::uint32_t kind, std::uint32_t words, std::uint32_t& count, std::uint32_t& at) {
-        const Range objects = range(kind);
-        count = objects.size();
-        at = offset();
-        for (std::uint32_t i = objects.begin; i < objects.end; ++i) {
-            const std::uint32_t* const object = job_.object(i);
-            words_.insert(words_.end(), object, object + words);
-            words_[words_.size() - words + RAYA_OBJECT_SURFACE_AT] = surfaces_.at(surface_of(i));
-        }
-    }
-
-    // Appends corners and normals of the polygons, whose records start at words_[record].
-    void append_outlines(std::size_t record) {
-        for (std::uint32_t i = 0; i < part_.objects.polygons; ++i, record += RAYA_POLYGON_WORDS) {
-            const std::uint32_t corners_at = words_[record + RAYA_POLYGON_CORNERS_AT],
-                                normals_at = words_[record + RAYA_POLYGON_NORMALS_AT];
-            words_[record + RAYA_POLYGON_CORNERS_AT] = offset();
-            append(corners_at, std::size_t{words_[record + RAYA_POLYGON_CORNERS]} * RAYA_CORNER_WORDS);
-            if (normals_at == 0) continue;
-            words_[record + RAYA_POLYGON_NORMALS_AT] = offset();
-            append(normals_at, RAYA_PATCH_WORDS);
-        }
-    }
-
-    const PackedJob& job_;
-    std::uint32_t begin_, end_;
-    raya_part part_{};
-    Words words_;
-    std::map<std::uint32_t, std::uint32_t> surfaces_;  // offset in the job -> offset in the part
-};
+// Returns the words of the part that consists of the objects `begin` to `end` - 1.
+Words part_of(const PackedJob& job, std::uint32_t begin, std::uint32_t end) {
+    Words words, numbers(end - begin);
+    std::iota(numbers.begin(), numbers.end(), begin);
+    ObjectCopier copier(job, words, kWordsOf<raya_part>);
+    copier.append_surfaces(numbers);
+    copier.fill_row();
+    raya_part part{};
+    part.objects = copier.append_objects(numbers);
+    copier.fill_row();
+    part.first = begin;
+    copier.put(0, part);
+    return words;
+}
 
 Words base_of(const PackedJob& job) {
     raya_job header = job.header();
@@ -136,9 +63,8 @@ ObjectParts divide_objects(const PackedJob& job, std::uint32_t parts) {
     const std::uint64_t objects = raya_first_object(job.header().objects, RAYA_OBJECT_KINDS);
     std::vector<Words> packed;
     for (std::uint64_t i = 0; i < parts; ++i) {
-        packed.push_back(PartPacker(job, static_cast<std::uint32_t>(objects * i / parts),
-                                    static_cast<std::uint32_t>(objects * (i + 1) / parts))
-                             .words());
+        packed.push_back(part_of(job, static_cast<std::uint32_t>(objects * i / parts),
+                                 static_cast<std::uint32_t>(objects * (i + 1) / parts)));
         divided.part_words = std::max(divided.part_words, static_cast<std::uint32_t>(packed.back().size()));
     }
     for (Words& part : packed) {

@@ -287,6 +287,52 @@ std::span<std::uint32_t> PackedJob::append_zeros(std::size_t count) {
     return std::span(words_).subspan(at);
 }
 
+std::uint32_t ObjectCopier::surface_of(std::uint32_t number) const {
+    const raya_objects& all = job_.header().objects;
+    return number < all.spheres ? job_.words()[raya_sphere_surfaces_at(all.spheres_at, all.spheres) + number]
+                                : job_.object(number)[RAYA_OBJECT_SURFACE_AT];
+}
+
+void ObjectCopier::append_surfaces(std::span<const std::uint32_t> numbers) {
+    for (const std::uint32_t number : numbers) surface_at_[surface_of(number)] = 0;
+    for (auto& [at, copied_at] : surface_at_) {
+        copied_at = offset();
+        append(at, RAYA_SURFACE_WORDS);
+    }
+}
+
+raya_objects ObjectCopier::append_objects(std::span<const std::uint32_t> numbers) {
+    raya_objects copied{};
+    const raya_objects& all = job_.header().objects;
+    const auto of_kind = [&](std::uint32_t kind) {
+        return std::span(std::ranges::lower_bound(numbers, raya_first_object(all, kind)),
+                         std::ranges::lower_bound(numbers, raya_first_object(all, kind + 1)));
+    };
+    const auto append_kind = [&](std::uint32_t kind, std::uint32_t& count, std::uint32_t& at) {
+        at = offset();
+        count = static_cast<std::uint32_t>(of_kind(kind).size());
+        for (const std::uint32_t number : of_kind(kind)) {
+            const std::size_t object = words_.size();
+            append(object_at(all, number), words_of_kind(kind));
+            if (kind != RAYA_SPHERE) words_[object + RAYA_OBJECT_SURFACE_AT] = surface_at_.at(surface_of(number));
+        }
+    };
+    append_kind(RAYA_SPHERE, copied.spheres, copied.spheres_at);
+    for (const std::uint32_t number : of_kind(RAYA_SPHERE)) words_.push_back(surface_at_.at(surface_of(number)));
+    append_kind(RAYA_PLANE, copied.planes, copied.planes_at);
+#define RAYA_APPEND_KIND(kind, kinds, KIND) append_kind(RAYA_##KIND, copied.kinds, copied.kinds##_at);
+    RAYA_FIXED_LIST(RAYA_APPEND_KIND)
+    RAYA_APPEND_KIND(polygon, polygons, POLYGON)
+    std::size_t polygon = start_ + copied.polygons_at;
+    for (std::uint32_t i = 0; i < copied.polygons; ++i, polygon += RAYA_POLYGON_WORDS) {
+        const std::uint32_t corners_at = std::exchange(words_[polygon + RAYA_POLYGON_CORNERS_AT], offset());
+        append(corners_at, std::size_t{words_[polygon + RAYA_POLYGON_CORNERS]} * RAYA_CORNER_WORDS);
+        if (words_[polygon + RAYA_POLYGON_NORMALS_AT] == 0) continue;
+        append(std::exchange(words_[polygon + RAYA_POLYGON_NORMALS_AT], offset()), RAYA_PATCH_WORDS);
+    }
+    return copied;
+}
+
 PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
     raya_job job = header_of(scene, settings);
     JobWords words(settings.format, std::ldexp(1.0, settings.length_exponent));

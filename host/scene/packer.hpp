@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -87,6 +88,44 @@ class PackedJob {
     raya_job header_;
     std::vector<std::uint32_t> words_;
     bool has_patches_;
+};
+
+/// Copies objects of a job to the memory of a processor. Offsets count from the processor's first word, and lists of
+/// object numbers are ascending.
+class ObjectCopier {
+  public:
+    /// Appends the processor's words to `words`, after `header_words` words of 0.
+    ObjectCopier(const PackedJob& job, std::vector<std::uint32_t>& words, std::size_t header_words)
+        : job_(job), words_(words), start_(words.size()) {
+        words.resize(start_ + header_words);
+    }
+
+    /// Returns the offset of the next word.
+    std::uint32_t offset() const { return static_cast<std::uint32_t>(words_.size() - start_); }
+    /// Pads with zeros to a multiple of four words, where a row or the next processor must start.
+    void fill_row() { words_.resize(start_ + padded_to_rows(offset())); }
+    /// Appends words of the job.
+    void append(std::size_t at, std::size_t count) {
+        const auto from = job_.words().begin() + static_cast<std::ptrdiff_t>(at);
+        words_.insert(words_.end(), from, from + static_cast<std::ptrdiff_t>(count));
+    }
+    /// Appends the surfaces of the objects, each once.
+    void append_surfaces(std::span<const std::uint32_t> numbers);
+    /// Appends objects whose surfaces have been appended: spheres, their surfaces' offsets, planes, RAYA_FIXED_LIST,
+    /// polygons, the polygons' corners and normals.
+    raya_objects append_objects(std::span<const std::uint32_t> numbers);
+    template <class Record>
+    void put(std::size_t at, const Record& record) {
+        put_record(words_, start_ + at, record);
+    }
+
+  private:
+    std::uint32_t surface_of(std::uint32_t number) const;
+
+    const PackedJob& job_;
+    std::vector<std::uint32_t>& words_;
+    std::size_t start_;
+    std::map<std::uint32_t, std::uint32_t> surface_at_;  // first word in the job -> offset
 };
 
 /// Packs a scene. The mapping in the header assigns all pixels to one PE; machines with more PEs replace it. Each
