@@ -175,7 +175,7 @@ KernelOptions kernel_options(const RingSettings& settings, const PackedJob& job,
     KernelOptions options = kernel_options(settings, job.header(), job.has_patches());
     options.words_local = options.words_local && words_local(pe_words, device, settings.accel.kind);
     options.accel = static_cast<std::uint32_t>(settings.accel.kind);
-    options.stack = (RAYA_BVH_WIDTH - 1) * accel.depth;
+    options.stack = (RAYA_BVH_WIDTH - 1) * ((accel.depth + 2) / 3 * 3);  // for a multiple of 3 levels: fewer builds
     options.packets = settings.packets;
     return options;
 }

@@ -6,10 +6,6 @@
 #include "kernels/shared/torus.h"
 #include "kernels/shared/traffic.h"
 
-#ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: work-items in a work-group of `reverse_words`, 1..1024
-#endif
-
 // Finds the owner of each pixel and the pixel's index in the owner's share, and converts the index back to a pixel. One
 // work-item per pixel.
 __kernel void find_owners(__global const raya_mapping* restrict mappings,  // [case]

@@ -25,10 +25,6 @@
 #include "kernels/shading/shade.clh"
 #include "kernels/shared/loop_canary.clh"
 
-#ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: number of work-items in a work-group, 1..1024
-#endif
-
 // Traces the trees until no pixels are left or a lane has done `work` tests and steps. Returns 1 if trees are
 // unfinished or the PE has pixels that no work-item has taken; else 0.
 static inline int trace_trees(words scene, pixel_store* store, tree* t, tree_pixels* pixels,
@@ -95,13 +91,7 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
         mine->next = progress[group].next;
         mine->left = mine->cut = 0;
     }
-#if RAYA_WORDS_LOCAL
-    __local uint* const local_words = (__local uint*)memory;
-    for (uint i = item; i < word_count; i += RAYA_GROUP) local_words[i] = broadcast[i];
-    const words scene = local_words;
-#else
-    const words scene = broadcast;
-#endif
+    const words scene = load_words(broadcast, word_count, (__local uint*)memory);
     barrier(CLK_LOCAL_MEM_FENCE);
     pixel_store store;
     open_store(&store, (job_words)scene, first_pe, window_start, capacity, end, pixels, marks, cycles);
@@ -109,12 +99,6 @@ void trace(__global const uint* restrict broadcast,  // the job's words (kernels
     store.marks_left = work;
     const save_cursor last_state = open_save_cursor(saved, 1), new_state = open_save_cursor(saved, 0);
     if (trace_share(scene, &store, &mine->next, work, last_state, new_state, resumes)) atomic_inc(&mine->left);
-    __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
-    for (uint e = 0; e < RAYA_COUNTED; ++e) counted[e] += sum_of(store.totals[e]);
     if (loops_were_cut(min(word_count, 2u))) atomic_inc(&mine->cut);
-    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);  // after this all work-items have read progress[group]
-    if (item) return;
-    progress[group].next = min((uint)mine->next, store.end);
-    progress[group].left = mine->left;
-    progress[group].cut = mine->cut;
+    close_store(&store, mine, events, progress);
 }

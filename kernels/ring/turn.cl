@@ -16,14 +16,7 @@
 #include "kernels/ring/points.clh"
 #include "kernels/shared/loop_canary.clh"
 
-#ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: number of work-items in a work-group, 1..1024
-#endif
-#if RAYA_WORDS_LOCAL
-typedef __local const raya_part* part_words;
-#else
-typedef __global const raya_part* part_words;
-#endif
+typedef RAYA_WORDS_SPACE raya_part* part_words;
 
 // Cursor at the slots first .. first + V - 1 of this work-group's PE.
 static inline save_cursor open_flight(__global uint* state, uint stride, uint first, int restores) {
@@ -118,13 +111,7 @@ void advance(__global const uint* restrict broadcast,  // the job's header and l
         mine->left = 0;
         mine->cut = progress[group].cut;  // of the last turn
     }
-#if RAYA_WORDS_LOCAL
-    __local uint* const local_words = (__local uint*)memory;
-    for (uint i = item; i < word_count; i += RAYA_GROUP) local_words[i] = broadcast[i];
-    const words scene = local_words;
-#else
-    const words scene = broadcast;
-#endif
+    const words scene = load_words(broadcast, word_count, (__local uint*)memory);
     const uint used_slots = fresh || progress[group].left ? slots : 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     pixel_store store;
@@ -133,15 +120,9 @@ void advance(__global const uint* restrict broadcast,  // the job's header and l
     store.marks_left = 0xffffffffu;
     ulong used = 0;
     if (advance_slots(scene, &store, &mine->next, fresh, used_slots, stride, state, &used)) atomic_inc(&mine->left);
-    __global ulong* counted = events + ((size_t)group * RAYA_GROUP + item) * RAYA_EVENTS;
-    for (uint e = 0; e < RAYA_COUNTED; ++e) counted[e] += sum_of(store.totals[e]);
     spent[group * RAYA_GROUP + item] = used;
     if (loops_were_cut(min(word_count, 2u))) atomic_inc(&mine->cut);
-    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
-    if (item) return;
-    progress[group].next = min((uint)mine->next, store.end);
-    progress[group].left = mine->left;
-    progress[group].cut = mine->cut;
+    close_store(&store, mine, events, progress);
 }
 
 // Counts the tests of the rays in the lanes `m` against the part's objects. Adds their modelled cycles to *cycles.
@@ -221,14 +202,8 @@ void meet(__global const uint* restrict broadcast,  // the job's header and ligh
     __global const uint* const my_part = parts + (size_t)group * part_words_count;
     const raya_objects objects = ((__global const raya_part*)my_part)->objects;
     const int needed = progress[group].left > 0 && raya_first_object(objects, RAYA_OBJECT_KINDS) > 0;
-#if RAYA_WORDS_LOCAL
-    __local uint* const local_words = (__local uint*)memory;
-    for (uint i = item; needed && i < word_count; i += RAYA_GROUP) local_words[i] = broadcast[i];
-    for (uint i = item; needed && i < part_words_count; i += RAYA_GROUP) local_words[word_count + i] = my_part[i];
-    const words scene = local_words, part = local_words + word_count;
-#else
-    const words scene = broadcast, part = my_part;
-#endif
+    const words scene = load_words(broadcast, needed ? word_count : 0, (__local uint*)memory);
+    const words part = load_words(my_part, needed ? part_words_count : 0, (__local uint*)memory + word_count);
     barrier(CLK_LOCAL_MEM_FENCE);
     ulong used = 0;
     meet_slots(scene, part, needed ? slots : 0, stride, state, &used);

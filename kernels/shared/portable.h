@@ -7,6 +7,9 @@ typedef uint raya_u32;
 typedef ulong raya_u64;
 #define RAYA_SHARED_SIZE(type, bytes)  // the host checks the sizes
 #define RAYA_SHARED_FUNCTION static inline
+#ifndef RAYA_GROUP
+#define RAYA_GROUP 1  // L: number of work-items in a work-group, 1..1024
+#endif
 #else
 #include <cstdint>
 typedef std::uint32_t raya_u32;

@@ -7,10 +7,7 @@
 // Work-item i of n computes the pixels i, i + n, i + 2 n, ... The kernel is built for one lane.
 #include "kernels/geometry/vec.clh"
 #include "kernels/shared/loop_canary.clh"
-
-#ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: work-items in a work-group, 1..1024
-#endif
+#include "kernels/shared/portable.h"
 
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void compose(__global const float* restrict contributions,  // [contribution][4]: red, green, blue, weight

@@ -12,10 +12,6 @@
 #include "kernels/shared/loop_canary.clh"
 #include "kernels/shared/traffic.h"
 
-#ifndef RAYA_GROUP
-#define RAYA_GROUP 1  // L: work-items in the work-group of a mailbox, 1..1024
-#endif
-
 __kernel __attribute__((reqd_work_group_size(RAYA_GROUP, 1, 1)))
 void exchange(__global const uint* restrict ends,      // [link][node]: slot of the node at the end of the link;
                                                        // RAYA_NO_SLOT: the kernel skips the link

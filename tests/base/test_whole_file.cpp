@@ -119,6 +119,9 @@ TEST_CASE("write_whole_file follows links to files, and writes devices and pipes
     write_whole_file(folder / "link", "new");
     CHECK(fs::is_symlink(folder / "link"));
     CHECK(read_file(folder / "elsewhere/real") == "new");
+    fs::create_symlink("nothing", folder / "dangling");
+    write_whole_file(folder / "dangling", "new");
+    CHECK(!fs::is_symlink(folder / "dangling"));
     const fs::path before = fs::current_path();
     fs::current_path(folder.path());
     write_whole_file("plain", "1");

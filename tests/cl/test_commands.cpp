@@ -254,3 +254,27 @@ TEST_CASE("an invalid launch is refused with label, kernel and error", "[cl]") {
     CHECK_THROWS_WITH(session.launch("wide", add, 1, too_wide, a, 1U),
                       Contains("'wide'") && Contains("'add'") && Contains("groups of 1..") && Contains("remedy"));
 }
+
+TEST_CASE("a buffer of the host's elements waits for all commands when it is destroyed", "[cl]") {
+    std::vector<cl_uint> host((64u << 20) / sizeof(cl_uint), 7);
+    Session session(choose_device(""));
+    auto late = session
+                    .build("late",
+                           "kernel void late(global const uint* from, global uint* to, const uint n) {\n"
+                           "    uint x = 1;\n"
+                           "    for (uint i = 0; i < n; ++i) x = x * 1664525U + 1013904223U;\n"
+                           "    to[0] = from[x & 3U];\n"
+                           "}\n",
+                           {})
+                    .kernel<Buffer<cl_uint>&, Buffer<cl_uint>&, cl_uint>("late");
+    Buffer<cl_uint> result = session.buffer<cl_uint>("result", 1);
+    {
+        const std::span<const cl_uint> all(host);
+        Buffer<cl_uint> words = session.buffer_of("words", all);
+        session.write("write", words, all);
+        session.launch("late", late, 1, 1, words, result, 1u << 26);
+        session.flush();
+    }
+    std::fill_n(host.begin(), 4, 9u);
+    CHECK(contents(session, result)[0] == 7);
+}

@@ -11,6 +11,7 @@
 //   RAYA_FAULT="clGetDeviceInfo 4100 8"       the query 0x1004 (CL_DEVICE_MAX_WORK_GROUP_SIZE) returns 8
 //   RAYA_FAULT="clGetDeviceInfo 16655 59"     the query 0x410F (CL_DEVICE_PCI_BUS_INFO_KHR) returns the domain 59
 //   RAYA_FAULT="clGetKernelWorkGroupInfo 4528 8"  the query 0x11B0 (CL_KERNEL_WORK_GROUP_SIZE) returns 8
+//   RAYA_FAULT="clGetProgramInfo 4453 crash"  the query 0x1165 raises SIGSEGV
 //   RAYA_FAULT="clGetProgramInfo 4453 0"      the query 0x1165 (CL_PROGRAM_BINARY_SIZES) returns 0
 //   RAYA_FAULT="new 1000000 0"                allocations by operator new of 1,000,000 bytes or more fail
 #include <CL/cl.h>
@@ -227,6 +228,9 @@ cl_int CL_API_CALL clGetKernelWorkGroupInfo(cl_kernel kernel, cl_device_id devic
 
 cl_int CL_API_CALL clGetProgramInfo(cl_program program, cl_program_info query, size_t size, void* value,
                                     size_t* needed_bytes) {
+    const Fault& fault = injected_fault();
+    if (fault.call == "clGetProgramInfo" && fault.action == "crash" && static_cast<int>(query) == fault.number)
+        std::raise(SIGSEGV);
     const cl_int error =
         driver_function<decltype(clGetProgramInfo)>("clGetProgramInfo")(program, query, size, value, needed_bytes);
     return replace_answer("clGetProgramInfo", query, size, value, error);

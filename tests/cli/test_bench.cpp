@@ -2,6 +2,7 @@
 // tools.reports.
 #include <fstream>
 
+#include "tests/cli/device_with_fault.hpp"
 #include "tests/cli/refusals.hpp"
 #include "tests/cli/render_files.hpp"
 #include "tests/document.hpp"
@@ -59,6 +60,15 @@ TEST_CASE("bench --compare: a later run is compared with the rows of a report", 
                Catch::Contains("OTHER IMAGE: ") && Catch::Contains(", was 01234567"));
     CHECK_THAT(bench_with({"--compare", base, "--offset", "3"}, 2).err,
                Catch::Contains("contains no row of this run") && Catch::Contains("cyclic:3"));
+}
+
+TEST_CASE("bench --build: does not ask for the size of binaries, for which PoCL compiles again or aborts", "[cli]") {
+    if (kSanitized) return;
+    const RunOutcome run = run_raya({"bench", scene_file("mirrors"), "--build", "--variants", "none", "--size", "16",
+                                     "--lanes", "4", "--format", "fp32", "--bounces", "4", "--samples", "1"},
+                                    device_with_fault("clGetProgramInfo 4453 crash"));
+    INFO(run.describe());
+    CHECK(run.code == 0);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Arguments render_arguments(const ScratchFolder& folder, const Arguments& extra_options = {}) {
-    Arguments arguments = {"render",         scene_file("centre"), "--size",         "256", "--lanes", "1", "-o",
+    Arguments arguments = {"render",         scene_file("centre"), "--size",         "512", "--lanes", "4", "-o",
                            folder / "x.pfm", "--report",           folder / "x.json"};
     arguments.insert(arguments.end(), extra_options.begin(), extra_options.end());
     return arguments;

@@ -32,7 +32,7 @@ TEST_CASE("info: figures equal those of renders, for machines, accelerators and 
     const ScratchFolder folder;
     const std::string random = folder / "random.nff", glass = scene_file("glass");
     REQUIRE(run_raya({"generate", "random", "2000", "-o", random}).code == 0);  // needs more than the 32 KB of a PE
-    const std::vector<Arguments> rows = {{random, "--machine", "spa"},
+    const std::vector<Arguments> rows = {{random, "--machine", "spa", "--format", "fp32"},
                                          {glass, "--machine", "torus", "--nodes", "2x2x1"},
                                          {glass, "--machine", "spa", "--pe-memory", "1000"},
                                          {glass, "--machine", "torus", "--pe-memory", "4000"},

@@ -50,8 +50,8 @@ std::string check_page(const ScratchFolder& folder, const Arguments& command, in
 
 TEST_CASE("render --page: equals the page that raya page makes from the report", "[cli][page]") {
     const ScratchFolder folder;
-    for (const Arguments& extra_options :
-         {Arguments{"--machine", "torus", "--nodes", "2x2x2"}, Arguments{"--mapping", "dynamic:4", "--pes", "6"}}) {
+    for (const Arguments& extra_options : {Arguments{"--machine", "torus", "--nodes", "2x2x2", "--bounces", "4"},
+                                           Arguments{"--mapping", "dynamic:4", "--pes", "6"}}) {
         const std::string html = check_page(folder, render_24x16(folder, extra_options));
         const Document report = Document::parse(file_contents(folder / "r.json"));
         for (const std::string& part :

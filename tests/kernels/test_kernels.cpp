@@ -79,6 +79,17 @@ TEST_CASE("a kernel with other parameters, another name or another file is refus
     CHECK_THROWS_AS(kernels.get<OtherFile>(), UserError);
 }
 
+TEST_CASE("kernels of the torus have no restrict parameter to which they write", "[kernels]") {
+    // Compilers may repeat a read after a barrier (docs/porting.md).
+    for (const char* const name : {"inject", "trace_voxel", "route", "accept"}) {
+        std::istringstream lines(kernel_file("torus/" + std::string(name) + ".cl"));
+        for (std::string line; std::getline(lines, line);) {
+            CAPTURE(name, line);
+            CHECK((line.find(" restrict ") == line.npos || line.find("__global const ") != line.npos));
+        }
+    }
+}
+
 TEST_CASE("source patches and additional options reach every build", "[kernels]") {
     Session session(choose_device(""));
     const KernelSources sources{.patches = {{"torus/compose.cl", "void compose(", "void RAYA_NAME("}},

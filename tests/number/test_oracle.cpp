@@ -62,4 +62,10 @@ TEST_CASE("on a device with inexact division and square root, the refined operat
         }
 }
 
+TEST_CASE("the simulated errors are those of correctly rounded quotients", "[number][refined]") {
+    Session session(choose_device(""));
+    CHECK_THAT(number_runner(session, refined_build({6, 15, false}, 1)).options(),
+               Catch::Contains("-cl-fp32-correctly-rounded-divide-sqrt"));
+}
+
 }  // namespace raya

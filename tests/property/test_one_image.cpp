@@ -49,14 +49,14 @@ struct Build {
 };
 const Build kRingBuilds[] = {{"fp32", AccelKind::kNone, 4, 1},
                              {"spa22", AccelKind::kNone, 4, 1, false, false, {}, true},
-                             {"fp32", AccelKind::kNone, 16, 3, false, false, {}, true},
-                             {"spa22", AccelKind::kNone, 4, 3, false, true, {}, true},
+                             {"fp32", AccelKind::kNone, 8, 3, false, false, {}, true},
+                             {"spa22", AccelKind::kNone, 4, 3, false, true},
                              {"fp32", AccelKind::kGrid, 4, 3},
                              {"fp32", AccelKind::kBvh, 4, 1},
                              {"spa22", AccelKind::kBvh, 4, 1},
                              {"fp32", AccelKind::kBvh, 8, 3, true},  // packets need eight lanes (shading/tree.clh)
                              // Only if thorough():
-                             {"spa22", AccelKind::kNone, 16, 3},
+                             {"spa22", AccelKind::kNone, 16, 3, false, false, {}, true},
                              {"fp32", AccelKind::kNone, 1, 1, false, false, {"-cl-opt-disable"}},
                              {"spa22", AccelKind::kGrid, 4, 3}};
 constexpr std::uint32_t kQuickRingBuilds = 8;
@@ -446,7 +446,7 @@ TEST_CASE("an injected fault gives another image or count", "[property][faults]"
         {{"ring/flight.clh", "    transfer_real(k, &f->place.surface.transmit);\n", ""}, kRingBuilds[1]},
         {{"ring/turn.cl", "(number < f->found.object)", "(number > f->found.object)"}, kRingBuilds[1]},
         {{"ring/trace.cl", "const int resumes = progress[group].left > 0;", "const int resumes = 0;"}, ring},
-        {{"ring/trace.cl", "progress[group].left = mine->left;", "progress[group].left = 0;"}, ring},
+        {{"ring/pixel_store.clh", "progress[group].left = mine->left;", "progress[group].left = 0;"}, ring},
         {{"bvh/boxes.clh", "inverse < 0.0f, (index)((RAYA_BVH_HIGH", "inverse < 2.0f, (index)((RAYA_BVH_HIGH"}, bvh},
         {{"bvh/meet_leaves.clh", "p->distance.all = h.distance;", "p->distance.all = h.distance * 0.99f;"},
          reduced_bvh},

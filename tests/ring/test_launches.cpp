@@ -67,7 +67,7 @@ std::vector<SourcePatch> truncating_patches() {
              fmt::format(
                  "if (work > {}u) {{\n"
                  "        atomic_inc(&mine->cut);\n"
-                 "        for (uint e = 0; e < RAYA_EVENTS; ++e) counted[e] += 1000;\n"
+                 "        for (uint e = 0; e < RAYA_EVENTS; ++e) events[get_global_id(0) * RAYA_EVENTS + e] += 1000;\n"
                  "        for (uint i = item; i < capacity; i += RAYA_GROUP) store.pixels[i] = store.cycles[i] = 7;\n"
                  "        for (uint w = 0; w < 3; ++w) saved[(w * get_global_size(0) + get_global_id(0)) * RAYA_LANES] "
                  "= 9;\n"

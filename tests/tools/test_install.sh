@@ -11,6 +11,10 @@ fail() { echo "FAILED line ${BASH_LINENO[0]}: $1"; exit 1; }
 cmake --install "$build" --prefix "$scratch/first place" >"$scratch/log" || fail "$(<"$scratch/log")"
 mv "$scratch/first place" "$scratch/prefix"
 prefix=$scratch/prefix
+inputs=$(ninja -C "$build" -t inputs raya)  # tools/run builds only raya; an installation must work after it
+for file in "$prefix"/lib/raya/*; do
+    grep -qx "$(basename "$file")" <<<"$inputs" || fail "tools/run does not build $file"
+done
 mkdir "$scratch/home"
 run_installed() {  # run_installed COMMAND...: runs the command without the build's environment; sets code and out
     code=0

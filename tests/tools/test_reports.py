@@ -127,7 +127,7 @@ class Reports:
             self.add_report("info", f"info {arguments[0]}", self.run(self.raya, "info", *arguments, "--json", stdout=subprocess.PIPE))
         self.gpu_day()
         for mapping, explored in (("cyclic:3", scene), ("rows", many)):
-            self.run(self.raya, "explore", explored, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "4", "--format", "fp32", "-o", "e.html")
+            self.run(self.raya, "explore", explored, "--mapping", mapping, "--pes", "8", "--size", "16", "--lanes", "4", "--bounces", "4", "--format", "fp32", "-o", "e.html")
             self.add_report("explore", "raya explore", re.search(r'<pre id="report".*?>(.*?)</pre>', (self.folder / "e.html").read_text(), re.S)[1])
         for study in ("table2", "table4", "fig8"):
             self.make("study", "study", study, "--size", "32", "--views", "20", "-o", "study", file=f"study/{study}.json")

@@ -6,7 +6,7 @@ each value. The families are strata: a mean is the mean of the families' means, 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy import special, stats
 
 VERDICTS = REPRODUCED, COMPATIBLE, NOT_REPRODUCED, UNTESTABLE = "reproduced", "compatible", "not reproduced", "untestable"
 LEVEL = 0.05  # probability of one or more wrong verdicts "reproduced" or "not reproduced" in a document, by Holm's correction
@@ -52,7 +52,7 @@ def mean_and_error(values, families=None):
 def estimate(values, families=None, confidence=0.95):
     """Returns mean and confidence interval by Student's t distribution."""
     mean, error, degrees = mean_and_error(values, families)
-    half = np.nan if np.isnan(error) else float(stats.t.ppf((1 + confidence) / 2, degrees) * error)
+    half = np.nan if np.isnan(error) else float(special.stdtrit(degrees, (1 + confidence) / 2) * error)
     return Estimate(mean, half, len(values))
 
 
@@ -65,7 +65,7 @@ def hierarchical(values, families, samples=2000, seed=1):
     random = np.random.default_rng(seed)
     chosen = random.integers(count, size=(samples, count, 1))
     error = strata[chosen, random.integers(each, size=(samples, count, each))].mean((1, 2)).std(ddof=1)
-    half = float(stats.t.ppf(0.975, count - 1) * error) if count > 1 else np.nan
+    half = float(special.stdtrit(count - 1, 0.975) * error) if count > 1 else np.nan
     return Estimate(float(strata.mean()), half, strata.size)
 
 
@@ -94,13 +94,13 @@ def _one_sided(values, bound, families):
     mean, error, degrees = mean_and_error(values, families)
     if np.isnan(error):
         return 0.5
-    return float(mean <= bound) if error == 0 else float(stats.t.sf((mean - bound) / error, degrees))
+    return float(mean <= bound) if error == 0 else float(special.stdtr(degrees, (bound - mean) / error))
 
 
 def _detectable(values, families):
     """Returns the deviation of the mean from a bound that a two-sided test with level LEVEL detects with probability POWER."""
     _, error, degrees = mean_and_error(values, families)
-    return float((stats.t.ppf(1 - LEVEL / 2, max(degrees, 1)) + stats.t.ppf(POWER, max(degrees, 1))) * error)
+    return float((special.stdtrit(max(degrees, 1), 1 - LEVEL / 2) + special.stdtrit(max(degrees, 1), POWER)) * error)
 
 
 def above(values, bound=0.0, families=None, digits=3):
@@ -146,11 +146,11 @@ def next_value_within(figure, values, tolerance, digits=3):
     those of our independent pictures. Uses Student's t distribution for one more value."""
     values = np.asarray(values, float)
     spread, degrees = values.std(ddof=1) * np.sqrt(1 + 1 / len(values)), len(values) - 1
-    cumulative = lambda value: float(stats.t.cdf((value - values.mean()) / spread, degrees))
+    cumulative = lambda value: float(special.stdtr(degrees, (value - values.mean()) / spread))
     below_low, above_high = cumulative(figure * (1 - tolerance)), 1 - cumulative(figure * (1 + tolerance))
-    half = float(stats.t.ppf(1 - LEVEL / 2, degrees) * spread)
+    half = float(special.stdtrit(degrees, 1 - LEVEL / 2) * spread)
     low, high = values.mean() - half, values.mean() + half
-    detectable = float((stats.t.ppf(1 - LEVEL / 2, degrees) + stats.t.ppf(POWER, degrees)) * spread)
+    detectable = float((special.stdtrit(degrees, 1 - LEVEL / 2) + special.stdtrit(degrees, POWER)) * spread)
     return Test(max(below_low, above_high), min(1 - below_low, 1 - above_high), f"{low:.{digits}f} .. {high:.{digits}f}", detectable)
 
 
