@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "host/base/json.hpp"
 #include "host/base/log.hpp"
+#include "host/base/whole_file.hpp"
 #include "host/cl/commands.hpp"
 #include "host/cl/measure.hpp"
 #include "host/cli/commands.hpp"
@@ -104,6 +106,7 @@ struct BenchCommand {
     std::vector<std::string> variants;
     std::uint32_t samples = 7;  // number of time samples of each row
     ReportFiles files;          // of --report and --page
+    std::string list_file;      // of --json-benchmark
     std::string baseline;       // file of --compare
     double tolerance_percent = 10;
     bool build = false;
@@ -123,9 +126,26 @@ void check_comparable(const BenchCommand& options, const BenchReport& baseline, 
         options.baseline, text_of(baseline.rows.front()), text_of(measured.rows.front())));
 }
 
+// Writes all rows as a list of times, in the form of github-action-benchmark's tool customSmallerIsBetter.
+void write_list(const std::string& file, const BenchReport& report) {
+    if (file.empty()) return;
+    Json list = Json::array();
+    for (const BenchMeasurement& row : report.rows)
+        list.push_back(
+            {{"name", fmt::format("{} {}, {} lanes, group {}", row.kernel, row.format, row.lanes, row.group_size)},
+             {"unit", "ms"},
+             {"value", 1e3 * row.median_s}});
+    for (const BenchBuild& build : report.builds)
+        list.push_back({{"name", fmt::format("build of {} {}, {}", build.kernel, build.format, build.variant)},
+                        {"unit", "s"},
+                        {"value", build.build_s}});
+    write_whole_file(file, json_dump(list, 2) + "\n");
+}
+
 // Compares with the baseline, if there is one. Writes all files, and prints the comparison. Throws CheckFailure if a
 // row is slower or has a different image.
 void write_and_compare(const BenchCommand& options, const BenchReport& baseline, BenchReport measured) {
+    write_list(options.list_file, measured);
     if (options.baseline.empty()) return write_report_and_page(options.files, to_json(measured));
     BenchComparison comparison = compare_bench(baseline, measured, options.tolerance_percent);
     comparison.baseline = options.baseline;
@@ -145,6 +165,7 @@ void write_and_compare(const BenchCommand& options, const BenchReport& baseline,
 void write_and_check_builds(const BenchCommand& command, const BenchReport& report) {
     fmt::print("compiled for {} {} {}\n", report.device.platform, report.device.name, report.device.driver);
     print_builds(report.builds);
+    write_list(command.list_file, report);
     write_report_and_page({command.files.report, ""}, to_json(report));
     for (const BenchBuild& build : report.builds)
         if (command.limit_s && build.build_s + build.launch_s > *command.limit_s)
@@ -280,6 +301,10 @@ void add_bench_command(CLI::App& program) {
     add_file(*command, FileUse::kWritten, "--report FILE.json", options->files.report,
              "Write the rows as JSON, for a later --compare; -: stdout; the tables then go to stderr",
              "Write the rows as JSON; -: stdout");
+    add_file(*command, FileUse::kWritten, "--json-benchmark FILE.json", options->list_file,
+             "Write the median times as a JSON list of name, unit and value, for continuous benchmarks "
+             "(customSmallerIsBetter)",
+             "Write the median times as a JSON list");
     add_file(
         *command, FileUse::kWritten, "--page FILE.html", options->files.page,
         "Write rates, comparison and roofline as an HTML page; raya page makes the same page from a report. Measures "

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 
+#include "host/base/encoding.hpp"
+#include "host/base/json.hpp"
 #include "host/base/log.hpp"
 #include "host/base/whole_file.hpp"
 #include "host/cli/commands.hpp"
@@ -26,8 +29,9 @@ constexpr std::chrono::duration<double> kDefaultTimeout = 10 * kBuildBudget;
 
 struct VerifyCommand {
     VerifySettings checks{.timeout_s = kDefaultTimeout.count()};
-    std::string device, report, page, junit, expect, reproduce, kernel_dir, shard;
-    bool brief = false, quick = false, full = false, list = false;
+    std::string device, report, page, junit, conformance, expect, reproduce, kernel_dir, shard;
+    bool brief = false, quick = false, full = false, list = false, gtest_list = false;
+    bool is_gtest() const { return !checks.filter.empty(); }  // output in the form of GoogleTest
 };
 
 VerifySettings settings_of(const VerifyCommand& command) {
@@ -43,11 +47,25 @@ VerifySettings settings_of(const VerifyCommand& command) {
     return settings;
 }
 
+// Prints the IDs, which are the same on every device; in the form of GoogleTest, each layer with a dot, and below it
+// the names of its checks.
 void list_checks(const VerifyCommand& command, const VerifySettings& settings) {
-    const bool all = command.device == "all";
-    for (const cl::Device& device : all ? all_devices() : std::vector<cl::Device>{choose_device(command.device)})
-        for (const std::string& name : check_names(device, settings))
-            fmt::print("{}{}\n", all ? device_info(device).name + ": " : "", name);
+    std::string layer;
+    for (const std::string& id : check_ids(choose_device(command.device == "all" ? "" : command.device), settings)) {
+        const std::size_t dot = id.find('.') + 1;
+        if (command.gtest_list && id.substr(0, dot) != layer) fmt::print("{}\n", layer = id.substr(0, dot));
+        fmt::print("{}\n", command.gtest_list ? "  " + id.substr(dot) : id);
+    }
+}
+
+// Returns the line with which GoogleTest ends a test; if it failed, with the lines on the failure.
+std::string gtest_lines(const Check& check) {
+    const Outcome outcome = check.verdict.outcome;
+    const char* const status = is_unwanted(outcome)        ? "[  FAILED  ]"
+                               : outcome == Outcome::kPass ? "[       OK ]"
+                                                           : "[  SKIPPED ]";
+    return fmt::format("{} {} ({:.0f} ms)\n{}", status, check.id(), 1e3 * check.seconds,
+                       outcome == Outcome::kPass ? "" : check_lines(check));
 }
 
 // Returns the text "57 checks passed, 0 failed, 2 skipped in 12.3 s".
@@ -81,12 +99,15 @@ DeviceChecks verify_device(const VerifyCommand& command, std::size_t index, cons
                 print(fmt::format("{} ({}, driver {})\n", device.name, device.platform, device.driver));
             },
         .running =
-            [](const std::string& layer, const std::string& name, double seconds) {
-                if (shows_progress()) show_status(fmt::format("running {} {} ... {:.0f} s", layer, name, seconds));
+            [&](const std::string& id, double seconds) {
+                if (command.is_gtest() && seconds == 0) print(fmt::format("[ RUN      ] {}\n", id));
+                if (shows_progress()) show_status(fmt::format("running {} ... {:.0f} s", id, seconds));
             },
         .finished =
             [&](const Check& check) {
-                if ((!is_quiet() && settings.soak_s == 0) || is_unwanted(check.verdict.outcome))
+                if (command.is_gtest())
+                    print(gtest_lines(check));
+                else if ((!is_quiet() && settings.soak_s == 0) || is_unwanted(check.verdict.outcome))
                     print(check_lines(check));
             }};
     DeviceChecks all = supervise(command.device, index, settings, sink);
@@ -111,11 +132,33 @@ void reproduce_first_failure(const VerifyCommand& command, const DeviceChecks& d
     }
 }
 
+// Returns the results as the OpenCL conformance tests write them; of several devices, the worst result of each check.
+std::string conformance_results(const std::vector<DeviceChecks>& devices) {
+    std::vector<std::string> words = split(read_input("/proc/self/cmdline"), '\0');
+    words.pop_back();  // after the last NUL
+    Json results = Json::object();
+    for (const DeviceChecks& device : devices)
+        for (const Check& check : device.checks) {
+            const Outcome outcome = check.verdict.outcome;
+            Json& result = results[check.id()];
+            if (is_unwanted(outcome) || result == "fail")
+                result = "fail";
+            else if (outcome == Outcome::kPass || result == "pass")
+                result = "pass";
+            else
+                result = "skip";
+        }
+    return json_dump(
+               {{"cmd", words.front()}, {"args", std::vector(words.begin() + 1, words.end())}, {"results", results}},
+               2) +
+           "\n";
+}
+
 void run_verify(const VerifyCommand& command) {
     if (command.brief + command.quick + command.full > 1) throw UserError("--brief, --quick, --full: give one of them");
     if (!command.page.empty()) check_page_name("--page", command.page);
     const VerifySettings settings = settings_of(command);
-    if (command.list) return list_checks(command, settings);
+    if (command.list || command.gtest_list) return list_checks(command, settings);
     if (!command.reproduce.empty() && command.device == "all")
         throw UserError("--reproduce with --device all: name the device with the failed check");
     if (!command.reproduce.empty()) check_case_folder(command.reproduce);
@@ -125,9 +168,10 @@ void run_verify(const VerifyCommand& command) {
     for (std::size_t devices = 1; device_checks.size() < devices;)
         device_checks.push_back(verify_device(command, device_checks.size(), settings, devices));
     for (const std::string& text : unmatched_patterns(settings.expected_failures, device_checks))
-        warn(text + "; raya verify --full --list prints the names of all checks");
+        warn(text + "; raya verify --full --list prints the IDs of all checks");
     write_report_and_page({command.report, command.page}, to_json(VerifyReport{settings.depth, device_checks}));
     if (!command.junit.empty()) write_whole_file(command.junit, junit_report("raya verify", device_checks));
+    if (!command.conformance.empty()) write_whole_file(command.conformance, conformance_results(device_checks));
     if (std::ranges::all_of(device_checks, &DeviceChecks::all_passed)) return;
     if (device_checks.size() == 1) reproduce_first_failure(command, device_checks.front(), settings);
     throw CheckFailure{};
@@ -157,11 +201,13 @@ void add_verify_command(CLI::App& program) {
         "default number of lanes, or with --full, every number of lanes")
         ->check(CLI::IsMember({1, 4, 8, 16}));
     add_value(*command, "--only TEXT", options->checks.only,
-              "Run only checks whose printed \"LAYER NAME\" contains this text: number, \"image glass\", spa22, ...; * "
-              "stands for any text");
-    add_value(*command, "--skip TEXT", options->checks.skip,
-              "Run no check whose \"LAYER NAME\" contains this text, as for --only");
-    command->add_flag("--list", options->list, "Print the names of the selected checks, and run none");
+              "Run only checks whose ID contains this text: number, image.glass, spa22, ...; * stands for any text");
+    add_value(*command, "--skip TEXT", options->checks.skip, "Run no check whose ID contains this text, as for --only");
+    command->add_flag("--list", options->list, "Print the IDs of the selected checks, and run none");
+    add_value(*command, "--gtest_filter TEXT", options->checks.filter,
+              "As GoogleTest: run the checks that one of these patterns matches, separated by \":\", and none of those "
+              "after \"-\"; print lines such as [       OK ]");
+    command->add_flag("--gtest_list_tests", options->gtest_list, "As --list, in the form of GoogleTest");
     in_range(add_value(*command, "--repeat N", options->checks.repeat,
                        "Number of runs of each check; it fails if one of them fails"),
              1, 1e6);
@@ -196,6 +242,10 @@ void add_verify_command(CLI::App& program) {
     add_file(*command, FileUse::kWritten, "--report FILE.json", options->report,
              "Write all checks and their failures as JSON; -: stdout; the lines about the checks then go to stderr");
     add_file(*command, FileUse::kWritten, "--junit FILE.xml", options->junit, "Write the results as JUnit XML");
+    add_file(*command, FileUse::kWritten, "--conformance FILE.json", options->conformance,
+             "Write \"pass\", \"fail\" or \"skip\" of each check as the OpenCL conformance tests do; default: the "
+             "variable CL_CONFORMANCE_RESULTS_FILENAME")
+        ->envname("CL_CONFORMANCE_RESULTS_FILENAME");
     add_file(
         *command, FileUse::kWrittenFolder, "--reproduce DIR", options->reproduce,
         "If a check fails: write the kernel launch that computes wrong words as a self-contained case, a C program "

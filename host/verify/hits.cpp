@@ -27,10 +27,8 @@ struct HitBuild {
     bool grid = true;     // false: leave out the grid traversal, which takes most of the build time
     KernelSources sources{};
 
-    // Returns text such as "e6m15 filtered, 16 lanes".
-    std::string name() const {
-        return fmt::format("{}{}, {}", format_name(format), filter ? " filtered" : "", counted(lanes, "lane"));
-    }
+    // Returns text such as "e6m15 filtered".
+    std::string name() const { return format_name(format) + (filter ? " filtered" : ""); }
 };
 
 CheckRunner hit_runner(Session& session, const HitBuild& build) {
@@ -205,10 +203,10 @@ Verdict check_filter_bounds(CheckRunner& runner, const NumberFormat& format) {
 }
 
 // Adds the checks of one build: known hits; the hits of random rays with and without grid, and with and without
-// filters, if the build has them.
-void verify_hits(Verification& v, const HitBuild& build) {
+// filters, if the build has them. Their names end in `lanes_text`.
+void verify_hits(Verification& v, const HitBuild& build, const std::string& lanes_text) {
     const auto check = [&](const std::string& subject, const std::function<Verdict(CheckRunner&, Session&)>& body) {
-        v.check("geometry", fmt::format("{}, {}", subject, build.name()), [&](Session& session) {
+        v.check("geometry", fmt::format("{}, {}{}", subject, build.name(), lanes_text), [&](Session& session) {
             CheckRunner runner = hit_runner(session, build);
             return with_options(body(runner, session), runner.options());
         });
@@ -274,18 +272,20 @@ void verify_geometry(Verification& v) {
             HitBuild build{.format = parse_format(format), .lanes = lanes, .sources = v.settings().sources};
             // The grid traversal computes in fp32 in every format, so a brief verification checks it only in fp32.
             build.grid = v.settings().depth != Depth::kBrief || build.format.is_fp32();
-            verify_hits(v, build);
+            verify_hits(v, build, v.lanes_text(lanes));
             if (!v.full() || build.format.is_fp32()) continue;
             HitBuild filtered = build;
             filtered.filter = true;
-            verify_hits(v, filtered);
+            verify_hits(v, filtered, v.lanes_text(lanes));
         }
     if (v.full())  // the filters' error bounds in a format that truncates
-        verify_hits(v, {.format = parse_format("e8m12t"),
-                        .lanes = v.lanes_or_default(),
-                        .filter = true,
-                        .grid = false,
-                        .sources = v.settings().sources});
+        verify_hits(v,
+                    {.format = parse_format("e8m12t"),
+                     .lanes = v.lanes_or_default(),
+                     .filter = true,
+                     .grid = false,
+                     .sources = v.settings().sources},
+                    "");
 }
 
 }  // namespace raya

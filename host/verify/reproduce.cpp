@@ -143,7 +143,7 @@ std::vector<CheckRun> references(const CheckRun& failing) {
 }
 
 [[noreturn]] void no_case(const Check& check, const std::string& reason) {
-    throw UserError(fmt::format("--reproduce: no case of '{} {}': {}", check.layer, check.name, reason));
+    throw UserError(fmt::format("--reproduce: no case of {}: {}", check.id(), reason));
 }
 
 // Captures the first step with wrong outputs in `folder`. Returns the number of the step and the name of the reference.
@@ -204,7 +204,7 @@ void write_case(const fs::path& folder, const DeviceChecks& device, const Check&
                                   : "";
     write_whole_file(
         folder / "README.md",
-        fmt::format(R"(# {} {}: a case for a bug report
+        fmt::format(R"(# {}: a case for a bug report
 
 {}
 
@@ -225,8 +225,8 @@ kernel.cl: the kernel with its included files. NAME.in: inputs; NAME.expected: c
 if there is one, is not 0 (2: every NaN is correct); NAME.out: outputs of the failing device. NAME is argN_BUFFER for
 argument N. case.h: work-groups and sizes.{}
 )",
-                    check.layer, check.name, check.verdict.result, device.name, device.platform, device.version,
-                    device.driver, step, json_text(launch.at("options")), reference, name_and_version(), right));
+                    check.id(), check.verdict.result, device.name, device.platform, device.version, device.driver, step,
+                    json_text(launch.at("options")), reference, name_and_version(), right));
     fs::remove(folder / "launch.json");
 }
 
@@ -246,7 +246,7 @@ void check_case_folder(const fs::path& folder) {
 std::string reproduce(const std::string& selector, const DeviceChecks& device, const VerifySettings& settings,
                       const Check& check, const fs::path& folder) {
     check_case_folder(folder);
-    const CheckRun failing{"", selector, settings_of_one(settings, check.layer + " " + check.name)};
+    const CheckRun failing{"", selector, settings_of_one(settings, check.id())};
     const TemporaryFolder scratch((existing_folder_above(folder) / "raya-case").string());
     const Observation seen = observe(failing);
     if (seen.passed) no_case(check, "it passes when it runs alone");
@@ -263,7 +263,7 @@ std::string reproduce(const std::string& selector, const DeviceChecks& device, c
     fs::remove(folder);  // an empty folder
     fs::create_directories(fs::absolute(folder / "").parent_path().parent_path());
     fs::rename(scratch.path(), folder);
-    return fmt::format("{}: a case of '{} {}', {}; make -C {} && {}/repro\n", folder.string(), check.layer, check.name,
+    return fmt::format("{}: a case of {}, {}; make -C {} && {}/repro\n", folder.string(), check.id(),
                        seen.steps.at(step - 1).name, folder.string(), folder.string());
 }
 

@@ -20,8 +20,8 @@ void for_each_setting(Settings& s, const Visit& visit) {
     visit("depth", s.depth);
     visit("kernel_dir", s.sources.folder);
     visit("build_options", s.sources.more_options);
+    visit("filter", s.filter);
     visit("only", s.only);
-    visit("is_whole_name", s.is_whole_name);
     visit("skip", s.skip);
     visit("shard", s.shard);
     visit("shards", s.shards);
@@ -57,14 +57,14 @@ SelectedDevices selected_devices(const std::string& selector, std::size_t index)
 
 // Throws UserError if --only selects no check.
 void refuse_empty_selection(const cl::Device& device, const VerifySettings& settings) {
-    if (!check_names(device, settings).empty()) return;
-    if (!settings.skip.empty() || settings.shards > 1)
-        throw UserError(
-            fmt::format("--only, --skip and --shard select no check of {}; --list prints the selected checks",
-                        device_info(device).name));
+    if (!check_ids(device, settings).empty()) return;
+    if (!settings.filter.empty() || !settings.skip.empty() || settings.shards > 1)
+        throw UserError(fmt::format(
+            "--gtest_filter, --only, --skip and --shard select no check of {}; --list prints the selected checks",
+            device_info(device).name));
     throw UserError(fmt::format(
-        "--only \"{}\": no check of {} has this text in \"LAYER NAME\"; the layers are number, geometry, machine "
-        "and image; raya verify --list prints the names{}",
+        "--only \"{}\": no check of {} has this text in its ID; the layers are number, geometry, machine and image; "
+        "raya verify --list prints the IDs{}",
         settings.only, device_info(device).name, settings.depth == Depth::kFull ? "" : ", and --full has more"));
 }
 
@@ -86,7 +86,7 @@ class Supervision {
             if (!line.is_null())
                 take(line);
             else if (sink_.running && running_)
-                sink_.running(running_->layer, running_->name, check_seconds());
+                sink_.running(running_->id(), check_seconds());
             return !running_ || settings_.timeout_s <= 0 || check_seconds() <= settings_.timeout_s;
         });
         if (!status) {
@@ -108,12 +108,13 @@ class Supervision {
         if (find_member(line, "devices") && devices_ == 0) {  // else already reported by the first process
             devices_ = json_integer(line.at("devices"));
             all_ = from_json<DeviceChecks>(line.at("device"));
-            all_.names = json_strings(line.at("names"));
+            all_.ids = json_strings(line.at("ids"));
             if (sink_.device) sink_.device(all_, json_strings(line.at("left_out")), devices_);
         }
         if (const Json* started = find_member(line, "started")) {
             running_ = Check{json_text(started->at("layer")), json_text(started->at("name")), 0, {}};
             start_ = Clock::now();
+            if (sink_.running) sink_.running(running_->id(), 0);
         }
         if (const Json* check = find_member(line, "check")) finish(from_json<Check>(*check));
         ended_ = ended_ || find_member(line, "ended");
@@ -143,7 +144,7 @@ class Supervision {
 
     // Returns a failure of the check that was running when its process ended, or else of the device.
     Check stopped_check(const std::string& result) const {
-        Check check{"device", ended_ ? "the end of the program" : "between checks", 0, {}};
+        Check check{"device", ended_ ? "end_of_program" : "between_checks", 0, {}};
         std::string where = "in the driver, with no check running";
         if (running_) {
             check = *running_;
@@ -194,7 +195,7 @@ void run_checks(int pipe, const Json& request) {
     send_line(pipe, {{"devices", selected.devices.size()},
                      {"left_out", selected.left_out},
                      {"device", to_json(unchecked)},
-                     {"names", check_names(device, full)}});
+                     {"ids", check_ids(device, full)}});
     std::optional<Capture> capture;
     if (const Json* c = find_member(request, "capture"))
         capture.emplace(json_integer(c->at("step")), json_text(c->at("folder")),

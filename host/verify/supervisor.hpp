@@ -1,9 +1,9 @@
 // Runs a device's checks in a child process, because a crash in a driver ends the process. After a crash another child
 // process continues with the next check. The child writes one JSON object per line:
 //
-//     {"devices": N, "left_out": [TEXT, ...], "device": {...}, "names": [...]}
+//     {"devices": N, "left_out": [TEXT, ...], "device": {...}, "ids": [...]}
 //                           the first line: number of selected devices, a text for each unusable device, the device
-//                           that is checked, as in reports but without checks, and the names of all its checks
+//                           that is checked, as in reports but without checks, and the IDs of all its checks
 //     {"started": {"layer": LAYER, "name": NAME}}    a check starts
 //     {"check": {...}}      the check is done; the object is that of to_json() in verify.hpp
 //     {"ended": true}       all checks are done
@@ -24,8 +24,9 @@ struct SupervisorSink {
     /// Called before a device's first check. `left_out`: one line for each unusable device; `devices`: number of
     /// selected devices.
     std::function<void(const DeviceChecks&, const std::vector<std::string>& left_out, std::size_t devices)> device{};
-    /// Called about once a second while a check runs, with the check's run time in seconds.
-    std::function<void(const std::string& layer, const std::string& name, double seconds)> running{};
+    /// Called when a check starts, and then about once a second, with the check's ID and its run time in seconds; 0: it
+    /// starts.
+    std::function<void(const std::string& id, double seconds)> running{};
     /// Called after each check.
     std::function<void(const Check&)> finished{};
 };

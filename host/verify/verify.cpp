@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <sstream>
 #include <utility>
 
@@ -48,6 +49,17 @@ std::string indented(const std::string& label, const std::string& text) {
     return all;
 }
 
+// Returns the text in lower case, with _ for each run of other characters than letters, digits and *.
+std::string id_text(const std::string& text) {
+    std::string id;
+    for (const char c : text)
+        if (std::isalnum(static_cast<unsigned char>(c)) || c == '*')
+            id += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        else if (!id.ends_with('_'))
+            id += '_';
+    return id;
+}
+
 void visit_layers(Verification& verification) {
     if (verification.settings().random > 0) return verify_random(verification);
     verify_numbers(verification);
@@ -64,11 +76,10 @@ void verify_at_random(const cl::Device& device, const VerifySettings& settings, 
     for (const std::uint32_t lanes : lanes_choices) {
         VerifySettings all = settings;
         all.lanes = lanes;
-        for (const std::string& name : check_names(device, all)) choices.push_back(settings_of_one(all, name));
+        for (const std::string& id : check_ids(device, all)) choices.push_back(settings_of_one(all, id));
     }
     if (settings.only.empty() && settings.skip.empty()) {
         choices.push_back(settings_of_one(settings, ""));
-        choices.back().is_whole_name = false;
         choices.back().random = kRandomBatch;
     }
     SplitMix random(settings.seed);
@@ -90,20 +101,26 @@ const char* outcome_name(Outcome outcome) {
     return std::array{"PASS", "FAIL", "SKIP", "XFAIL", "XPASS"}[static_cast<std::size_t>(outcome)];
 }
 
-bool name_matches(const std::string& full_name, const std::string& pattern) {
-    std::string glob = "*";
-    for (const char c : pattern) {
-        if (c == '?' || c == '[' || c == '\\') glob += '\\';
-        glob += c;
-    }
-    return ::fnmatch((glob + "*").c_str(), full_name.c_str(), 0) == 0;
+bool id_matches(const std::string& id, const std::string& pattern) {
+    return ::fnmatch(("*" + id_text(pattern) + "*").c_str(), id_text(id).c_str(), 0) == 0;
+}
+
+bool passes_filter(const std::string& id, const std::string& filter) {
+    const auto any_matches = [&](const std::string& patterns) {
+        return std::ranges::any_of(split(patterns, ':'), [&](const std::string& pattern) {
+            return pattern.find('[') == pattern.npos && ::fnmatch(pattern.c_str(), id.c_str(), FNM_NOESCAPE) == 0;
+        });
+    };
+    const std::size_t dash = filter.find('-');
+    const std::string wanted = filter.substr(0, dash);
+    return (wanted.empty() || any_matches(wanted)) && (dash == filter.npos || !any_matches(filter.substr(dash + 1)));
 }
 
 void apply_expectations(Check& check, const std::vector<ExpectedFailure>& expected_failures) {
     Verdict& v = check.verdict;
     if (v.outcome == Outcome::kSkip) return;
     for (const ExpectedFailure& e : expected_failures) {
-        if (!name_matches(check.layer + " " + check.name, e.pattern)) continue;
+        if (!id_matches(check.id(), e.pattern)) continue;
         const std::string why = e.link.empty() ? e.reason : e.reason + ", " + e.link;
         const bool passes = v.outcome == Outcome::kPass;
         v.outcome = passes ? Outcome::kUnexpectedPass : Outcome::kExpectedFail;
@@ -154,8 +171,8 @@ std::size_t count_of(const std::vector<Check>& checks, Outcome outcome) {
 }
 
 std::string check_lines(const Check& c) {
-    std::string lines = fmt::format("{:<5} {:<9} {:<46} {:6.2f} s  {}\n", outcome_name(c.verdict.outcome), c.layer,
-                                    c.name, c.seconds, c.verdict.result);
+    std::string lines = fmt::format("{:<5} {:<50} {:6.2f} s  {}\n", outcome_name(c.verdict.outcome), c.id(), c.seconds,
+                                    c.verdict.result);
     if (c.verdict.outcome != Outcome::kFail) return lines;
     const Fault& f = c.verdict.fault;
     lines += indented("where", f.where) + indented("expected", f.expected) + indented("got", f.got) +
@@ -167,7 +184,7 @@ std::string check_lines(const Check& c) {
 void members_of(Members& m, Check& c) {
     std::string status = outcome_name(c.verdict.outcome);
     m("layer", c.layer, "number, geometry, machine or image; `device` if it crashed while no check ran.");
-    m("name", c.name, "Name of the check. `--only \"LAYER NAME\"` runs it alone.");
+    m("name", c.name, "Name of the check. Its ID is LAYER.NAME; `--only LAYER.NAME` runs it.");
     m("status", status,
       "`PASS`, `FAIL`, `SKIP`, or with --expect `XFAIL` (failed as listed), `XPASS` (passed although listed).");
     m("seconds", c.seconds, "Time of the check, including kernel builds, s.");
@@ -190,14 +207,14 @@ Verification::Verification(const cl::Device& device, const VerifySettings& setti
     check_patches(settings.sources);  // otherwise a patch that does not apply would look like a detected fault
 }
 
-void Verification::check(const std::string& layer, const std::string& name,
+void Verification::check(const std::string& layer, const std::string& text,
                          const std::function<Verdict(Session&)>& body, std::uint32_t group_size) {
-    const std::string full_name = layer + " " + name;
-    if (settings_.is_whole_name ? full_name != settings_.only : !name_matches(full_name, settings_.only)) return;
-    if (!settings_.skip.empty() && name_matches(full_name, settings_.skip)) return;
+    const std::string name = id_text(text), id = layer + "." + name;
+    if (!passes_filter(id, settings_.filter) || !id_matches(id, settings_.only)) return;
+    if (!settings_.skip.empty() && id_matches(id, settings_.skip)) return;
     if (selected_++ % settings_.shards != settings_.shard - 1) return;
-    names_.push_back(full_name);
-    if (!runs_ || names_.size() <= settings_.done) return;
+    ids_.push_back(id);
+    if (!runs_ || ids_.size() <= settings_.done) return;
     if (sink_.started) sink_.started(layer, name);
     checks_.push_back(run_check(layer, name, [&] {
         if (group_size > info_.max_group_size)
@@ -220,9 +237,13 @@ std::vector<std::uint32_t> Verification::lanes() const {
     return {lanes_or_default()};
 }
 
-VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name) {
-    settings.only = full_name;
-    settings.is_whole_name = true;
+std::string Verification::lanes_text(std::uint32_t lanes_of_check) const {
+    return lanes().size() > 1 ? ", " + counted(lanes_of_check, "lane") : "";
+}
+
+VerifySettings settings_of_one(VerifySettings settings, const std::string& id) {
+    settings.filter = id;
+    settings.only.clear();
     settings.skip.clear();
     settings.shard = settings.shards = settings.repeat = 1;
     settings.done = 0;
@@ -237,10 +258,10 @@ std::vector<Check> verify(const cl::Device& device, const VerifySettings& settin
     return verification.take_checks();
 }
 
-std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings) {
+std::vector<std::string> check_ids(const cl::Device& device, const VerifySettings& settings) {
     Verification verification(device, settings, {}, false);
     visit_layers(verification);
-    return verification.take_names();
+    return verification.take_ids();
 }
 
 void members_of(Members& m, DeviceChecks& device) {
@@ -285,8 +306,8 @@ std::string xml_text(const std::string& text) {
 
 std::string junit_case(const Check& check) {
     const Verdict& v = check.verdict;
-    std::string text = fmt::format("    <testcase classname=\"raya.{}\" name=\"{}\" time=\"{:.3f}\"",
-                                   xml_text(check.layer), xml_text(check.name), check.seconds);
+    std::string text =
+        fmt::format("    <testcase classname=\"raya\" name=\"{}\" time=\"{:.3f}\"", check.id(), check.seconds);
     if (is_unwanted(v.outcome))
         return text + fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
                                   xml_text(v.result), xml_text(check_lines(check)));
@@ -333,9 +354,8 @@ std::vector<std::string> unmatched_patterns(const std::vector<ExpectedFailure>& 
     std::vector<std::string> warnings;
     for (const ExpectedFailure& e : failures) {
         const auto is_matched = [&](const DeviceChecks& device) {
-            return std::ranges::any_of(device.names, [&](const auto& name) { return name_matches(name, e.pattern); }) ||
-                   std::ranges::any_of(device.checks,
-                                       [&](const Check& c) { return name_matches(c.layer + " " + c.name, e.pattern); });
+            return std::ranges::any_of(device.ids, [&](const auto& id) { return id_matches(id, e.pattern); }) ||
+                   std::ranges::any_of(device.checks, [&](const Check& c) { return id_matches(c.id(), e.pattern); });
         };
         if (std::ranges::none_of(devices, is_matched))
             warnings.push_back(fmt::format("{}: \"{}\" matches no check", e.place, e.pattern));

@@ -19,9 +19,12 @@ const char* outcome_name(Outcome outcome);
 
 struct Check {
     std::string layer;   // "number"
-    std::string name;    // "e6m15, 16 lanes"
+    std::string name;    // "e6m15"
     double seconds = 0;  // wall-clock time
     Verdict verdict;
+
+    /// Returns the check's ID, such as "number.e6m15", of the characters [a-z0-9_.]. It is the same on every device.
+    std::string id() const { return layer + "." + name; }
 };
 
 /// Runs and times `body`. If `body` throws, the returned check has failed with the exception's message, so that the
@@ -31,7 +34,7 @@ Check run_check(const std::string& layer, const std::string& name, const std::fu
 
 std::size_t count_of(const std::vector<Check>& checks, Outcome outcome);
 
-/// Returns a line such as "PASS  number    e6m15, 16 lanes  0.41 s  310 answers"; for a failure, indented lines with
+/// Returns a line such as "PASS  number.e6m15  0.41 s  310 answers"; for a failure, indented lines with
 /// its details follow.
 std::string check_lines(const Check& check);
 
@@ -50,13 +53,18 @@ inline constexpr const char* kVerifyReportKind = "raya verify";
 /// Returns text such as "quick".
 const char* depth_name(Depth depth);
 
-/// Returns true if `full_name`, "LAYER NAME", contains `pattern`, in which * stands for any text.
-bool name_matches(const std::string& full_name, const std::string& pattern);
+/// Returns true if the ID of a check contains `pattern`, in which * stands for any text, and each run of other
+/// characters than letters and digits for any such run.
+bool id_matches(const std::string& id, const std::string& pattern);
+
+/// Returns true if GoogleTest's --gtest_filter selects the ID: patterns separated by ":", in which * stands for any
+/// text and ? for any character, and after "-" the patterns of IDs that are left out.
+bool passes_filter(const std::string& id, const std::string& filter);
 
 /// A check that is known to fail.
 struct ExpectedFailure {
     std::string place;                  // "FILE:LINE"
-    std::string pattern, reason, link;  // pattern: see name_matches()
+    std::string pattern, reason, link;  // pattern: see id_matches()
 };
 
 /// Changes the outcome of a check that is expected to fail: a failure becomes kExpectedFail, a pass kUnexpectedPass.
@@ -65,8 +73,9 @@ void apply_expectations(Check& check, const std::vector<ExpectedFailure>& expect
 struct VerifySettings {
     Depth depth = Depth::kQuick;
     KernelSources sources{};
-    std::string only{};                   // run only checks whose "LAYER NAME" matches; empty: all
-    std::string skip{};                   // run no check whose "LAYER NAME" matches; empty: skip none
+    std::string filter{};                 // run only checks whose ID passes (passes_filter()); empty: all
+    std::string only{};                   // run only checks whose ID matches (id_matches()); empty: all
+    std::string skip{};                   // run no check whose ID matches; empty: skip none
     std::uint32_t shard = 1, shards = 1;  // of the selected checks, run those with number modulo `shards` = shard - 1
     std::uint32_t repeat = 1;             // number of runs of each check; it fails if one of them fails
     double timeout_s = 0;                 // time after which supervise() ends a check; 0: never
@@ -74,7 +83,6 @@ struct VerifySettings {
     std::uint64_t seed = 1;               // of the choice of checks, and of random kernels
     std::uint32_t random = 0;             // if not 0: check so many random kernels instead
     std::function<std::string(const std::string&)> change_random{};  // changes the text of random kernels, for tests
-    bool is_whole_name = false;                                      // `only` is a whole "LAYER NAME"
     std::vector<ExpectedFailure> expected_failures{};  // supervise() changes the outcome of checks that match
     std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
                               // Depth::kFull, all four numbers
@@ -95,11 +103,11 @@ struct CheckSink {
 /// sources does not apply.
 std::vector<Check> verify(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink = {});
 
-/// Returns the settings to run only the check of this name, "LAYER NAME", once.
-VerifySettings settings_of_one(VerifySettings settings, const std::string& full_name);
+/// Returns the settings to run only the check with this ID, once.
+VerifySettings settings_of_one(VerifySettings settings, const std::string& id);
 
-/// Returns "LAYER NAME" of every check that verify() would run, in the same order.
-std::vector<std::string> check_names(const cl::Device& device, const VerifySettings& settings);
+/// Returns the ID of every check that verify() would run, in the same order.
+std::vector<std::string> check_ids(const cl::Device& device, const VerifySettings& settings);
 
 /// Build option with which kernels use no builtins of clang, but their fallback code.
 inline constexpr const char* kNoBuiltins = "-DRAYA_BUILTINS=0";
@@ -107,7 +115,7 @@ inline constexpr const char* kNoBuiltins = "-DRAYA_BUILTINS=0";
 /// Device, settings and results of a run of verify(). The functions below, one per layer, call check() for each check.
 class Verification {
   public:
-    /// `runs`: true to run the checks, false to collect only their names.
+    /// `runs`: true to run the checks, false to collect only their IDs.
     Verification(const cl::Device& device, const VerifySettings& settings, const CheckSink& sink, bool runs = true);
 
     const DeviceInfo& device() const { return info_; }
@@ -115,7 +123,8 @@ class Verification {
     bool full() const { return settings_.depth == Depth::kFull; }
 
     /// Runs one check in a new session, because a failed command may make an OpenCL context unusable. Skips it on a
-    /// device that does not allow groups of `group_size` work-items.
+    /// device that does not allow groups of `group_size` work-items. The check's ID is that of layer and name, in lower
+    /// case, with _ for each run of other characters than letters and digits.
     void check(const std::string& layer, const std::string& name, const std::function<Verdict(Session&)>& body,
                std::uint32_t group_size = 1);
 
@@ -128,9 +137,12 @@ class Verification {
     std::uint32_t lanes_or_default() const { return settings_.lanes ? settings_.lanes : default_lanes(info_); }
     /// Returns every number of lanes to check.
     std::vector<std::uint32_t> lanes() const;
+    /// Returns the end of a check's name: ", 16 lanes"; "" if all checks have one number of lanes, because IDs do not
+    /// depend on the device's.
+    std::string lanes_text(std::uint32_t lanes_of_check) const;
 
     std::vector<Check> take_checks() { return std::move(checks_); }
-    std::vector<std::string> take_names() { return std::move(names_); }
+    std::vector<std::string> take_ids() { return std::move(ids_); }
 
   private:
     cl::Device device_;
@@ -139,8 +151,8 @@ class Verification {
     CheckSink sink_;
     bool runs_;
     std::vector<Check> checks_;
-    std::size_t selected_ = 0;        // number of checks that `only` and `skip` select, in all shards
-    std::vector<std::string> names_;  // of all checks of this shard, including the `done` checks
+    std::size_t selected_ = 0;      // number of checks that `filter`, `only` and `skip` select, in all shards
+    std::vector<std::string> ids_;  // of all checks of this shard, including the `done` checks
 };
 
 // Run the checks of one layer. Each layer relies on the layers before it.
@@ -177,8 +189,8 @@ KernelResults run_random_kernel(Session& session, const RandomKernel& kernel, co
 
 struct DeviceChecks {
     std::string name, platform, version, driver;
-    std::string pci_address{};         // see DeviceInfo
-    std::vector<std::string> names{};  // "LAYER NAME" of each check of Depth::kFull, selected or not; not in reports
+    std::string pci_address{};       // see DeviceInfo
+    std::vector<std::string> ids{};  // of each check of Depth::kFull, selected or not; not in reports
     std::vector<Check> checks{};
     double seconds = 0;  // sum of the checks' times
 
@@ -201,7 +213,7 @@ void members_of(Members& m, const VerifyReport& report);
 
 // Files for continuous integration (CI): results of checks as JUnit XML, and the list of expected failures.
 
-/// Reads a list of checks that are known to fail. A line has a pattern (name_matches()), a reason, and optionally a
+/// Reads a list of checks that are known to fail. A line has a pattern (id_matches()), a reason, and optionally a
 /// link, separated by " | "; # starts a comment line. An empty path is an empty list. Throws UserError with file and
 /// line.
 std::vector<ExpectedFailure> read_expected_failures(const std::filesystem::path& path);

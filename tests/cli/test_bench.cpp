@@ -29,13 +29,15 @@ TEST_CASE("bench --compare: a later run is compared with the rows of a report", 
         more.insert(more.end(), small.begin(), small.end());
         return bench(more, code);
     };
-    bench_with({"--report", base}, 0);
-    const Document report = json_of(base);
+    bench_with({"--report", base, "--json-benchmark", folder / "list.json"}, 0);
+    const Document report = json_of(base), list = json_of(folder / "list.json");
     REQUIRE(report["rows"].size() == 1);
     const Document& row = report["rows"][0];
     CHECK((row["kernel"] == "trace" && row["array"] == "32 PEs, cyclic:16, 4 bounces, accel none" &&
            row["samples"] == 3));
     CHECK(row["ms"]["best"] <= row["ms"]["median"]);
+    CHECK((list.size() == 1 && list[0]["name"] == "trace fp32, 4 lanes, group 1" && list[0]["unit"] == "ms" &&
+           list[0]["value"] == row["ms"]["median"]));
     CHECK(row["mrays_per_s"]["best"].get<double>() ==
           Approx(row["rays"].get<double>() / row["ms"]["best"].get<double>() * 1e-3));
     // Returns a copy of base.json in which the rate of the row is multiplied by `factor`.

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <map>
+#include <regex>
+#include <utility>
 
 #include "host/base/whole_file.hpp"
 #include "tests/cli/device_with_fault.hpp"
@@ -39,25 +42,25 @@ TEST_CASE("verify: faults of a driver fail checks, with exit code 4", "[cli][ver
               {": 0 checks passed, 3 failed", "words at wrong places"}},
           Row{"clEnqueueCopyBufferRect 1 lost",
               {"--only", "machine"},
-              {"FAIL  machine   bus: transfers", "FAIL  machine   copies of blocks", "5 failed"}},
-          Row{"clEnqueueCopyBuffer 20 lost", {"--only", "glass fp32 filter: cyclic:5"}, {"FAIL  image     glass fp32"}},
+              {"FAIL  machine.bus_transfers", "FAIL  machine.copies_of_blocks", "5 failed"}},
+          Row{"clEnqueueCopyBuffer 20 lost", {"--only", "glass fp32 filter: cyclic:5"}, {"FAIL  image.glass_fp32"}},
           Row{"clEnqueueCopyBufferRect 1 crash",
               {"--only", "machine"},
-              {"PASS  machine   torus routes", "FAIL  machine   copies of blocks", "ended by signal 11 (SIGSEGV)",
-               "PASS  machine   bus: broadcast and gather", "try"}},
+              {"PASS  machine.torus_routes", "FAIL  machine.copies_of_blocks", "ended by signal 11 (SIGSEGV)",
+               "PASS  machine.bus_broadcast_and_gather", "try"}},
           Row{"clEnqueueCopyBufferRect 1 exit", {"--only", "machine copies"}, {"ended by exit code 1"}},
           Row{"clFinish 1 slow",
               {"--brief", "--only", "machine mapping: rows", "--timeout", "1"},
               {"no result after", "--timeout SECONDS"}},
           Row{"clGetDeviceInfo 4100 8",
               {"--only", "machine local memory"},
-              {"SKIP  machine   local memory and barriers, 32 work-items",
+              {"SKIP  machine.local_memory_and_barriers_32_work_items",
                "needs groups of 32 work-items, the device allows 8", ": 1 check passed, 0 failed, 1 skipped"},
               0},
           Row{"clGetDeviceInfo 4100 8", {"--only", "32 work-items"}, {": 0 checks passed, 0 failed, 1 skipped"}},
           Row{"clGetProgramInfo 4453 0",
               {"--full", "--only", "binaries of glass"},
-              {"FAIL  image     binaries of glass fp32", "has no binary"}},
+              {"FAIL  image.binaries_of_glass_fp32", "has no binary"}},
           Row{"clGetDeviceInfo 4123 6", {"--only", "number fp32"}, {" times kept, 0 times flushed"}, 0}}) {
         if (kSanitized && contains(row.fault, "crash")) continue;
         const RunOutcome run = verify(row.arguments, device_with_fault(row.fault));
@@ -78,8 +81,7 @@ TEST_CASE("verify: faults of kernels fail checks; the output and the report show
     const RunOutcome run = verify({"--only", "machine", "--kernel-dir", kernels, "--report", file});
     INFO(run.describe());
     CHECK(run.code == 4);
-    for (const char* part :
-         {"FAIL  machine   mapping: blocks", "expected", "got", "try", "2 failed", "--reproduce DIR"})
+    for (const char* part : {"FAIL  machine.mapping_blocks", "expected", "got", "try", "2 failed", "--reproduce DIR"})
         CHECK_THAT(run.out, Catch::Contains(part));
     const Document device = json_of(file)["devices"][0];
     CHECK((device["right"] == false && device["failed"] == 2));
@@ -131,7 +133,7 @@ TEST_CASE("verify --expect: listed failures do not count, and listed checks that
         return run;
     };
     CHECK_THAT(run_with("# mappings\nmapping: | wrong mapping | https://example.org/1\n", 4).out,
-               Catch::Contains("XPASS machine") && Catch::Contains("XFAIL machine   mapping: blocks") &&
+               Catch::Contains("XPASS machine.") && Catch::Contains("XFAIL machine.mapping_blocks") &&
                    Catch::Contains("0 failed, 0 skipped, 2 failed as expected"));
     CHECK_THAT(file_contents(junit),
                Catch::Contains("<failure message=\"passed, but --expect lists it as failing (wrong "
@@ -145,11 +147,67 @@ TEST_CASE("verify --expect: listed failures do not count, and listed checks that
                Catch::Contains(list + ":4: \"no such\" matches no check") && !Catch::Contains("image glass"));
 }
 
-TEST_CASE("verify --list: names are those of tests/verify/check_names.txt", "[cli][verify]") {
-    // Lists of expected failures and CI dashboards contain the names. If you change one, write the file again and say
-    // so in CHANGELOG.md: build/raya verify --quick --lanes 4 --list > tests/verify/check_names.txt
-    CHECK(verify({"--quick", "--lanes", "4", "--list"}).out ==
-          file_contents(RAYA_SOURCE_DIR "/tests/verify/check_names.txt"));
+TEST_CASE("verify --list: the IDs are those of tests/verify/check_ids.txt, whatever the device", "[cli][verify]") {
+    // Lists of expected failures and CI dashboards contain the IDs. If you change one, write the file again and say so
+    // in CHANGELOG.md: (build/raya verify --list; echo; build/raya verify --full --list) > tests/verify/check_ids.txt
+    const std::string ids = file_contents(RAYA_SOURCE_DIR "/tests/verify/check_ids.txt");
+    // 4154: CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT; 4123: CL_DEVICE_SINGLE_FP_CONFIG.
+    for (const char* fault : {"clGetDeviceInfo 4154 8", "clGetDeviceInfo 4123 6"}) {
+        const auto list = [&](const Arguments& depth) { return run_raya(depth, device_with_fault(fault)).out; };
+        CHECK(list({"verify", "--list"}) + "\n" + list({"verify", "--full", "--list"}) == ids);
+    }
+    CHECK(std::ranges::all_of(ids, [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '.' || c == '\n';
+    }));
+}
+
+/// Results that deqp-runner reads from the output of a GoogleTest program. A replay of the rules of its parser
+/// (gtest_command.rs), because the program itself is not packaged: a line "[ RUN      ] ID" starts a test; the next
+/// line with "[ STATUS ] WORD" ends it, and another status than OK, FAILED or SKIPPED is an error.
+std::map<std::string, std::string> results_for_deqp_runner(const std::string& output) {
+    const std::regex start(R"(\[\sRUN\s*\]\s(.*))"), status(R"(\[\s*(\S*)\s*\]\s(\S*))");
+    std::map<std::string, std::string> results;
+    std::string id;
+    std::smatch match;
+    for (const std::string& line : lines_of(output))
+        if (id.empty() && std::regex_search(line, match, start))
+            id = match[1];
+        else if (!id.empty() && std::regex_search(line, match, status))
+            results[std::exchange(id, "")] = match[1];
+    CHECK(id.empty());
+    return results;
+}
+
+TEST_CASE("verify as a GoogleTest program, and as an OpenCL conformance test", "[cli][verify]") {
+    const ScratchFolder scratch;
+    std::vector<std::string> listed;
+    std::string group;
+    for (const std::string& line : lines_of(verify({"--gtest_list_tests"}).out))
+        if (line.starts_with("  "))
+            listed.push_back(group + line.substr(2));
+        else
+            group = line;
+    CHECK(listed == lines_of(verify({"--list"}).out));
+    const std::string results = scratch / "r.json", kernels = write_kernels(scratch / "kernels", {kMappingFault});
+    RunOptions small_groups = device_with_fault("clGetDeviceInfo 4100 8");
+    small_groups.variables.emplace_back("CL_CONFORMANCE_RESULTS_FILENAME", results);
+    const RunOutcome run =
+        verify({"--gtest_filter=machine.mapping_?o*:*_blocks:*32_work_items:*.torus_*-*packets*:*copies*",
+                "--kernel-dir", kernels},
+               small_groups);
+    INFO(run.describe());
+    CHECK(run.code == 4);
+    const std::map<std::string, std::string> expected = {
+        {"machine.mapping_rows", "OK"},
+        {"machine.mapping_blocks", "FAILED"},
+        {"machine.torus_routes", "OK"},
+        {"machine.local_memory_and_barriers_32_work_items", "SKIPPED"}};
+    CHECK(results_for_deqp_runner(run.out) == expected);
+    const Document json = json_of(results);
+    CHECK((json["cmd"] == RAYA_PROGRAM && json["args"][0] == "verify" && json["results"].size() == expected.size()));
+    for (const auto& [id, status] : expected)
+        CHECK(json["results"][id] == (status == "OK" ? "pass" : status == "FAILED" ? "fail" : "skip"));
+    check_refused(ScratchFolder(), {"verify", "--gtest_filter=number.[ef]*"}, 2, {"--gtest_filter", "select no check"});
 }
 
 TEST_CASE("verify: no check builds more than six programs, for which the default of --timeout allows",
@@ -170,7 +228,7 @@ TEST_CASE("verify --repeat: finds a copy that is lost once in many", "[cli][veri
     const RunOutcome run = verify(repeat, device_with_fault("clEnqueueCopyBuffer 40 lost"));
     INFO(run.describe());
     CHECK(run.code == 4);
-    CHECK(has_line(run.out, "FAIL  machine .* \\(in run [2-9] of 9\\)"));
+    CHECK(has_line(run.out, "FAIL  machine\\..* \\(in run [2-9] of 9\\)"));
 }
 
 /// Returns true if the command line of any running process contains this text.
@@ -228,7 +286,7 @@ TEST_CASE("progress: slow commands name their step on a terminal within two seco
                Catch::Contains("preparing ... 1 s") && Catch::EndsWith("\r\033[K"));
     CHECK_THAT(
         text_on_terminal(one_check, "clFinish 1 slow"),
-        Catch::Contains("\r\033[Krunning machine bus: broadcast and gather ... 1 s") && Catch::EndsWith("\r\033[K"));
+        Catch::Contains("\r\033[Krunning machine.bus_broadcast_and_gather ... 1 s") && Catch::EndsWith("\r\033[K"));
     render.emplace_back("-q");
     CHECK(text_on_terminal(render, "clCreateContext 1 slow") == "");
     const RunOutcome run = run_raya(one_check, device_with_fault("clFinish 1 slow"));

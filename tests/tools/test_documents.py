@@ -85,7 +85,7 @@ def examples(text):
 
 def stale_counts(verify_output):
     """Yields a fault if docs/verify.md does not name the number of images that --quick renders."""
-    printed = len(re.findall(r"^PASS  image ", verify_output, re.M))
+    printed = len(re.findall(r"^PASS  image\.", verify_output, re.M))
     named = re.search(r"(\d+) images", (ROOT / "docs/verify.md").read_text())
     if not named or int(named[1]) != printed:
         yield f"docs/verify.md: states {named[0] if named else 'no number of images'}, but raya verify --quick renders {printed} images"

@@ -27,7 +27,7 @@ drained() { [[ $(<"$scratch/asked") == $'update\nNodeName=node7\nState=DRAIN\nRe
 health RAYA="$raya"
 [[ $code == 0 && ! -e $scratch/asked && -z $out ]] || fail "right device"
 health RAYA="$scratch/faulty" RAYA_FAULT="clEnqueueCopyBufferRect 1 lost"
-[[ $code == 1 ]] && drained "exit code 4: FAIL machine copies of blocks "* || fail "lost copies"
+[[ $code == 1 ]] && drained "exit code 4: FAIL machine.copies_of_blocks "* || fail "lost copies"
 [[ $out == *"got "* ]] || fail "no details"
 health RAYA="$raya" OCL_ICD_VENDORS=/nowhere
 [[ $code == 1 ]] && drained "exit code 3: raya: "* || fail "no device"
@@ -36,7 +36,7 @@ health RAYA="$scratch/faulty" RAYA_HEALTH_SECONDS=1
 [[ $code == 1 ]] && drained "no result after 1 s" || fail "hanging device"
 # Slurm's slurmd starts the program without variables.
 code=0
-out=$(env -i RAYA="$raya" POCL_CACHE_DIR="$scratch/pocl" ${OCL_ICD_VENDORS:+OCL_ICD_VENDORS="$OCL_ICD_VENDORS"} "$health" --only "number fp32, * lanes" 2>&1) ||
+out=$(env -i RAYA="$raya" POCL_CACHE_DIR="$scratch/pocl" ${OCL_ICD_VENDORS:+OCL_ICD_VENDORS="$OCL_ICD_VENDORS"} "$health" --only "number.fp32" 2>&1) ||
     code=$?
 [[ $code == 0 && -z $out ]] || fail "no variables"
 rm "$scratch/bin/scontrol"

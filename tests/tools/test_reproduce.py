@@ -12,8 +12,8 @@ from pathlib import Path
 MAX_PROGRAM_LINES, MAX_REDUCED_LINES = 200, 60
 # (check, file, text, replacement): faults of kernels.
 KERNEL_FAULTS = [
-    ("number e5m10, 16 lanes", "number/reduced.clh", "even = ~(bits <<", "even = (bits <<"),
-    ("geometry known hits of spheres, fp32, 16 lanes", "geometry/sphere.clh", "& (t < h.distance)",
+    ("number e5m10", "number/reduced.clh", "even = ~(bits <<", "even = (bits <<"),
+    ("geometry known hits of spheres, fp32", "geometry/sphere.clh", "& (t < h.distance)",
      "& ((t < h.distance) | ((t == h.distance) & (h.object != RAYA_NO_OBJECT)))"),
     ("machine mapping: cyclic, block fold", "shared/mapping.h", "(raya_u64)a * b / c", "a * b / c"),
     ("machine torus3d: exchange of few mailboxes", "torus/exchange.cl", "target[i] = source[i];", "target[i] = source[i] ^ (uint8)(1);"),
@@ -22,16 +22,16 @@ KERNEL_FAULTS = [
     ("image polygons fp32: cyclic:8 on 20, grid", "grid/grid_search.clh", "count_event(t, RAYA_WALKS, w.on);", ""),
     ("image polygons fp32: cyclic:8 on 20, bvh", "bvh/ray_pool.clh", "RAYA_WALKS, p->queued.truth", "RAYA_STEPS, p->queued.truth"),
     ("image polygons fp32: torus3d 2x2x2, launches", "torus/inject.cl", "2 * RAYA_DISCARDED", "2 * RAYA_PRIMARY"),
-    ("number fp32, 16 lanes", "number/divide.clh", "return a / b;", "return a * (1.0f / b);"),
+    ("number fp32", "number/divide.clh", "return a / b;", "return a * (1.0f / b);"),
 ]
 # (check, RAYA_FAULT of cl_faults.cpp, words of the case's description): faults of a driver and its compiler.
 DRIVER_FAULTS = [
-    ("number e5m10, 16 lanes", "clBuildProgram 0 max(a,b)=(b)", "launch of operations"),  # the check knows the right words
+    ("number e5m10", "clBuildProgram 0 max(a,b)=(b)", "launch of operations"),  # the check knows the right words
     ("image glass fp32: cyclic:8 on 20", "clBuildProgram 1 fabs(a)=(a)", "launch of trace"),  # right with -cl-opt-disable
-    ("number e5m10, 16 lanes", "clBuildProgram 0 max(a,b)=%", "build of checks/numbers.cl"),
-    ("number fp32, 16 lanes", "clEnqueueNDRangeKernel 1 -5", "launch of operations"),
+    ("number e5m10", "clBuildProgram 0 max(a,b)=%", "build of checks/numbers.cl"),
+    ("number fp32", "clEnqueueNDRangeKernel 1 -5", "launch of operations"),
 ]
-REDUCED_FAULTS = [("number e5m10, 16 lanes", "clBuildProgram 0 max(a,b)=(b)"), ("number e6m15, 16 lanes", "clBuildProgram 0 min(a,b)=(a)")]
+REDUCED_FAULTS = [("number e5m10", "clBuildProgram 0 max(a,b)=(b)"), ("number e6m15", "clBuildProgram 0 min(a,b)=(a)")]
 
 
 class Test:

@@ -38,21 +38,18 @@ TEST_CASE("run_check: a check that throws an exception fails, with remedies for 
     CHECK_THAT(remedies, Contains("raya devices") && !Contains("-cl-opt-disable") && !Contains("--lanes"));
 }
 
-TEST_CASE("check_names: a greater depth has all checks of the smaller depths, and more", "[verify]") {
-    const auto names = [](Depth depth) { return check_names(choose_device(""), {.depth = depth, .lanes = 1}); };
-    const std::vector<std::string> brief = names(Depth::kBrief), quick = names(Depth::kQuick),
-                                   full = names(Depth::kFull);
+TEST_CASE("check_ids: a greater depth has all checks of the smaller depths, and more", "[verify]") {
+    const auto ids = [](Depth depth) { return check_ids(choose_device(""), {.depth = depth, .lanes = 1}); };
+    const std::vector<std::string> brief = ids(Depth::kBrief), quick = ids(Depth::kQuick), full = ids(Depth::kFull);
     const auto has = [](const std::vector<std::string>& all, const std::vector<std::string>& subset) {
-        return std::all_of(subset.begin(), subset.end(), [&](const std::string& name) {
-            return std::find(all.begin(), all.end(), name) != all.end();
-        });
+        return std::all_of(subset.begin(), subset.end(),
+                           [&](const std::string& id) { return std::find(all.begin(), all.end(), id) != all.end(); });
     };
     CHECK((has(quick, brief) && brief.size() < quick.size()));
     CHECK((has(full, quick) && quick.size() < full.size()));
-    for (const char* layer : {"number ", "geometry ", "machine ", "image "}) {
+    for (const char* layer : {"number.", "geometry.", "machine.", "image."}) {
         CAPTURE(layer);
-        CHECK(
-            std::any_of(brief.begin(), brief.end(), [&](const std::string& name) { return name.starts_with(layer); }));
+        CHECK(std::any_of(brief.begin(), brief.end(), [&](const std::string& id) { return id.starts_with(layer); }));
     }
 }
 

@@ -20,19 +20,11 @@ std::vector<Check> run(const std::vector<SourcePatch>& faults, const std::string
     return verify(choose_device(""), {.sources = {.patches = faults}, .only = only, .lanes = 4});
 }
 
-// Returns the names of the failed checks.
-Names failures(const std::vector<Check>& checks) {
+// Returns the names of the checks with this outcome.
+Names names_of(const std::vector<Check>& checks, Outcome outcome) {
     Names names;
     for (const Check& check : checks)
-        if (check.verdict.outcome == Outcome::kFail) names.insert(check.name);
-    return names;
-}
-
-// Returns the names of the checks with this outcome, each up to its first comma.
-Names beginnings(const std::vector<Check>& checks, Outcome outcome) {
-    Names names;
-    for (const Check& check : checks)
-        if (check.verdict.outcome == outcome) names.insert(check.name.substr(0, check.name.find(',')));
+        if (check.verdict.outcome == outcome) names.insert(check.name);
     return names;
 }
 
@@ -50,7 +42,7 @@ TEST_CASE("faults of kernels: exactly the checks that cover the faulty code fail
     struct Row {
         SourcePatch fault;
         const char* only;
-        Names wrong, right;          // names of the checks that must fail and pass, each up to its first comma
+        Names wrong, right;          // names of the checks that must fail and pass
         const char *where, *result;  // parts of the texts of the first failure
     };
     const Row rows[] = {
@@ -58,75 +50,83 @@ TEST_CASE("faults of kernels: exactly the checks that cover the faulty code fail
         {kContractionFault, "number fp32", {"fp32"}, {}, "mul_add(", "wrong: mul_add"},
         {kDivisionFault, "number fp32", {"fp32"}, {}, "div(", "wrong: div"},
         {kTieFault,
-         ", fp32",
-         {"known hits of spheres"},
-         {"known hits of planes", "known hits of polygons", "known hits of cones", "grid"},
+         "geometry*fp32",
+         {"known_hits_of_spheres_fp32"},
+         {"known_hits_of_planes_fp32", "known_hits_of_polygons_fp32", "known_hits_of_cones_fp32", "grid_fp32"},
          "equal distances",
          "rays wrong"},
         {kGridFault,
-         ", fp32",
-         {"known hits of spheres", "known hits of planes", "known hits of polygons", "known hits of cones", "grid"},
+         "geometry*fp32",
+         {"known_hits_of_spheres_fp32", "known_hits_of_planes_fp32", "known_hits_of_polygons_fp32",
+          "known_hits_of_cones_fp32", "grid_fp32"},
          {},
          "hits_with_accel",
          "rays wrong"},
         {kMappingFault,
          "machine mapping",
-         {"mapping: cyclic", "mapping: blocks"},
-         {"mapping: cyclic", "mapping: rows", "mapping: grid", "mapping: tiles", "mapping: random"},
+         {"mapping_cyclic_block_fold", "mapping_blocks"},
+         {"mapping_cyclic_cyclic_fold", "mapping_rows", "mapping_grid", "mapping_tiles", "mapping_random"},
          "pixel (row",
          "cases wrong"},
         {kBarrierFault,
          "machine local",
-         {"local memory and barriers"},
-         {"local memory and barriers"},
+         {"local_memory_and_barriers_32_work_items"},
+         {"local_memory_and_barriers_1_work_item"},
          "group 0",
          "cases wrong"},
         {kExchangeFault,
          "exchange of",
-         {"torus3d: exchange of all mailboxes", "torus3d: exchange of few mailboxes",
-          "torus2d: exchange of all mailboxes", "torus2d: exchange of few mailboxes"},
+         {"torus3d_exchange_of_all_mailboxes", "torus3d_exchange_of_few_mailboxes", "torus2d_exchange_of_all_mailboxes",
+          "torus2d_exchange_of_few_mailboxes"},
          {},
          "inbox",
          "words at wrong places"},
         {kBorderFault,
          "image glass",
-         {"glass fp32 filter: cyclic:5 on 10", "glass fp32 filter: cyclic:8 on 7"},
-         {"glass fp32: cyclic:8 on 20", "glass fp32 axes: rows on 16", "glass fp32 diagonals: grid:4x4 on 16",
-          "glass fp32: tiles:5x4 on 7", "glass fp32 axes: rows on 10"},
+         {"glass_fp32_filter_cyclic_5_on_10",
+          "glass_fp32_filter_cyclic_8_on_7_block_fold_launches_of_1_test_pes_of_3300_bytes_groups_of_8"},
+         {"glass_fp32_cyclic_8_on_20", "glass_fp32_cyclic_8_on_20_5_parts", "glass_fp32_axes_rows_on_16",
+          "glass_fp32_diagonals_grid_4x4_on_16_launches_of_1_test", "glass_fp32_tiles_5x4_on_7",
+          "glass_fp32_axes_rows_on_10_2_parts_pes_of_5000_bytes"},
          "row 0, column 19",
          "pixels wrong"},
         {kResumedLaunchFault,
          "image polygons fp32: torus3d 2x2x2",
-         {"polygons fp32: torus3d 2x2x2"},
-         {"polygons fp32: torus3d 2x2x2"},
+         {"polygons_fp32_torus3d_2x2x2_launches_of_1_unit"},
+         {"polygons_fp32_torus3d_2x2x2"},
          "",
          ""},
         {kLostPartFault,
          "image glass fp32: cyclic:8 on 20, 5 parts",
-         {"glass fp32: cyclic:8 on 20"},
+         {"glass_fp32_cyclic_8_on_20_5_parts"},
          {},
          "row",
          "wrong"},
         {kPartTwiceFault,
          "image glass fp32: cyclic:8 on 20, 5 parts",
-         {"glass fp32: cyclic:8 on 20"},
+         {"glass_fp32_cyclic_8_on_20_5_parts"},
          {},
          "",
          "sphere_tests"},
         {kRotationFault,
          "image glass fp32: cyclic:8 on 20, 5 parts",
-         {"glass fp32: cyclic:8 on 20"},
+         {"glass_fp32_cyclic_8_on_20_5_parts"},
          {},
          "row",
          "wrong"},
-        {kRoundingFault, "image cones e5m10", {"cones e5m10: cyclic:8 on 20"}, {}, "row", "pixels wrong"},
+        {kRoundingFault, "image cones e5m10", {"cones_e5m10_cyclic_8_on_20_fallback_code"}, {}, "row", "pixels wrong"},
         // With parts of one object, object numbers alone decide ties.
-        {kTieFault, "image ties", {"ties fp32: blocks on 5"}, {"ties fp32: cyclic:8 on 20"}, "row", "pixels wrong"}};
+        {kTieFault,
+         "image ties",
+         {"ties_fp32_blocks_on_5_global_words_fallback_code"},
+         {"ties_fp32_cyclic_8_on_20_20_parts_pes_of_2000_bytes"},
+         "row",
+         "pixels wrong"}};
     for (const Row& row : rows) {
         CAPTURE(row.fault.replace, row.only);
         const auto checks = run({row.fault}, row.only);
-        CHECK(beginnings(checks, Outcome::kFail) == row.wrong);
-        CHECK(beginnings(checks, Outcome::kPass) == row.right);
+        CHECK(names_of(checks, Outcome::kFail) == row.wrong);
+        CHECK(names_of(checks, Outcome::kPass) == row.right);
         const auto first = std::ranges::find(checks, Outcome::kFail, [](const Check& c) { return c.verdict.outcome; });
         REQUIRE(first != checks.end());
         CHECK_THAT(first->verdict.fault.where, Catch::Contains(row.where));
@@ -141,8 +141,8 @@ TEST_CASE("a kernel that does nothing: its checks fail", "[verify][faults]") {
         const char *file, *kernel, *only;
         std::size_t wrong;  // number of checks that must fail
     };
-    const Row rows[] = {{"checks/hits.cl", "hits_without_accel", ", fp32", 5},
-                        {"checks/hits.cl", "hits_with_accel", ", fp32", 5},
+    const Row rows[] = {{"checks/hits.cl", "hits_without_accel", "geometry*fp32", 5},
+                        {"checks/hits.cl", "hits_with_accel", "geometry*fp32", 5},
                         {"checks/machine.cl", "find_owners", "mapping", 7},
                         {"checks/machine.cl", "find_routes", "routes", 1},
                         {"torus/exchange.cl", "exchange", "exchange of", 4},
@@ -151,7 +151,7 @@ TEST_CASE("a kernel that does nothing: its checks fail", "[verify][faults]") {
     for (const Row& row : rows) {
         CAPTURE(row.kernel);
         const auto checks = run({empty_kernel_patch(row.file, row.kernel)}, row.only);
-        CHECK(failures(checks).size() == row.wrong);
+        CHECK(names_of(checks, Outcome::kFail).size() == row.wrong);
         CHECK(checks.size() == row.wrong);
     }
 }
@@ -161,7 +161,7 @@ TEST_CASE("count faults at one place: the check of an image with this event fail
         CAPTURE(fault.event, fault.patch.file, fault.patch.replace);
         const auto checks = run({fault.patch}, fault.only);
         REQUIRE(checks.size() == 1);
-        REQUIRE(failures(checks).size() == 1);
+        REQUIRE(names_of(checks, Outcome::kFail).size() == 1);
         const Verdict& verdict = checks[0].verdict;
         CHECK_THAT(verdict.result, Catch::StartsWith("wrong counts: "));
         CHECK_THAT(verdict.result + ",", Catch::Contains(fmt::format(" {},", fault.event)));
