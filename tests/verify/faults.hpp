@@ -24,6 +24,9 @@ inline const SourcePatch kMappingFault{"shared/mapping.h", "(raya_u64)a * b / c"
 /// A barrier is missing: work-items read local memory before all have written it.
 inline const SourcePatch kBarrierFault{
     "checks/machine.cl", "words - 1 - w] + 1;\n        barrier(CLK_LOCAL_MEM_FENCE);", "words - 1 - w] + 1;"};
+/// Wrong address of a large object, which is tested before the BVH.
+inline const SourcePatch kSeparateFault{"shading/first_tests.clh", "_at + (separate[i] - first)",
+                                        "_at - (separate[i] - first)"};
 /// The filter treats pixels at the right border as inner pixels.
 inline const SourcePatch kBorderFault{"ring/filter.cl", "raya_has_neighbour(m, pixel, RAYA_RIGHT)", "1"};
 /// The link exchange of the torus flips a bit of a colour or limit in a packet. It does not drop words, because stale

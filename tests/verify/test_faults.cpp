@@ -114,6 +114,7 @@ TEST_CASE("faults of kernels: exactly the checks that cover the faulty code fail
          {},
          "row",
          "wrong"},
+        {kSeparateFault, "image leaves", {"leaves_fp32_cyclic_8_on_20_bvh_4x1"}, {}, "row", "pixels wrong"},
         {kRoundingFault, "image cones e5m10", {"cones_e5m10_cyclic_8_on_20_fallback_code"}, {}, "row", "pixels wrong"},
         // With parts of one object, object numbers alone decide ties.
         {kTieFault,
