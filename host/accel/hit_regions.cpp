@@ -33,8 +33,6 @@
 // finite S satisfies the bound.
 #include "host/accel/hit_regions.hpp"
 
-#include <Imath/ImathBoxAlgo.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -69,9 +67,8 @@ constexpr int kMinFractionBits = 10;  // minimum Y for which the constants cover
 
 bool HitRegion::touches(const Box& other_box) const {
     if (!box.intersects(other_box)) return false;
-    if (outer_radius < kUnbounded &&
-        ((centre - Imath::clip(centre, other_box)).length2() > outer_radius * outer_radius ||
-         farthest_square(centre, other_box) < inner_radius * inner_radius))
+    if (outer_radius < kUnbounded && ((centre - other_box.nearest(centre)).length2() > outer_radius * outer_radius ||
+                                      farthest_square(centre, other_box) < inner_radius * inner_radius))
         return false;
     const Vec3 box_centre = 0.5 * (other_box.min + other_box.max), half_sides = 0.5 * (other_box.max - other_box.min);
     if (half_thickness < kUnbounded &&
@@ -145,7 +142,7 @@ HitRegion HitRegions::polygon(std::size_t at) const {
     std::size_t corner = (*words_)[at + RAYA_POLYGON_CORNERS_AT];
     for (std::size_t i = (*words_)[at + RAYA_POLYGON_CORNERS]; i > 0; --i, corner += RAYA_CORNER_WORDS) {
         const Vec3 position = vector(corner);
-        region.box.extendBy(position);
+        region.box.extend(position);
         off_plane = std::max(off_plane, std::abs(region.normal.dot(position) - region.plane_distance));
         farthest_corner = std::max(farthest_corner, max_distance(position));
     }

@@ -1,7 +1,6 @@
 // Hit regions: for each finite object of a job, a region that contains all points at which a kernel can compute a hit
 // of the object, in spite of the rounding errors of the number format. Lengths are in the job's units.
 #pragma once
-#include <Imath/ImathBox.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +12,6 @@
 #include "host/scene/packer.hpp"
 
 namespace raya {
-
-using Box = Imath::Box3d;
 
 /// The intersection of a box, a spherical shell, a slab and a capsule around a segment. The slab consists of the points
 /// p with |dot(normal, p) - plane_distance| <= half_thickness.

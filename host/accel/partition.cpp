@@ -30,7 +30,7 @@ Box box_around(const HitRegions& regions) {
     Box box;
     if (regions.size() == 0) return Box(Vec3(-0.5), Vec3(0.5));
     if (!regions.all_bounded()) return Box(Vec3(-4 * regions.far()), Vec3(4 * regions.far()));
-    for (std::size_t i = 0; i < regions.size(); ++i) box.extendBy(regions.region(i).box);
+    for (std::size_t i = 0; i < regions.size(); ++i) box.extend(regions.region(i).box);
     const Vec3 margin(2 * traversal_error(box, regions.reach()));
     return Box(box.min - margin, box.max + margin);
 }
@@ -234,7 +234,7 @@ std::vector<std::uint32_t> large_objects(const PackedJob& job, const NumberForma
         for (std::size_t i = 0; i < regions.size(); ++i) {
             const Box box = regions.region(i).box;
             longest_sides.push_back(largest_coordinate(box.size()));
-            whole.extendBy(box);
+            whole.extend(box);
         }
         std::vector<std::uint32_t> new_large;
         for (std::size_t i = 0; i < regions.size(); ++i)

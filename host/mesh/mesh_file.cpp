@@ -46,7 +46,7 @@ bool is_weight(double x) { return x >= 0 && x <= kMaxWeight; }
 
 // Sets camera and lights. The eye sees `box`, that of all objects, from a three-quarter view, at the smallest distance
 // at which the whole box is in a square image, and 5 % more. Two white lights are near the eye.
-void set_default_view(Scene& scene, const Imath::Box3d& box, UpAxis up_axis) {
+void set_default_view(Scene& scene, const Box& box, UpAxis up_axis) {
     constexpr double kMargin = 1.05;
     const Vec3 up = up_axis == UpAxis::kY ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
     const Vec3 front = up_axis == UpAxis::kY ? Vec3(0, 0, 1) : Vec3(0, -1, 0), side(1, 0, 0);
@@ -57,13 +57,13 @@ void set_default_view(Scene& scene, const Imath::Box3d& box, UpAxis up_axis) {
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 at(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
                       corner & 4 ? box.max.z : box.min.z);
-        const Vec3 arm = at - box.center();
+        const Vec3 arm = at - box.centre();
         distance =
             std::max(distance, arm.dot(back) + std::max(std::abs(arm.dot(right)), std::abs(arm.dot(top))) / half_image);
     }
     distance *= kMargin;
-    scene.view.at = box.center();
-    scene.view.from = box.center() + distance * back;
+    scene.view.at = box.centre();
+    scene.view.from = box.centre() + distance * back;
     scene.view.up = up;
     scene.lights = {{scene.view.from + distance / 2 * (top - right), {}}, {scene.view.from + distance / 2 * right, {}}};
 }
@@ -223,7 +223,8 @@ class MeshReader {
         process_.take(vectors_.data(), vectors_.size());
         polygon.vertices.reserve(size);
         for (std::size_t i = 0; i < vectors_.size(); ++i)
-            (mesh.has_normals && i % 2 != 0 ? polygon.normals : polygon.vertices).emplace_back(vectors_[i]);
+            (mesh.has_normals && i % 2 != 0 ? polygon.normals : polygon.vertices)
+                .emplace_back(vectors_[i][0], vectors_[i][1], vectors_[i][2]);
         if (size < 3) return report("it is a point or a line", "point or line, left out");
         if (!std::ranges::all_of(polygon.vertices, is_point))
             return report("a coordinate is not finite or above 1e30 in magnitude",
@@ -247,8 +248,8 @@ class MeshReader {
     Scene finished(UpAxis up) {
         constexpr double kFar = 100;  // at which the margin of secondary rays in e6m15 is 2 % of the mesh
         if (scene_.polygons.empty()) throw UserError("it has no triangle: the image would be empty");
-        const Imath::Box3d box = scene_box(scene_);
-        const double distance = box.center().length(), size = box.size().length();
+        const Box box = scene_box(scene_);
+        const double distance = box.centre().length(), size = box.size().length();
         if (distance > kFar * size)
             remark_or_refuse("", "it is too far from the origin for its size; move it to the origin",
                              fmt::format("its distance from the origin is {:.2g} times its size, so that rounding "
@@ -262,7 +263,7 @@ class MeshReader {
     ImportProcess process_;
     std::vector<SceneRemark>* remarks_;
     Scene scene_;
-    std::vector<Imath::V3f> vectors_;  // of a face: its vertices, or a vertex and a normal for each corner
+    std::vector<std::array<float, 3>> vectors_;  // of a face: its vertices, or a vertex and a normal for each corner
 };
 
 /// Checks that the file can be read, because assimp's messages do not say why it cannot.

@@ -41,8 +41,8 @@ std::array<double, 3> array_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 void extent_members(Members& m, const SceneReport& r) {
     m("box", "Bounding box of the finite objects; without members if the scene has no finite objects.",
       [&](Members& box) {
-          box.when(!r.box.isEmpty(), "min", array_of(r.box.min), "Lower corner, scene units.");
-          box.when(!r.box.isEmpty(), "max", array_of(r.box.max), "Upper corner, scene units.");
+          box.when(!r.box.is_empty(), "min", array_of(r.box.min), "Lower corner, scene units.");
+          box.when(!r.box.is_empty(), "max", array_of(r.box.max), "Upper corner, scene units.");
       });
     m("cube_half_side", scene_extent(r.scene),
       "Maximum absolute coordinate of finite objects and camera, scene units.");
@@ -85,7 +85,7 @@ std::string lights_text(const Scene& scene) {
 
 std::string extent_text(const SceneReport& r) {
     std::string box = "no bounding box, only planes";
-    if (!r.box.isEmpty())
+    if (!r.box.is_empty())
         box = fmt::format("{:.6g}..{:.6g} x {:.6g}..{:.6g} x {:.6g}..{:.6g}", r.box.min.x, r.box.max.x, r.box.min.y,
                           r.box.max.y, r.box.min.z, r.box.max.z);
     return fmt::format("{}; objects and camera at most {:.6g} from the origin along each axis", box,

@@ -1,8 +1,6 @@
 // Report of `raya info`: a struct with data on a scene, written as JSON and as text on the terminal.
 #pragma once
 
-#include <Imath/ImathBox.h>
-
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -49,7 +47,7 @@ struct SceneReport {
     std::string raya;  // version of raya
     std::string file;
     Scene scene;
-    Imath::Box3d box;  // bounding box of the finite objects
+    Box box;  // bounding box of the finite objects
     std::vector<SceneRemark> skipped;
     std::vector<std::string> warnings;
     std::vector<FormatFit> formats;

@@ -56,7 +56,8 @@ class NffWriter {
         write_line("v\nfrom {}\nat {}\nup {}", text_of(view.from), text_of(view.at), text_of(view.up));
         write_line("angle {}\nhither {}\nresolution {} {}", view.angle_degrees, view.hither, view.width, view.height);
         for (const Light& light : scene_.lights)
-            write_line("l {}{}", text_of(light.position), light.colour ? " " + text_of(*light.colour) : "");
+            write_line("l {}{}", text_of(light.position),
+                       light.colour ? fmt::format(" {}", text_of(*light.colour)) : "");
     }
 
     void write(const Sphere& s) {
@@ -74,7 +75,8 @@ class NffWriter {
         const bool patch = !polygon.normals.empty();
         write_line("{} {}", patch ? "pp" : "p", polygon.vertices.size());
         for (std::size_t i = 0; i < polygon.vertices.size(); ++i)
-            write_line("{}{}", text_of(polygon.vertices[i]), patch ? " " + text_of(polygon.normals[i]) : "");
+            write_line("{}{}", text_of(polygon.vertices[i]),
+                       patch ? fmt::format(" {}", text_of(polygon.normals[i])) : "");
     }
 
     void write(const Cone& c) {

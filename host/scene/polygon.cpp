@@ -1,6 +1,5 @@
 #include "host/scene/polygon.hpp"
 
-#include <Imath/ImathVec.h>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -14,22 +13,20 @@
 namespace raya {
 namespace {
 
-using Vec2 = Imath::V2d;
-
 /// Returns twice the signed area of a triangle; > 0 if the triangle is counter-clockwise.
-double doubled_area(const Vec2& a, const Vec2& b, const Vec2& c) { return (b - a).cross(c - a); }
+double doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a).z; }
 
 /// Returns the vertices projected along dropped_axis(). Mirrors them if necessary so that they are counter-clockwise.
-std::vector<Vec2> flattened(const std::vector<Vec3>& vertices, const Vec3& normal) {
+std::vector<Vec3> flattened(const std::vector<Vec3>& vertices, const Vec3& normal) {
     const int axis = dropped_axis(normal);
     const int first = axis == 0 ? 1 : 0;
     const int second = axis == 2 ? 1 : 2;
-    std::vector<Vec2> flat;
-    for (const Vec3& v : vertices) flat.emplace_back(v[first], v[second]);
+    std::vector<Vec3> flat;
+    for (const Vec3& v : vertices) flat.emplace_back(v[first], v[second], 0);
     double area = 0;
     for (std::size_t i = 2; i < flat.size(); ++i) area += doubled_area(flat[0], flat[i - 1], flat[i]);
     if (area < 0)
-        for (Vec2& v : flat) v.x = -v.x;
+        for (Vec3& v : flat) v.x = -v.x;
     return flat;
 }
 
@@ -37,12 +34,12 @@ std::vector<Vec2> flattened(const std::vector<Vec3>& vertices, const Vec3& norma
 /// `remaining` in its triangle. Vertices on the triangle's border count as inside, so that cutting off an ear never
 /// leaves a degenerate polygon. Vertices at the same position as a vertex of the corner are ignored, because they occur
 /// where a cut joins a hole to the outline.
-bool is_ear(const std::vector<Vec2>& flat, const std::vector<int>& remaining, const std::array<int, 3>& corner) {
+bool is_ear(const std::vector<Vec3>& flat, const std::vector<int>& remaining, const std::array<int, 3>& corner) {
     const auto vertex = [&](int i) { return flat[static_cast<std::size_t>(i)]; };
-    const Vec2 a = vertex(corner[0]), b = vertex(corner[1]), c = vertex(corner[2]);
+    const Vec3 a = vertex(corner[0]), b = vertex(corner[1]), c = vertex(corner[2]);
     if (doubled_area(a, b, c) <= 0) return false;
     for (const int i : remaining) {
-        const Vec2 p = vertex(i);
+        const Vec3 p = vertex(i);
         if (p == a || p == b || p == c) continue;
         if (doubled_area(a, b, p) >= 0 && doubled_area(b, c, p) >= 0 && doubled_area(c, a, p) >= 0) return false;
     }
@@ -72,7 +69,7 @@ std::vector<std::array<int, 3>> triangulate(const std::vector<Vec3>& vertices, c
             fmt::format("a polygon with {} corners would have to be cut into triangles; the most is {}; cut "
                         "it in the program that made it",
                         vertices.size(), kMaxCutCorners));
-    const std::vector<Vec2> flat = flattened(vertices, normal);
+    const std::vector<Vec3> flat = flattened(vertices, normal);
     std::vector<int> remaining;
     for (std::size_t i = 0; i < vertices.size(); ++i) remaining.push_back(static_cast<int>(i));
     const auto corner = [&](std::size_t i) {

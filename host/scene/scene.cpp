@@ -97,11 +97,11 @@ double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 // Along a coordinate axis, the disk extends from its centre by its radius times the sine of the angle between `axis`
 // and the coordinate axis.
-void extend_by_disk(Imath::Box3d& box, const Vec3& centre, double radius, const Vec3& axis) {
+void extend_by_disk(Box& box, const Vec3& centre, double radius, const Vec3& axis) {
     Vec3 extent;
     for (int i = 0; i < 3; ++i) extent[i] = std::abs(radius) * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
-    box.extendBy(centre - extent);
-    box.extendBy(centre + extent);
+    box.extend(centre - extent);
+    box.extend(centre + extent);
 }
 
 View turned(View view, double degrees) {
@@ -130,14 +130,14 @@ Scene random_view(Scene scene, std::uint64_t seed) {
     return scene;
 }
 
-Imath::Box3d scene_box(const Scene& scene) {
-    Imath::Box3d box;
+Box scene_box(const Scene& scene) {
+    Box box;
     for (const Sphere& s : scene.spheres) {
-        box.extendBy(s.centre - Vec3(std::abs(s.radius)));
-        box.extendBy(s.centre + Vec3(std::abs(s.radius)));
+        box.extend(s.centre - Vec3(std::abs(s.radius)));
+        box.extend(s.centre + Vec3(std::abs(s.radius)));
     }
     for (const Polygon& p : scene.polygons)
-        for (const Vec3& v : p.vertices) box.extendBy(v);
+        for (const Vec3& v : p.vertices) box.extend(v);
     for (const Cone& c : scene.cones) {
         const Vec3 axis = unit_vector(c.apex - c.base);
         extend_by_disk(box, c.base, c.base_radius, axis);

@@ -1,7 +1,5 @@
 // A scene as structs of double precision numbers, independent of machines, number formats and OpenCL.
 #pragma once
-#include <Imath/ImathBox.h>
-#include <Imath/ImathVec.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +10,13 @@
 #include <vector>
 
 #include "host/model/number_format.hpp"
+#include "host/scene/vector.hpp"
 #include "kernels/shared/job.h"
 
 namespace raya {
 
-using Vec3 = Imath::V3d;    // points and directions, scene units
-using Colour = Imath::V3d;  // linear red, green, blue; 1 = full intensity
+// Vec3 is also a point or a direction, in scene units.
+using Colour = Vec3;  // linear red, green, blue; 1 = full intensity
 
 /// Returns the largest magnitude of the coordinates.
 inline double largest_coordinate(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
@@ -160,11 +159,11 @@ inline constexpr double kMinElevationDegrees = 5, kMaxElevationDegrees = 75;
 Scene random_view(Scene scene, std::uint64_t seed);
 
 /// Extends `box` so that it contains a disk perpendicular to `axis`, which has length 1.
-void extend_by_disk(Imath::Box3d& box, const Vec3& centre, double radius, const Vec3& axis);
+void extend_by_disk(Box& box, const Vec3& centre, double radius, const Vec3& axis);
 
 /// Returns the axis-aligned bounding box of all spheres, polygons and cones, in scene units; the box is empty
-/// (isEmpty()) if the scene has only planes.
-Imath::Box3d scene_box(const Scene& scene);
+/// (is_empty()) if the scene has only planes.
+Box scene_box(const Scene& scene);
 
 // Chooses the power of two by which a scene's lengths are multiplied so that they fit the range of a number format. The
 // multiplication is exact, so the scale changes no bit of the image unless numbers come close to the format's limits.

@@ -155,6 +155,8 @@ namespace {
 
 Vec3 vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
+const Box kEverywhere{-Box().min, -Box().max};
+
 // Projects a point P onto the image: solves P - eye = c (corner + x column_step + y row_step) for depth c, column x and
 // row y.
 struct Projection {
@@ -180,10 +182,10 @@ struct Projection {
     double depth(const Vec3& p) const { return (p - eye).dot(normal) / corner.dot(normal); }
 
     // Returns column and row of P, which must be in front of the eye.
-    Imath::V2d pixel(const Vec3& p) const {
+    Vec3 pixel(const Vec3& p) const {
         const Vec3 flat = (p - eye) / depth(p) - corner;
         return {flat.dot(row_step.cross(normal)) / column_step.dot(row_step.cross(normal)),
-                flat.dot(column_step.cross(normal)) / row_step.dot(column_step.cross(normal))};
+                flat.dot(column_step.cross(normal)) / row_step.dot(column_step.cross(normal)), 0};
     }
 
     Vec3 eye, corner, column_step, row_step, normal;
@@ -207,8 +209,8 @@ std::vector<Vec3> clipped(const Projection& projection, const std::array<Vec3, 4
 
 // Extends the box, of columns x and rows y, by a face of the voxel at place `at`. The face lies in plane `k` of the
 // grid planes perpendicular to `axis`. `distance`: distance of plane `k` from the eye.
-void add_face(Imath::Box2d& box, const Projection& projection, const raya_grid& grid, const raya_place& at,
-              std::uint32_t axis, std::uint32_t k, double distance) {
+void add_face(Box& box, const Projection& projection, const raya_grid& grid, const raya_place& at, std::uint32_t axis,
+              std::uint32_t k, double distance) {
     const std::uint32_t second = (axis + 1) % 3, third = (axis + 2) % 3;
     std::array<Vec3, 4> face;
     for (std::uint32_t corner = 0; corner < 4; ++corner) {
@@ -218,11 +220,11 @@ void add_face(Imath::Box2d& box, const Projection& projection, const raya_grid& 
     }
     // The clipping depth is smaller than the depth of any visible point of the face.
     for (const Vec3& p : clipped(projection, face, distance / projection.max_distance / 2))
-        box.extendBy(projection.pixel(p));
+        box.extend(projection.pixel(p));
 }
 
 // Extends the box by a voxel. The box is infinite if no bound is known.
-void add_voxel(Imath::Box2d& box, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
+void add_voxel(Box& box, const Projection& projection, const raya_grid& grid, std::uint32_t voxel) {
     const raya_place at = raya_place_of(voxel, grid.divisions[0], grid.divisions[1]);
     bool contains_eye = true;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -241,10 +243,10 @@ void add_voxel(Imath::Box2d& box, const Projection& projection, const raya_grid&
             distance_below > 0 ? low <= box_low + slack : distance_above > 0 && high >= box_high - slack;
         if (!faces_eye) continue;
         // No bound is known if the eye is so close to the face that rounding may move the entry point by a pixel.
-        if (slack * projection.max_distance > distance * projection.pixel_distance) box.makeInfinite();
+        if (slack * projection.max_distance > distance * projection.pixel_distance) box = kEverywhere;
         add_face(box, projection, grid, at, axis, at.at[axis] + (distance_above > 0 ? 1 : 0), distance);
     }
-    if (contains_eye) box.makeInfinite();
+    if (contains_eye) box = kEverywhere;
 }
 
 }  // namespace
@@ -259,13 +261,13 @@ std::vector<PixelWindow> pixel_windows(const raya_job& job, const raya_grid& gri
     };
     std::vector<PixelWindow> windows;
     for (std::uint32_t node = 0; node < raya_nodes(torus); ++node) {
-        Imath::Box2d box;
+        Box box;
         const std::uint32_t voxels = raya_node_voxels(torus, grid, node);
-        if (voxels > 0 && format.fraction_bits < kMinWindowBits) box.makeInfinite();
-        for (std::uint32_t i = 0; i < voxels && !box.isInfinite(); ++i)
+        if (voxels > 0 && format.fraction_bits < kMinWindowBits) box = kEverywhere;
+        for (std::uint32_t i = 0; i < voxels && box != kEverywhere; ++i)
             add_voxel(box, projection, grid, raya_voxel_of_node(torus, grid, node, i));
         const double m = projection.margin;
-        if (box.isEmpty())
+        if (box.is_empty())
             windows.push_back({});
         else
             windows.push_back(

@@ -142,7 +142,7 @@ Box exact_box(const PackedJob& job, std::uint32_t number) {
     const std::size_t at = objects.polygons_at + polygon * RAYA_POLYGON_WORDS;
     Box box;
     for (std::uint32_t i = 0; i < job.words()[at + RAYA_POLYGON_CORNERS]; ++i)
-        box.extendBy(vector(job.words()[at + RAYA_POLYGON_CORNERS_AT] + i * RAYA_CORNER_WORDS));
+        box.extend(vector(job.words()[at + RAYA_POLYGON_CORNERS_AT] + i * RAYA_CORNER_WORDS));
     return box;
 }
 

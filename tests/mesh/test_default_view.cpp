@@ -1,5 +1,4 @@
 // The default camera shows the whole mesh, and no more than necessary.
-#include <Imath/ImathBox.h>
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -14,14 +13,14 @@ namespace raya {
 namespace {
 
 /// A mesh that consists of one triangle across a box with these corners. Up is z in STL, y in PLY.
-Scene triangle_in(const Imath::V3f& low, const Imath::V3f& high, bool z_up) {
-    const std::array<Imath::V3f, 3> corners = {low, high, {high.x, low.y, high.z}};
+Scene triangle_in(const std::array<float, 3>& low, const std::array<float, 3>& high, bool z_up) {
+    const std::array<std::array<float, 3>, 3> corners = {low, high, {high[0], low[1], high[2]}};
     std::string bytes = z_up ? std::string(80, ' ')
                              : "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
                                "property float y\nproperty float z\nelement face 1\n"
                                "property list uchar int vertex_indices\nend_header\n";
     if (z_up) append(bytes, std::uint32_t{1}), append(bytes, std::array<float, 3>{});
-    for (const Imath::V3f& corner : corners) append(bytes, std::array{corner.x, corner.y, corner.z});
+    for (const std::array<float, 3>& corner : corners) append(bytes, corner);
     if (z_up) append(bytes, std::uint16_t{0});
     if (!z_up) append(bytes, std::uint8_t{3}), append(bytes, std::array<std::uint32_t, 3>{0, 1, 2});
     return read_mesh(z_up ? "t.stl" : "t.ply", bytes).scene;
@@ -31,7 +30,7 @@ Scene triangle_in(const Imath::V3f& low, const Imath::V3f& high, bool z_up) {
 /// the image's side.
 double extent_in_image(const Scene& scene) {
     const View& view = scene.view;
-    const Imath::Box3d box = scene_box(scene);
+    const Box box = scene_box(scene);
     const Vec3 gaze = (view.at - view.from).normalized();
     const Vec3 right = gaze.cross(view.up).normalized(), top = right.cross(gaze);
     double extent = 0;
@@ -47,15 +46,16 @@ double extent_in_image(const Scene& scene) {
 }
 
 TEST_CASE("the default view shows the whole mesh in three-quarter view, with two lights", "[mesh]") {
-    const std::vector<std::pair<Imath::V3f, Imath::V3f>> boxes = {{{0, 0, 0}, {1, 1, 1}},
-                                                                  {{-1, -2, -3}, {100, 0, 4}},
-                                                                  {{5, 5, 5}, {5.001f, 9, 5.5f}},
-                                                                  {{1e20f, 0, 0}, {1.1e20f, 1e19f, 1e18f}},
-                                                                  {{-1e29f, 0, 0}, {1e29f, 1e29f, 1e29f}},
-                                                                  {{0, 0, 0}, {1e-20f, 2e-20f, 0}}};
+    const std::vector<std::pair<std::array<float, 3>, std::array<float, 3>>> boxes = {
+        {{0, 0, 0}, {1, 1, 1}},
+        {{-1, -2, -3}, {100, 0, 4}},
+        {{5, 5, 5}, {5.001f, 9, 5.5f}},
+        {{1e20f, 0, 0}, {1.1e20f, 1e19f, 1e18f}},
+        {{-1e29f, 0, 0}, {1e29f, 1e29f, 1e29f}},
+        {{0, 0, 0}, {1e-20f, 2e-20f, 0}}};
     for (const auto& [low, high] : boxes)
         for (const bool z_up : {false, true}) {
-            CAPTURE(low.x, high.x, z_up);
+            CAPTURE(low[0], high[0], z_up);
             const Scene scene = triangle_in(low, high, z_up);
             CHECK(view_error(scene.view).empty());
             CHECK(extent_in_image(scene) < 1);

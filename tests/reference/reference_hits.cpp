@@ -12,19 +12,19 @@ namespace {
 std::size_t as_index(int i) { return static_cast<std::size_t>(i); }
 
 /// Projects the point to two coordinates by dropping the axis of the normal's largest component.
-Imath::V2d flattened(const Vec3& point, const Vec3& normal) {
+Vec3 flattened(const Vec3& point, const Vec3& normal) {
     const int axis = dropped_axis(normal);
-    return {point[axis == 0 ? 1 : 0], point[axis == 2 ? 1 : 2]};
+    return {point[axis == 0 ? 1 : 0], point[axis == 2 ? 1 : 2], 0};
 }
 
 /// Returns true if the half line from the point towards larger u crosses an odd number of edges. An edge includes its
 /// end with the smaller v, but not its end with the larger v, so that a vertex between two edges is counted once.
 bool inside_outline(const std::vector<Vec3>& vertices, const Vec3& normal, const Vec3& point) {
-    const Imath::V2d p = flattened(point, normal);
+    const Vec3 p = flattened(point, normal);
     bool inside = false;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const Imath::V2d a = flattened(vertices[i], normal);
-        const Imath::V2d b = flattened(vertices[(i + 1) % vertices.size()], normal);
+        const Vec3 a = flattened(vertices[i], normal);
+        const Vec3 b = flattened(vertices[(i + 1) % vertices.size()], normal);
         if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
     }
     return inside;
@@ -99,7 +99,7 @@ Hit make_hit(const Scene& scene, const Ray& ray, double t, int number, int surfa
     const Surface& material = scene.surfaces[as_index(surface)];
     hit.colour = material.colour;
     if (material.checker) {
-        const Imath::V2d uv = flattened(hit.point, hit.geometric);
+        const Vec3 uv = flattened(hit.point, hit.geometric);
         const double squares = std::floor(uv.x / material.checker->size) + std::floor(uv.y / material.checker->size);
         hit.odd_square = std::fmod(squares, 2) != 0;
         hit.colour = hit.odd_square ? material.checker->odd : material.checker->even;

@@ -26,17 +26,17 @@ TEST_CASE("the bounding box of a cone touches its two circles", "[scene_box]") {
         const double sign = i % 2 == 0 ? 1 : -1;
         const Cone cone{random_vector(random, 5), sign * random.uniform(0, 2), random_vector(random, 5),
                         sign * random.uniform(0, 2), 0};
-        const Imath::Box3d box = scene_box(cone_scene(cone));
+        const Box box = scene_box(cone_scene(cone));
         const Vec3 axis = (cone.apex - cone.base).normalized();
         const Vec3 not_parallel = std::abs(axis.x) < 0.5 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
         const Vec3 u = axis.cross(not_parallel).normalized(), v = axis.cross(u);
-        Imath::Box3d circles_box;
+        Box circles_box;
         constexpr int kPoints = 720;
         for (int k = 0; k < kPoints; ++k) {
             const double angle = 2 * std::numbers::pi * k / kPoints;
             const Vec3 direction = u * std::cos(angle) + v * std::sin(angle);
-            circles_box.extendBy(cone.base + direction * cone.base_radius);
-            circles_box.extendBy(cone.apex + direction * cone.apex_radius);
+            circles_box.extend(cone.base + direction * cone.base_radius);
+            circles_box.extend(cone.apex + direction * cone.apex_radius);
         }
         CAPTURE(i);
         for (int axis_number = 0; axis_number < 3; ++axis_number) {
@@ -52,11 +52,11 @@ TEST_CASE("the bounding box contains spheres of either sign of radius and polygo
           "[scene_box]") {
     Scene scene;
     scene.planes.push_back({{0, 0, 1}, 7, 0});
-    CHECK(scene_box(scene).isEmpty());
+    CHECK(scene_box(scene).is_empty());
     scene.spheres.push_back({{1, 2, 3}, -2, 0});
-    CHECK(scene_box(scene) == Imath::Box3d({-1, 0, 1}, {3, 4, 5}));
+    CHECK(scene_box(scene) == Box({-1, 0, 1}, {3, 4, 5}));
     scene.polygons.push_back({{{0, 0, 0}, {9, 0, 0}, {0, -4, 0}}, {}, 0});
-    CHECK(scene_box(scene) == Imath::Box3d({-1, -4, 0}, {9, 4, 5}));
+    CHECK(scene_box(scene) == Box({-1, -4, 0}, {9, 4, 5}));
 }
 
 }  // namespace
