@@ -12,7 +12,7 @@ inline constexpr const char* kEncoderFunction = "raya_encode_picture";
 
 /// An image to encode. `values` has the shape [height, width, channels]; row 0 is the top.
 struct PictureToEncode {
-    const char* format;  // OpenImageIO's name: "png", "tiff" or "jpeg" (8-bit codes) or "exr" (floats)
+    const char* format;  // OpenImageIO's name: "tiff" or "jpeg" (8-bit codes) or "exr" (floats)
     int width;           // pixels
     int height;          // pixels
     int channels;        // 3, or 1: channel Y

@@ -75,12 +75,10 @@ void append_chunk(std::string& file, const char* name, std::string_view data) {
                           crc32(0, static_cast<const Bytef*>(bytes), static_cast<uInt>(checked.size()))));
 }
 
-// Returns the filtered rows of the image: for each the filter type 2 (Up), and the differences between its bytes and
+// Returns the filtered rows of an image: for each the filter type 2 (Up), and the differences between its bytes and
 // those above.
-std::string filtered_rows(const Image& image) {
+std::string filtered_rows(const std::vector<std::uint8_t>& codes, std::size_t row_bytes) {
     constexpr char kUp = 2;
-    const std::vector<std::uint8_t> codes = srgb_codes(image.rgb, 0);
-    const std::size_t row_bytes = kChannels * static_cast<std::size_t>(image.width);
     std::string rows;
     for (std::size_t i = 0; i < codes.size(); ++i) {
         if (i % row_bytes == 0) rows += kUp;
@@ -95,10 +93,24 @@ std::string deflated(const std::string& text) {
     void* const output = bytes.data();
     const void* const input = text.data();
     const int code = compress2(static_cast<Bytef*>(output), &size, static_cast<const Bytef*>(input),
-                               static_cast<uLong>(text.size()), Z_BEST_COMPRESSION);
+                               static_cast<uLong>(text.size()), Z_DEFAULT_COMPRESSION);
     if (code != Z_OK) throw std::bad_alloc();  // the only possible error: the buffer is large enough
     bytes.resize(size);
     return bytes;
+}
+
+// Portable network graphics (PNG, ISO/IEC 15948), from three 8-bit codes per pixel.
+std::string png_bytes(int width, int height, const std::vector<std::uint8_t>& codes) {
+    std::string header;
+    append_word(header, static_cast<std::uint32_t>(width));
+    append_word(header, static_cast<std::uint32_t>(height));
+    header += {8, 2, 0, 0, 0};  // bit depth 8, RGB, deflate, a filter type for each row, no interlacing
+    std::string file = "\x89PNG\r\n\x1a\n";
+    append_chunk(file, "IHDR", header);
+    append_chunk(file, "sRGB", std::string(1, '\0'));  // rendering intent: perceptual
+    append_chunk(file, "IDAT", deflated(filtered_rows(codes, kChannels * static_cast<std::size_t>(width))));
+    append_chunk(file, "IEND", {});
+    return file;
 }
 
 }  // namespace
@@ -107,16 +119,7 @@ std::string plain_png(const Image& image) {
     if (image.width < 1 || image.height < 1 ||
         image.rgb.size() != kChannels * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
         throw std::logic_error("plain_png: the image must have pixels of three floats");
-    std::string header;
-    append_word(header, static_cast<std::uint32_t>(image.width));
-    append_word(header, static_cast<std::uint32_t>(image.height));
-    header += {8, 2, 0, 0, 0};  // bit depth 8, RGB, deflate, a filter type for each row, no interlacing
-    std::string file = "\x89PNG\r\n\x1a\n";
-    append_chunk(file, "IHDR", header);
-    append_chunk(file, "sRGB", std::string(1, '\0'));  // rendering intent: perceptual
-    append_chunk(file, "IDAT", deflated(filtered_rows(image)));
-    append_chunk(file, "IEND", {});
-    return file;
+    return png_bytes(image.width, image.height, srgb_codes(image.rgb, 0));
 }
 
 namespace {
@@ -188,7 +191,6 @@ std::string lower_case_extension(const fs::path& path, std::span<const std::stri
 
 // Returns OpenImageIO's name of the format, or null for a format that raya writes without OpenImageIO.
 const char* encoded_format(const std::string& extension) {
-    if (extension == ".png") return "png";
     if (extension == ".exr") return "exr";
     if (extension == ".tif" || extension == ".tiff") return "tiff";
     if (extension == ".jpg" || extension == ".jpeg") return "jpeg";
@@ -197,7 +199,7 @@ const char* encoded_format(const std::string& extension) {
 
 [[noreturn]] void refuse_to_encode(const fs::path& path, const std::string& reason, const std::string& remedy = "") {
     // A format of the same precision that needs no library.
-    const char* plain_extension = stores_8bit_codes(path) ? ".ppm" : ".pfm";
+    const char* plain_extension = stores_8bit_codes(path) ? ".png" : ".pfm";
     throw UserError(
         fmt::format("cannot write '{}': {}; {}name a {} file instead", path.string(), reason, remedy, plain_extension));
 }
@@ -256,7 +258,9 @@ void write_pixels(const fs::path& path, const Pixels& pixels, std::span<const st
     if (extension == ".pfm") return write_whole_file(path, pfm_bytes(pixels));
     if (extension == ".exr") return write_whole_file(path, encode(path, format, pixels, pixels.values.data()));
     const std::vector<std::uint8_t> codes = srgb_codes(pixels.values, exposure);
-    write_whole_file(path, format == nullptr ? ppm_bytes(pixels, codes) : encode(path, format, pixels, codes.data()));
+    write_whole_file(path, format != nullptr     ? encode(path, format, pixels, codes.data())
+                           : extension == ".png" ? png_bytes(pixels.width, pixels.height, codes)
+                                                 : ppm_bytes(pixels, codes));
 }
 
 }  // namespace

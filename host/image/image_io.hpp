@@ -1,5 +1,5 @@
 // Image files: PNG, TIFF, JPEG and PPM (8-bit codes), OpenEXR and PFM (linear floats). The same image always gives the
-// same bytes. PPM and PFM need no library.
+// same bytes. Only TIFF, JPEG and OpenEXR need OpenImageIO.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -47,11 +47,10 @@ std::uint8_t srgb_code(double linear);
 /// of exp2().
 std::vector<std::uint8_t> srgb_codes(std::span<const float> values, double exposure);
 
-// A PNG encoder that does not need OpenImageIO, for images in HTML pages and reports.
+// PNG files in memory, for HTML pages and reports.
 
-/// Returns the bytes of a PNG file (ISO/IEC 15948). It stores the 8-bit sRGB code nearest to each
-/// value clamped to 0..1, as write_image() does by default. Throws std::logic_error if `image` has no pixels
-/// or does not have 3 floats per pixel.
+/// Returns the bytes of the PNG file that write_image() writes by default. Throws std::logic_error if `image` has no
+/// pixels or does not have 3 floats per pixel.
 std::string plain_png(const Image& image);
 
 // Reduced images for reports and pages.

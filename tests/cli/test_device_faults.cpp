@@ -267,17 +267,17 @@ bool loads(const Arguments& arguments, const std::string& parts, int code = 0) {
 
 TEST_CASE("raya loads libraries only when it needs them: drivers, OpenImageIO, MPI", "[cli]") {
     const ScratchFolder outputs;
-    const std::string planes = scene_file("planes"), image = outputs / "x.png", missing = outputs / "none";
+    const std::string planes = scene_file("planes"), image = outputs / "x.tif", missing = outputs / "none";
     const Arguments small = {"--size", "16", "--pes", "16", "--lanes", "4"};
     CHECK_FALSE(loads({"--version"}, "raya_|OpenImageIO|libtbb|libmpi|libpocl|libLLVM"));
     CHECK_FALSE(loads({"devices"}, "raya_|OpenImageIO|libtbb|libmpi"));
-    Arguments render = {"render", planes, "-o", outputs / "x.ppm"};
+    Arguments render = {"render", planes, "-o", outputs / "x.png"};
     render.insert(render.end(), small.begin(), small.end());
     CHECK_FALSE(loads(render, "raya_|OpenImageIO|libtbb|libmpi"));
     render[3] = image;
     CHECK(loads(render, "raya_pictures"));
     for (const Arguments& refused : {Arguments{"render", missing, "-o", image},
-                                     {"render", planes, "-o", outputs / "none/x.png"},
+                                     {"render", planes, "-o", outputs / "none/x.tif"},
                                      {"render", planes, "-o", image, "--size", "0"},
                                      {"render", planes, "-o", image, "--kernel-dir", missing},
                                      {"bench", "--compare", missing},

@@ -36,7 +36,7 @@ struct Installation {
         const ScratchFolder outputs;
         ::chmod(outputs.path().c_str(), 0777);
         return run_raya(
-            {"render", scene_file("planes"), "-o", outputs / "x.png", "--size", "8", "--pes", "8", "--lanes", "4",
+            {"render", scene_file("planes"), "-o", outputs / "x.tif", "--size", "8", "--pes", "8", "--lanes", "4",
              "-q"},
             {.variables = {{"POCL_CACHE_DIR", as_nobody ? outputs.path().string() : ::getenv("POCL_CACHE_DIR")}},
              .as_nobody = as_nobody,
@@ -75,7 +75,7 @@ TEST_CASE("raya loads modules only from its own folder, or from ../lib/raya if i
         const RunOutcome image_run = foreign.run(), rank_run = foreign.run_as_rank();
         INFO(image_run.describe() + rank_run.describe());
         CHECK(image_run.code == 2);
-        CHECK_THAT(image_run.err, Contains("there is no file '") && Contains("/raya_pictures.so'") && Contains(".ppm"));
+        CHECK_THAT(image_run.err, Contains("there is no file '") && Contains("/raya_pictures.so'") && Contains(".png"));
         CHECK(rank_run.code == 2);
         CHECK_THAT(rank_run.err, Contains("there is no file '") && Contains("/raya_mpi.so'"));
     }

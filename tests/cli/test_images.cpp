@@ -21,7 +21,7 @@ TEST_CASE("render: loads OpenCL drivers before the image encoder module", "[cli]
     const ScratchFolder scratch;
     const RunOptions log_libraries{.variables = {{"LD_DEBUG", "libs"}}};
     const RunOutcome run =
-        run_raya({"render", scene_file("planes"), "-o", scratch / "x.png", "--size", "4", "--pes", "1", "--lanes", "4"},
+        run_raya({"render", scene_file("planes"), "-o", scratch / "x.tif", "--size", "4", "--pes", "1", "--lanes", "4"},
                  log_libraries);
     CHECK(run.code == 0);
     const std::size_t driver = run.err.find("/libpocl"), module = run.err.find("raya_pictures.so");

@@ -43,15 +43,15 @@ echo "the container's files: $((bytes / 1000000)) MB"
 output=$(in_root raya render $scene -o /root/c.ppm) || fail "render: $output"
 [[ $output == *"($hash)"* ]] || fail "wrong image: $output"
 in_root raya verify --quick || fail "verify --quick"
-code=0 output=$(in_root raya render $scene -o /root/c.png 2>&1) || code=$?
-[[ $code == 2 && $output == *"install OpenImageIO"*"libopenimageio"* ]] || fail "PNG without OpenImageIO: $code: $output"
+code=0 output=$(in_root raya render $scene -o /root/c.exr 2>&1) || code=$?
+[[ $code == 2 && $output == *"install OpenImageIO"*"libopenimageio"* ]] || fail "EXR without OpenImageIO: $code: $output"
 
 if [[ -n ${RAYA_THOROUGH-} ]]; then
     cp -n "$build"/debs/*.deb "$bare/var/cache/apt/archives/" 2>/dev/null || mkdir -p "$bare/var/cache/apt/archives"
     in_root apt-get -qq update
     in_root sh -c 'apt-get install -qq -y --reinstall /out/raya_*.deb $(dpkg-deb -f /out/raya_*.deb Recommends | grep -o "libopenimageio[^ ,]*")' >"$bare.log" 2>&1 || fail "$(tail "$bare.log")"
-    output=$(in_root raya render $scene -o /root/c.png) || fail "render: $output"
-    [[ $output == *"($hash)"* ]] || fail "wrong PNG: $output"
+    output=$(in_root raya render $scene -o /root/c.exr) || fail "render: $output"
+    [[ $output == *"($hash)"* ]] || fail "wrong EXR: $output"
 fi
 in_root sh -c 'apt-get remove -qq -y raya' >"$bare.log" 2>&1 || fail "$(<"$bare.log")"
 [[ -z $(find "$bare/usr" -path '*raya*' -print -quit) ]] || fail "left behind: $(find "$bare/usr" -path '*raya*')"

@@ -90,7 +90,7 @@ mv "$scratch/raya_import" "$prefix/lib/raya"
 
 # Without the image module, raya refuses to write a PNG, with a remedy, and still writes PPM.
 rm "$prefix/lib/raya/raya_pictures.so"
-run_installed raya render "$prefix/share/raya/scenes/centre.nff" -o centre.png
+run_installed raya render "$prefix/share/raya/scenes/centre.nff" -o centre.exr
 expect 2 "there is no file '$prefix/lib/raya/raya_pictures.so"
 expect 2 "name a .ppm file instead"
 run_installed raya render "$prefix/share/raya/scenes/centre.nff" -o centre.ppm

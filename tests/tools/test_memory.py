@@ -19,7 +19,7 @@ BANDED_RENDER = ["render", SCENE, "--size", "16", "--lanes", "1", "--format", "f
 # {name: (arguments, files that the command reads)}
 COMMANDS = {
     "render": (SMALL_RENDER + ["-o", "x.ppm", "--report", "x.json", "--cost", "x.pfm", "--trace", "x.trace.json"], []),
-    "png": (SMALL_RENDER + ["-o", "x.png"], []),
+    "tiff": (SMALL_RENDER + ["-o", "x.tif"], []),
     "page": (["page", "saved.json", "-o", "x.html"], ["saved.json"]),
     "keep": (BANDED_RENDER, []),
     "resume": (BANDED_RENDER + ["--resume"], ["s.rst"]),
@@ -30,7 +30,7 @@ LIMIT_S = 120  # seconds; a run takes half a second on an idle machine
 
 def comparable(name, content):
     """Returns the part of a file that is equal in every run: pixels of an image, names of a report's members, or the end of another complete file."""
-    if name.endswith((".ppm", ".pfm", ".png")):
+    if name.endswith((".ppm", ".pfm", ".tif")):
         return hashlib.sha256(content).hexdigest()
     if name == "x.json":
         return sorted(json.loads(content))
