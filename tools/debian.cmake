@@ -33,7 +33,7 @@ License: Expat
 License: Expat
  ${licence}
 ")
-foreach(package IN ITEMS opencl-clhpp-headers libcli11-dev nlohmann-json3-dev libimath-dev)
+foreach(package IN ITEMS opencl-clhpp-headers libcli11-dev nlohmann-json3-dev)
     file(COPY_FILE /usr/share/doc/${package}/copyright ${doc}/licences-${package})
     file(MAKE_DIRECTORY ${doc}/licences)
     file(RENAME ${doc}/licences-${package} ${doc}/licences/${package})

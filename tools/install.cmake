@@ -40,7 +40,7 @@ install(FILES tools/raya.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completi
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/raya/scenes FILES_MATCHING PATTERN "*.nff" PATTERN "README.md")
 # Documents are installed in the folder structure of the sources, so that their links work.
 install(FILES README.md CONTRIBUTING.md CHANGELOG.md SECURITY.md LICENSE DESTINATION ${doc})
-install(DIRECTORY docs DESTINATION ${doc} FILES_MATCHING REGEX "\\.(md|png|svg|dot|yml|json|ipynb|py|csv|bib|cff)$|raya-health$")
+install(DIRECTORY docs DESTINATION ${doc} FILES_MATCHING REGEX "\\.(md|png|svg|dot|yml|json|ipynb|py|csv|bib|cff|toml|txt)$|raya-health$")
 install(DIRECTORY ${PROJECT_BINARY_DIR}/schema DESTINATION ${doc}/docs)
 install(CODE "find_program(PYTHON3 python3)
     if(PYTHON3)
@@ -73,8 +73,8 @@ kernels. Every device gives the same image, bit for bit. raya measures the
 load balance of these machines, and verifies OpenCL devices, drivers and
 compilers by single operations, ray hits and whole images.
 
-raya writes PPM and PFM files, and PNG and OpenEXR files if OpenImageIO is
-installed.")
+raya writes PNG, PPM and PFM files, and TIFF, JPEG and OpenEXR files if
+OpenImageIO is installed.")
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

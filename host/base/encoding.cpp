@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#define XXH_INLINE_ALL  // the functions in the header, so that no library is needed
 #include <xxhash.h>
 #include <zlib.h>
 

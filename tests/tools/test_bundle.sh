@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Tests tools/bundle: the packed program runs without raya's build dependencies; tools/bundle refuses a program that needs other libraries.
-#   test_bundle.sh BUILD     the build folder, with the target `bundled` built
+# Tests the light build (docs/verify.md) and tools/bundle: the packed program runs without raya's build dependencies; tools/bundle refuses a program
+# that needs other libraries.
+#   test_bundle.sh BUILD     the build folder. The light build is made as in a checkout of PoCL (docs/ci/pocl), in BUILD/light
 set -euo pipefail
 build=$(readlink -f "$1")
 root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
@@ -10,9 +11,30 @@ fail() { echo "FAILED line ${BASH_LINENO[0]}: $1"; exit 1; }
 bundle() { code=0; out=$("$root/tools/bundle" "$@" 2>&1) || code=$?; }
 expect() { [[ $code == "$1" && $out == *"$2"* ]] || fail "exit code $code: $out"; }  # expect CODE TEXT
 
-bundle --build "$build" -o "$scratch/one.tar.gz"
+mkdir -p "$build/light/pocl/examples/raya"
+cp "$root/docs/ci/pocl/CMakeLists.txt" "$build/light/pocl/examples/raya"
+cat >"$build/light/pocl/CMakeLists.txt" <<'EOF'
+cmake_minimum_required(VERSION 3.25)
+project(pocl NONE)
+enable_testing()
+include(ExternalProject)
+set(TESTS_USE_ICD ON)
+set(TESTSUITE_BASEDIR ${PROJECT_BINARY_DIR}/examples)
+add_custom_target(prepare_examples)
+add_subdirectory(examples/raya)
+EOF
+light=$build/light/examples/raya/src/raya-build
+if ! cmake -S "$build/light/pocl" -B "$build/light" -DRAYA_SOURCE="$root" >"$scratch/log" 2>&1 ||
+    ! CMAKE_BUILD_PARALLEL_LEVEL=2 cmake --build "$build/light" --target prepare_examples >"$scratch/log" 2>&1 ||
+    ! ctest --test-dir "$build/light" -L raya --output-on-failure >"$scratch/log" 2>&1 ||
+    ! RAYA=$light/raya TEST_TYPE=smoke TOTAL_SHARDS=32 python3 "$root/docs/ci/therock/test_raya.py" >"$scratch/log" 2>&1; then
+    fail "$(<"$scratch/log")"
+fi
+[[ $(tail -n 1 "$scratch/log") == "failed tests: none" ]] || fail "$(<"$scratch/log")"
+! grep -E '^(OpenImageIO|assimp|Imath|pybind11|Catch2)\w*:' "$light/CMakeCache.txt" || fail "the light build looks for these libraries"
+bundle --build "$light" -o "$scratch/one.tar.gz"
 expect 0 "one.tar.gz: "
-bundle --build "$build" -o "$scratch/two.tar.gz"
+bundle --build "$light" -o "$scratch/two.tar.gz"
 cmp "$scratch"/{one,two}.tar.gz || fail "a second run makes another tarball"
 (($(stat -c %s "$scratch/one.tar.gz") < 20000000)) || fail "the tarball has 20 MB or more"
 glibc=$(grep -oE 'glibc [0-9.]+' <<<"$out")
@@ -46,6 +68,8 @@ loaded=$(grep -vF "$POCL_CACHE_DIR/" <<<"$loaded")  # without compiled kernels
 ! grep -E "$root/|raya_|OpenImageIO|libmpi|libfmt|libxxhash" <<<"$loaded" || fail "a render loads these libraries"
 [[ $(head -c 15 "$scratch/home/centre.ppm") == $'P6\n256 256\n255' ]] || fail "the image is not a PPM"
 run_unpacked "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.png"
+expect 0 "(474a384374e81c5144a0e5405232a750)"
+run_unpacked "$top/raya" render "$top/scenes/centre.nff" -o "$scratch/home/centre.exr"
 expect 2 "there is no file '$top/raya_pictures.so"
 run_unpacked "$top/gpu_day" --out "$scratch/day"
 expect 0 "| 5 | large pictures"
@@ -62,14 +86,14 @@ if [[ -e $top/raya_mpi.so ]] && ldd "$top/raya_mpi.so" | grep -q 'libmpi.* => /'
 fi
 
 # Bad options, and a build that cannot be packed: no file is written.
-mkdir -p "$scratch/build/standalone"
+mkdir "$scratch/build"
 bundle --nonsense
 expect 2 "unknown option"
 bundle --build "$build" -o "$scratch/none/x.tar.gz"
 expect 2 "does not exist"
 bundle --build "$scratch/build" -o "$scratch/x.tar.gz"
-expect 3 "no $scratch/build/standalone/raya"
-ln -s "$build/raya" "$scratch/build/standalone"
+expect 3 "no $scratch/build/raya"
+ln -s "$build/raya" "$scratch/build"
 bundle --build "$scratch/build" -o "$scratch/x.tar.gz"
 expect 4 "needs libfmt.so"
 [[ ! -e $scratch/x.tar.gz ]] || fail "a tarball was written"

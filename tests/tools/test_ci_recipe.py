@@ -57,7 +57,7 @@ def is_right(arguments, raya, scratch):
         return tool.exists() and all(not option.startswith("-") or option in tool.read_text() for option in options)
     if name == "cmake":
         presets = [preset["name"] for preset in json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]]
-        return options[:2] == ["--build", "build"] or options[0] == "--preset" and options[1] in presets
+        return options[:2] in (["--build", "build"], ["--build", "light"]) or options == ["-B", "light", "-DRAYA_LIGHT=ON"] or options[0] == "--preset" and options[1] in presets
     if name == "ctest":
         labels = re.search(r'run_tests build -LE "(.*?)"', (ROOT / "tools/test").read_text())[1]
         return options[options.index("-LE") + 1] == labels

@@ -1,10 +1,12 @@
 // _dl_find_object() for C libraries before glibc 2.35. gcc's unwinder calls it to find unwind tables when an exception
 // is thrown. It is the only function of glibc 2.35 that a statically linked unwinder needs. The function
-// is hidden from other libraries.
+// is hidden from other libraries. An older C library does not declare it, and a compiler for it does not call it.
 #include <dlfcn.h>
 #include <link.h>
 
 #include <cstdint>
+
+#ifdef DLFO_EH_SEGMENT_TYPE
 
 namespace {
 
@@ -38,3 +40,4 @@ extern "C" __attribute__((visibility("hidden"))) int _dl_find_object(void* addre
     Search search{reinterpret_cast<std::uintptr_t>(address), result};
     return ::dl_iterate_phdr(find_object, &search) == 1 && result->dlfo_eh_frame != nullptr ? 0 : -1;
 }
+#endif
