@@ -204,7 +204,7 @@ TEST_CASE("verify as a GoogleTest program, and as an OpenCL conformance test", "
         {"machine.local_memory_and_barriers_32_work_items", "SKIPPED"}};
     CHECK(results_for_deqp_runner(run.out) == expected);
     const Document json = json_of(results);
-    CHECK((json["cmd"] == RAYA_PROGRAM && json["args"][0] == "verify" && json["results"].size() == expected.size()));
+    CHECK((json["cmd"] == "raya" && json["args"][0] == "verify" && json["results"].size() == expected.size()));
     for (const auto& [id, status] : expected)
         CHECK(json["results"][id] == (status == "OK" ? "pass" : status == "FAILED" ? "fail" : "skip"));
     check_refused(ScratchFolder(), {"verify", "--gtest_filter=number.[ef]*"}, 2, {"--gtest_filter", "select no check"});
