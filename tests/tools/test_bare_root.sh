@@ -23,7 +23,7 @@ output=$(in_root "/$top/raya" render "/$top/scenes/centre.nff" -o /root/centre.p
 in_root "/$top/raya" verify --quick || fail "verify --quick"
 in_root "/$top/gpu_day" --out /root/day --small --stage 1 || fail "gpu_day"
 
-packages=$(sed -n '/^    apt-get install g++/,/[^\\]$/{s/apt-get install//; s/\\//; p}' "$root/docs/verify.md")
+packages=$(sed -n 's/^    apt-get install//p' "$root/docs/verify.md")
 # shellcheck disable=SC2086  # several packages
 in_root apt-get install -qq -y --no-install-recommends $packages >"$bare/root/log" 2>&1 || fail "$(<"$bare/root/log")"
 keep_packages "$build"
