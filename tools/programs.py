@@ -1,17 +1,20 @@
-"""Starts programs for the tools in this folder: without input, with a time limit, and so that no process stays behind."""
+"""What the tools in this folder share: starting programs without input, with a time limit, and so that no process stays behind; tables; whole files."""
+from __future__ import annotations  # Python 3.8, on computers with a GPU
 import contextlib, os, signal, subprocess
 from typing import NamedTuple
+
+RUNNING = set()  # of started()
 
 
 class Done(NamedTuple):
     """code: the exit code, -N after signal N, None after the time limit; out, err: what the program printed."""
     code: int | None
     out: str
-    err: str
+    err: str | None
 
     @property
     def text(self):
-        return self.out + self.err
+        return self.out + (self.err or "")
 
 
 @contextlib.contextmanager
@@ -19,20 +22,38 @@ def started(command, **options):
     """Starts a program, with options of subprocess.Popen. At the end of the block, the program and all processes that it has started are killed."""
     process = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, errors="replace",
                                start_new_session=True, **options)
+    RUNNING.add(process)
     try:
         yield process
     finally:
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
+        kill(process)
         process.wait()
+        RUNNING.discard(process)
 
 
-def run(command, limit=None, **options):
+def kill(process):
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+
+
+def run(command, limit=None, stderr=subprocess.PIPE, **options):
     """Runs a program for at most `limit` seconds. Returns Done."""
-    with started(command, stderr=subprocess.PIPE, **options) as process:
+    with started(command, stderr=stderr, **options) as process:
         try:
             out, err = process.communicate(timeout=limit)
         except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)
+            kill(process)
             return Done(None, *process.communicate())
         return Done(process.returncode, out, err)
+
+
+def markdown(head, rows):
+    """Returns a table in Markdown; cells are texts."""
+    return "".join(f"| {' | '.join(row)} |\n" for row in [head, ["---"] * len(head), *rows])
+
+
+def write_whole(path, text):
+    """Writes a file that is complete or unchanged."""
+    part = path.with_name(path.name + ".part")
+    part.write_text(text)
+    part.replace(path)

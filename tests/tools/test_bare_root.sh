@@ -9,7 +9,7 @@ root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
 # shellcheck source=tests/tools/bare_root.sh
 source "$root/tests/tools/bare_root.sh"
 make_bare_root "$build"
-in_root apt-get install -qq -y --no-install-recommends pocl-opencl-icd >"$bare/root/log" 2>&1 || fail "$(<"$bare/root/log")"
+in_root apt-get install -qq -y --no-install-recommends pocl-opencl-icd python3 >"$bare/root/log" 2>&1 || fail "$(<"$bare/root/log")"
 keep_packages "$build"
 [[ -z $(find "$bare/usr/lib" -name 'libfmt.so*' -o -name 'libOpenImageIO*' -o -name 'libxxhash.so*' -o -name 'libOpenCL.so*' -o -name 'libmpi.so*') ]] ||
     echo "note: some libraries that the program contains are also installed"

@@ -6,8 +6,8 @@ root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 day=$scratch/bundle out=$scratch/out
-mkdir "$day" "$out"
-cp -r "$root"/{tools/gpu_day,tests/portability/gpu_day.csv,scenes} "$day"
+mkdir -p "$day" "$out/steps"
+cp -r "$root"/{tools/gpu_day,tools/programs.py,tools/renders.py,tests/portability/gpu_day.csv,scenes} "$day"
 
 fail() { echo "FAILED line ${BASH_LINENO[0]}: $1"; echo "$page"; cat "$scratch/err"; exit 1; }
 gpu_day() { code=0; page=$("$day/gpu_day" --out "$out" --small "$@" 2>"$scratch/err") || code=$?; }
@@ -16,7 +16,7 @@ expect() {  # expect CODE TEXT...
     local text
     for text in "${@:2}"; do [[ $page$(<"$scratch/err") == *"$text"* ]] || fail "no '$text'"; done
 }
-count_finished() { find "$out" -name '*.code' | wc -l; }
+count_finished() { find "$out/steps" -name '*.txt' | wc -l; }
 
 # Rows that are in both renders.csv and gpu_day.csv must be equal. An image has one hash for all accelerators, machines and numbers of nodes.
 common=0
@@ -66,7 +66,7 @@ case $1 in
         printf '  "shading": {\n    "hits": %d,\n    "lit": %d,\n    "highlights": %d\n  },\n' "${n[@]:15:3}" >>"$report"
         printf '  "load": {\n    "mean": 1.5,\n    "per_pe": [\n      %d,\n      1\n    ],\n    "trace": {\n      "per_pe": [\n        5\n      ]\n    }\n  },\n' $((n[18] - 1)) >>"$report"
         ((n[20] == 0)) || printf '  "torus": {\n    "discarded": %d,\n    "packets": {\n      "primary": {\n        "made": %d,\n        "ended": 1\n      },\n      "return": {\n        "made": 2,\n        "ended": 2\n      }\n    },\n    "hops": %d\n  },\n' "${n[19]}" $((n[20] - 2)) "${n[21]}" >>"$report"
-        printf '  "measured": {\n    "hits": 3\n  }\n}\n' >>"$report"
+        printf '  "image": {\n    "hash": "%s"\n  },\n  "measured": {\n    "hits": 3\n  }\n}\n' "$hash" >>"$report"
         echo "roof    trace: compute bound"
         echo "image   x.ppm ($hash)" ;;
 esac
@@ -95,19 +95,19 @@ expect 0 "None of the steps that ran" "64 x 64, 30 spheres" "balls 2, bvh" "roof
 [[ $page != *"not done"* && $page != *"not measured"* ]] || fail "the page is not complete"
 [[ $page == "$(<"$out/page.md")" ]] || fail "page.md differs from the printed page"
 [[ -s $out/page.html ]] || fail "there is no page.html"
-[[ $(grep -c '^{"name": .*"verdict": "right"' "$out/report.json") == $(cat "$out"/steps/*.code | grep -c ' right$') ]] || fail "report.json has other steps"
-! command -v python3 >/dev/null || python3 -m json.tool "$out/report.json" >/dev/null || fail "report.json is not JSON"
+right=$(python3 -c 'import json, sys; print(sum(step["verdict"] == "right" for step in json.load(sys.stdin)["steps"]))' <"$out/report.json")
+[[ $right == $(grep -l '^\[stage ., [0-9]* s\] right$' "$out"/steps/*.txt | wc -l) ]] || fail "report.json has other steps"
 (($(wc -l <"$out/page.md") < 130)) || fail "page.md has 130 lines or more"
 
 # A wrong count; then a wrong hash.
 sed -i 's/^\(cones,--format spa22 --accel bvh,[^,]*,400,400\),[0-9]*,/\1,11,/' "$day/gpu_day.csv"
 rm "$out"/steps/hash-bvh-cones-spa22.*
 gpu_day --stage 3
-expect 4 "bvh: 3 of 4 right" "- hash-bvh-cones-spa22: wrong counts: reflected is 106, right is 11"
+expect 4 "bvh: 3 of 4 right" "- hash-bvh-cones-spa22: wrong counts: reflected is 106, right: 11"
 sed 's/^\(cones,--format spa22 --accel bvh\),.*/\1,11111111111111111111111111111111/' "$day/right.csv" >"$day/gpu_day.csv"
 rm "$out"/steps/hash-bvh-cones-spa22.*
 gpu_day --stage 3
-expect 4 "| 3 | hashes | 15 | 1 | 0" "bvh: 3 of 4 right" "- hash-bvh-cones-spa22: wrong image b2cf660716baa62806768b79dbedff7b, right is 11111111111111111111111111111111"
+expect 4 "| 3 | hashes | 15 | 1 | 0" "bvh: 3 of 4 right" "- hash-bvh-cones-spa22: wrong image b2cf660716baa62806768b79dbedff7b; right: 11111111111111111111111111111111"
 expect 4 "fp32, trace kernel | 5000 | 5120 | reached" "a third of the fp32 rate | 1706.67 | 2000.5 | reached" "1000 | 800 | missed"
 
 # Each fault in a new folder: the page names the failed step, and the other steps run.
@@ -123,5 +123,5 @@ expect 4 "- verify-full-2: exit code 4" "FAIL  geometry  grid" "| 3 | hashes | 1
 gpu_day --nonsense
 expect 2 "gpu_day: "
 code=0 page=$("$day/gpu_day" --all 2>"$scratch/err") || code=$?
-expect 2 "--out DIR is required"
+expect 2 "required: --out"
 echo "tools/gpu_day: as expected"

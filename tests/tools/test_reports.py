@@ -137,13 +137,13 @@ class Reports:
         """Makes a report of tools/gpu_day with steps that are right, wrong, late or impossible on this machine."""
         steps = self.folder / "day/steps"
         steps.mkdir(parents=True)
-        # (step, "STAGE SECONDS VERDICT", output)
-        for name, code, text in [("devices", "1 0 right", "$ raya devices\nGPU"),
-                                 ("verify-quick", "1 12 exit code 4", "$ raya verify --quick\nGPU (maker, driver 1)\nFAIL  grid \"a\\b\""),
-                                 ("goal-spheres-group32", "5 3 right", "$ raya bench\ntrace  fp32  1  32  5120.5  5"),
-                                 ("hash-ring-cones-fp32", "3 1 late", "not started"), ("ranks", "5 0 not here: no mpirun", "")]:
-            (steps / f"{name}.code").write_text(code + "\n")
-            (steps / f"{name}.txt").write_text(text + "\n")
+        # (step, verdict, output)
+        for name, verdict, text in [("devices", "[stage 1, 0 s] right", "$ raya devices\nGPU"),
+                                    ("verify-quick", "[stage 1, 12 s] exit code 4", "$ raya verify --quick\nGPU (maker, driver 1)\nFAIL  grid \"a\\b\""),
+                                    ("goal-spheres-group32", "[stage 5, 3 s] right", "$ raya bench\ntrace  fp32  1  32  5120.5  5"),
+                                    ("hash-ring-cones-fp32", "[stage 3, 1 s] late", "not started"),
+                                    ("ranks", "[stage 5, 0 s] not here: no mpirun", "")]:
+            (steps / f"{name}.txt").write_text(f"{text}\n{verdict}\n")
         (self.folder / "day/stage-1").touch()
         self.run(ROOT / "tools/gpu_day", "--out", self.folder / "day", "--raya", self.raya, code=4)  # a step is wrong
         self.add_report("gpu_day", "tools/gpu_day", (self.folder / "day/report.json").read_text())
