@@ -1,14 +1,18 @@
-"""The OpenCL implementations of tools/portability: starts programs on an implementation, and explains why an implementation cannot run."""
-import copy, os, re, resource, shutil, tempfile
+"""The OpenCL implementations of tools/portability: starts programs on an implementation, explains why an implementation cannot run, and fetches those
+that Debian does not have."""
+import dataclasses, os, re, resource, shutil, sys, tempfile
 from pathlib import Path
 
 import programs
-from gpu.clang import LLVM
 
+ROOT = Path(__file__).resolve().parent.parent
+LLVM = programs.llvm()
 VENDORS = Path("/etc/OpenCL/vendors")
-FETCHED = "implementations"  # folder in the build folder to which tools/portability --setup fetches (tools/portability_setup.py)
+FETCHED = "implementations"  # folder in the build folder to which set_up() fetches
+DRIVERS = {"intel-cpu": "libintelocl.so", "pocl-3.0": "libpocl-*.so"}  # files in the packages of tests/portability/packages/NAME.txt
 
 
+@dataclasses.dataclass(eq=False)
 class Implementation:
     """An OpenCL implementation, on which run() starts programs. slow: it runs fewer cases, with `lanes` lanes. unavailable: reason why it cannot run, with
     a remedy, or None. needs_device: its driver may be installed on a machine without its device. budget: maximum seconds to compile a kernel.
@@ -17,19 +21,27 @@ class Implementation:
     reports_faults: the implementation detects faults in kernels and reports them only on stderr, with exit code 0. raya prints nothing to stderr
     without an error, so every line there is a fault. (Oclgrind's --log is not used, because each OpenCL context truncates that file.)
     """
+    name: str
+    variables: dict = dataclasses.field(default_factory=dict)
+    prefix: tuple = ()
+    slow: bool = False
+    unavailable: str = None
+    reports_faults: bool = False
+    needs_device: bool = False
+    budget: int = 60
+    lanes: int = 1
+    from_spirv: bool = False
 
-    def __init__(self, name, variables=None, prefix=(), slow=False, unavailable=None, reports_faults=False, needs_device=False, budget=60, lanes=1):
-        self.name, self.prefix, self.slow, self.unavailable, self.reports_faults = name, list(prefix), slow, unavailable, reports_faults
-        self.variables, self.needs_device, self.budget, self.from_spirv = dict(variables or {}), needs_device, budget, False
-        self.lanes = lanes
+    @property
+    def lanes_option(self):
+        return ["--lanes", self.lanes] if self.slow else []
 
     def with_spirv(self):
         """Returns the same implementation with kernels as SPIR-V."""
-        other = copy.copy(self)
-        other.name, other.variables, other.from_spirv = f"{self.name}, SPIR-V", {**self.variables, "RAYA_BUILD_OPTIONS": "--il"}, True
-        if not shutil.which(f"clang-{LLVM}") or not shutil.which(f"llvm-spirv-{LLVM}"):
-            other.unavailable = other.unavailable or f"no clang-{LLVM} or no llvm-spirv-{LLVM} (tools/setup --gpu)"
-        return other
+        missing = not shutil.which(f"clang-{LLVM}") or not shutil.which(f"llvm-spirv-{LLVM}")
+        reason = self.unavailable or (f"no clang-{LLVM} or no llvm-spirv-{LLVM} (tools/setup --gpu)" if missing else None)
+        return dataclasses.replace(self, name=f"{self.name}, SPIR-V", variables={**self.variables, "RAYA_BUILD_OPTIONS": "--il"}, from_spirv=True,
+                                   unavailable=reason)
 
     def run(self, command, scratch, limit, variables=None):
         """Runs a command with additional environment variables. Returns (exit code, None after `limit` seconds; stdout and stderr; stdout; text of the
@@ -39,13 +51,10 @@ class Implementation:
         inherited = {k: v for k, v in os.environ.items() if not k.startswith(prefixes)}
         caches = {"POCL_CACHE_DIR": str(scratch), "MESA_SHADER_CACHE_DIR": str(scratch)}
         environment = {**inherited, **caches, **self.variables, **(variables or {})}
-        done = programs.run(self.prefix + command, limit, env=environment)
-        return done.code, f"not done after {limit} s" if done.code is None else done.text, done.out, self.reported_faults(done.err)
-
-    def reported_faults(self, stderr):
-        """Returns the first line of stderr and the number of further lines; empty if the implementation does not report faults."""
-        lines = [line.strip() for line in stderr.splitlines() if line.strip()] if self.reports_faults else []
-        return "" if not lines else lines[0] + (f" (and {len(lines) - 1} more lines)" if len(lines) > 1 else "")
+        done = programs.run([*self.prefix, *command], limit, env=environment)
+        faults = [line.strip() for line in done.err.splitlines() if line.strip()] if self.reports_faults else []
+        fault = " ".join(faults[:1] + [f"(and {len(faults) - 1} more lines)"] * (len(faults) > 1))
+        return done.code, f"not done after {limit} s" if done.code is None else done.text, done.out, fault
 
 
 def processor_seconds():
@@ -74,9 +83,8 @@ def known_implementations(build):
     """Returns all known implementations, the fast ones first; `build`: the build folder."""
     unoptimised = (" -cl-opt-disable", {"RAYA_BUILD_OPTIONS": "-cl-opt-disable"})
     no_pocl = None if icd("pocl").exists() else "not installed (Debian: pocl-opencl-icd)"
-    found = variants_of("PoCL", icd("pocl"), no_pocl, [
-        ("", {}), (" loopvec", {"POCL_WORK_GROUP_METHOD": "loopvec"}), (" loops", {"POCL_WORK_GROUP_METHOD": "loops"}), (" cbs", {"POCL_WORK_GROUP_METHOD": "cbs"}), unoptimised,
-        (" basic", {"POCL_DEVICES": "basic"})])
+    methods = [(f" {method}", {"POCL_WORK_GROUP_METHOD": method}) for method in ("loopvec", "loops", "cbs")]
+    found = variants_of("PoCL", icd("pocl"), no_pocl, [("", {}), *methods, unoptimised, (" basic", {"POCL_DEVICES": "basic"})])
     for name, file, variants in [("PoCL 3.0 (PyPI)", "pocl-3.0", [("", {})]), ("Intel CPU", "intel-cpu", [("", {}), unoptimised])]:
         driver = (build / FETCHED / f"{file}.icd").absolute()
         unavailable = None if driver.exists() else "not set up (tools/portability --setup fetches it)"
@@ -117,3 +125,31 @@ def mark_missing_devices(implementations, raya):
         if implementation.run([raya, "verify", "--list"], tempfile.gettempdir(), 120)[0] == 3:  # exit code 3: no usable device
             implementation.unavailable = ("no device accepts SPIR-V" if implementation.from_spirv else
                                           "its driver is installed, but reports no device")
+
+
+def set_up(build):
+    """Fetches the packages of each file in tests/portability/packages from PyPI to BUILD/implementations/NAME; pip verifies versions and hashes.
+    NAME.icd beside it, which OpenCL loaders read, names the driver; it is written last, so that an interrupted set-up is not used. To uninstall
+    everything, remove BUILD/implementations. Returns the exit code: 0, or 3 if something could not be fetched."""
+    code = 0
+    for packages in sorted((ROOT / "tests" / "portability" / "packages").glob("*.txt")):
+        folder, requested = (build / FETCHED / packages.stem).absolute(), packages.read_text()
+        driver_file, stamp = folder.with_name(f"{packages.stem}.icd"), folder / "packages.txt"
+        if driver_file.exists() and stamp.exists() and stamp.read_text() == requested:
+            print(f"{packages.stem}: already set up in {folder}")
+            continue
+        driver_file.unlink(missing_ok=True)
+        shutil.rmtree(folder, ignore_errors=True)
+        print(f"{packages.stem}: fetching", flush=True)
+        done = programs.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-cache-dir", "--only-binary", ":all:", "--require-hashes",
+                             "--disable-pip-version-check", "--ignore-installed", "--no-compile", "-r", packages, "--prefix", folder])
+        drivers = sorted(folder.rglob(DRIVERS[packages.stem]))
+        if done.code or len(drivers) != 1:
+            print(f"tools/portability --setup: {packages.name}: pip got no driver: {done.err.strip()[-500:]}; remedy: apt-get install python3-pip; a "
+                  "network, or a folder with the wheels of that file and PIP_NO_INDEX=1 PIP_FIND_LINKS=FOLDER; Linux on x86-64", file=sys.stderr)
+            code = 3
+            continue
+        stamp.write_text(requested)
+        programs.write_whole(driver_file, f"{drivers[0]}\n")
+        print(f"{packages.stem}: {drivers[0]}")
+    return code

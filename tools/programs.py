@@ -1,6 +1,7 @@
 """What the tools in this folder share: starting programs without input, with a time limit, and so that no process stays behind; tables; whole files."""
 from __future__ import annotations  # Python 3.8, on computers with a GPU
 import contextlib, os, signal, subprocess
+from pathlib import Path
 from typing import NamedTuple
 
 RUNNING = set()  # of started()
@@ -45,6 +46,17 @@ def run(command, limit=None, stderr=subprocess.PIPE, **options):
             kill(process)
             return Done(None, *process.communicate())
         return Done(process.returncode, out, err)
+
+
+def llvm():
+    """Returns the version of this system's LLVM: "15" (tools/setup)."""
+    return run([Path(__file__).with_name("setup"), "--llvm"]).out.strip()
+
+
+def aligned(rows, left=0):
+    """Returns a text table; the columns from number `left` on are aligned on the left, the others on the right."""
+    formats = [f"{'<' if i >= left else '>'}{max(map(len, column))}" for i, column in enumerate(zip(*rows))]
+    return "".join("  ".join(map(format, row, formats)).rstrip() + "\n" for row in rows)
 
 
 def markdown(head, rows):

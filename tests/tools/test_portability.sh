@@ -87,7 +87,7 @@ one_fault() {  # one_fault FILE CONTENT CHECK TEXT...: exit code 1
     expect 1 "${@:4}"
 }
 one_fault budget "" build "| FAIL 1.5 s |" "above --limit 1 s"
-one_fault hash 11111111111111111111111111111111 renders "11111111111111111111111111111111; right: 5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a"
+one_fault hash 11111111111111111111111111111111 renders "wrong image 11111111111111111111111111111111; right: 5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a5a"
 one_fault reflected 6 renders "spheres --format fp32 --accel grid: wrong counts: reflected is 6, right: 5"
 one_fault crash "" number,renders "number: exit code -11, though no check failed"
 sed -i '/cones,--format spa22/d' "$build/renders.csv"
