@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # Compiles every kernel to SPIR-V as raya does with --il (host/cl/kernel_source.cpp), validates it with spirv-val for OpenCL 1.2, and looks for uses of
-# what clspv does not support (tools/gpu/spirv.py).
-#   tests/tools/test_spirv.sh       exit code 77: clang, llvm-spirv or spirv-val is missing (tools/setup --gpu)
+# what clspv does not support (clspv_limits.py).
+#   tests/tools/test_spirv.sh       exit code 77: clang, llvm-spirv or spirv-tools is missing (tools/setup --gpu)
 set -euo pipefail
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
 llvm=$("$root/tools/setup" --llvm)
-for tool in clang-$llvm llvm-spirv-$llvm spirv-val; do
+for tool in clang-$llvm llvm-spirv-$llvm spirv-val spirv-dis; do
     command -v $tool >/dev/null || { echo "skipped: no $tool"; exit 77; }
 done
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 mkdir "$scratch/modules"
 scene=(-DRAYA_GROUP=32 -DRAYA_BOUNCES=8 -DRAYA_POLYGONS=1 -DRAYA_PATCHES=1 -DRAYA_CONES=1 -DRAYA_BVH_STACK=15)
-limits=(env PYTHONDONTWRITEBYTECODE=1 python3 "$root/tools/gpu/spirv.py")
+limits=("$root/tests/tools/clspv_limits.py")
 
 # module FILE MODULE OPTION...: compiles a kernel
 module() {
@@ -54,19 +54,19 @@ fault() {
     module "$scratch/fault.cl" "$scratch/fault.spv" "${@:3}"
     [[ $("${limits[@]}" "$scratch/fault.spv") == *": $1"* ]] || { echo "FAILED: not found: $1: $("${limits[@]}" "$scratch/fault.spv")"; exit 1; }
 }
-fault "capability 10" "kernel void k(global float* a) { a[0] = (double)a[1] * a[2]; }"          # Float64
-fault "capability 22" "kernel void k(global short* a) { a[0] = a[1]; }"                           # Int16
-fault "capability 38" "kernel void k(global int* a) { int* b = a; *b = 1; }" -cl-std=CL2.0         # GenericPointer
-fault "capability 12" "#pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
-    kernel void k(volatile global long* a) { atom_add(a, 1); }"                                     # Int64Atomics
-fault "function 57" "kernel void k(global float* a) { a[0] = sin(a[1]); }"
-fault "function 184" "kernel void k() { printf(\"1\"); }"
+fault "capability Float64" "kernel void k(global float* a) { a[0] = (double)a[1] * a[2]; }"
+fault "capability Int16" "kernel void k(global short* a) { a[0] = a[1]; }"
+fault "capability GenericPointer" "kernel void k(global int* a) { int* b = a; *b = 1; }" -cl-std=CL2.0
+fault "capability Int64Atomics" "#pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
+    kernel void k(volatile global long* a) { atom_add(a, 1); }"
+fault "function sin" "kernel void k(global float* a) { a[0] = sin(a[1]); }"
+fault "function printf" "kernel void k() { printf(\"1\"); }"
 fault "pointer to a pointer" "kernel void k(global int* a) { global int* local b[2]; b[get_local_id(0)] = a; barrier(1); *b[0] = 1; }"
 fault "pointer to a pointer" "struct s { int n; global int* a[3]; }; kernel void k(global struct s* a) { *a->a[1] = 1; }"
 fault "conversion between" "kernel void k(global int* a) { a[0] = (size_t)a; }"
 fault "conversion between" "kernel void k(local int* a) { *(local int*)((size_t)a & ~3u) = 1; }"
 fault "packed struct" "struct __attribute__((packed)) s { char c; float f; }; kernel void k(global struct s* a) { a->f = 1; }"
-fault "program-scope variable n" "global int n; kernel void k(global int* a) { a[0] = n; }" -cl-std=CL2.0
-fault "recursion in g" "int g(int n); int f(int n) { return n ? g(n - 1) : 1; } int g(int n) { return f(n); }
+fault "program-scope variable %n" "global int n; kernel void k(global int* a) { a[0] = n; }" -cl-std=CL2.0
+fault "recursion in %g" "int g(int n); int f(int n) { return n ? g(n - 1) : 1; } int g(int n) { return f(n); }
     kernel void k(global int* a) { a[0] = g(a[0]); }"
 echo "SPIR-V: ${#files[@]} modules are valid, and within the limits of clspv"
