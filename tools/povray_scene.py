@@ -12,24 +12,22 @@ Differences between POV-Ray and the shading of kernels/README.md, and how the sc
 - Polygons become triangles, and the triangles of one surface a mesh, which POV-Ray intersects fastest.
 - Checkers are cubes. They are stretched along the axis that the checker ignores.
 
-Exit codes: 0 done; 1 the file cannot be converted (the message names the line), for example because of an entity of another NFF dialect.
+Exit codes: 0 done; 1 the file cannot be converted, for example because of an entity of another NFF dialect.
 """
-import math
-import sys
-from dataclasses import dataclass, field, replace
+import math, re, sys
 from pathlib import Path
+from typing import NamedTuple
 
 LONG = 1e9  # length of a checker's cubes along the axis that the checker ignores: the largest number allowed in NFF
+VIEW = {"from": 3, "at": 3, "up": 3, "angle": 1, "hither": 1, "resolution": 2}  # numbers of each part
 
 
 class SceneError(Exception):
-    """An error in a file, as FILE:LINE: reason."""
+    """An error in a file."""
 
 
-@dataclass(frozen=True)
-class Surface:
+class Surface(NamedTuple):
     """NFF's `f`, with the checker that replaces its colour, if any."""
-
     colour: tuple = (1.0, 1.0, 1.0)
     diffuse: float = 1.0
     specular: float = 0.0
@@ -38,19 +36,6 @@ class Surface:
     refraction_index: float = 1.0
     checker: tuple = None  # even r g b, odd r g b, size
     axis: int = None  # the axis that the checker ignores
-
-
-@dataclass
-class Scene:
-    """Objects by kind; the last item of each object is its surface."""
-
-    view: dict = field(default_factory=dict)
-    background: tuple = (0.0, 0.0, 0.0)
-    lights: list = field(default_factory=list)  # (position, colour or None)
-    spheres: list = field(default_factory=list)  # (centre, radius, surface)
-    planes: list = field(default_factory=list)  # (normal, distance, surface)
-    polygons: list = field(default_factory=list)  # (vertices, normals or None, surface)
-    cones: list = field(default_factory=list)  # (base, radius, apex, radius, surface)
 
 
 # Vectors are tuples of three numbers.
@@ -84,103 +69,6 @@ def largest_axis(normal):
     return max(range(3), key=lambda axis: abs(normal[axis]))
 
 
-class Tokens:
-    """The tokens of a file, without comments, each with its line."""
-
-    def __init__(self, text, name):
-        self.name, self.position, self.tokens = name, 0, []
-        for number, line in enumerate(text.splitlines(), 1):
-            kept = line if line.split()[:1] == ["#raya"] else line.partition("#")[0]
-            self.tokens += [(token, number) for token in kept.split()]
-
-    def refuse(self, reason):
-        line = self.tokens[max(0, self.position - 1)][1] if self.tokens else 1
-        raise SceneError(f"{self.name}:{line}: {reason}")
-
-    def has_more(self):
-        return self.position < len(self.tokens)
-
-    def take(self):
-        if not self.has_more():
-            self.refuse("the file ends within an entity")
-        self.position += 1
-        return self.tokens[self.position - 1][0]
-
-    def number(self):
-        token = self.take()
-        try:
-            return float(token)
-        except ValueError:
-            self.refuse(f"expected a number, found '{token}'")
-
-    def numbers(self, count):
-        return tuple(self.number() for _ in range(count))
-
-    def number_follows(self):
-        return self.has_more() and self.tokens[self.position][0].lstrip("+-").lstrip(".")[:1].isdigit()
-
-
-def take_view(tokens):
-    parts = {"from": 3, "at": 3, "up": 3, "angle": 1, "hither": 1, "resolution": 2}
-    view = {}
-    while len(view) < len(parts):
-        part = tokens.take()
-        if part not in parts or part in view:
-            tokens.refuse(f"'v': unknown or repeated part '{part}'")
-        view[part] = tokens.numbers(parts[part])
-    return view
-
-
-def take_polygon(tokens, patch):
-    """Reads the vertices of a polygon or patch. Returns (vertices, normals or None)."""
-    corners = [tokens.numbers(6 if patch else 3) for _ in range(int(tokens.number()))]
-    normals = [normalized(corner[3:]) for corner in corners] if patch else None
-    return [corner[:3] for corner in corners], normals
-
-
-def parse_nff(text, name="scene"):
-    """Returns the scene of an NFF file. Raises SceneError."""
-    tokens, scene, surface, checker = Tokens(text, name), Scene(), Surface(), None
-
-    def flat_surface(normal):
-        """Returns the surface of a plane or polygon, with the checker that precedes it, if any."""
-        nonlocal checker
-        squares, checker = checker, None
-        return replace(surface, checker=squares, axis=largest_axis(normal)) if squares else surface
-
-    while tokens.has_more():
-        entity = tokens.take()
-        entity += " " + tokens.take() if entity == "#raya" else ""
-        if entity == "v":
-            scene.view = take_view(tokens)
-        elif entity == "b":
-            scene.background = tokens.numbers(3)
-        elif entity == "l":
-            scene.lights.append((tokens.numbers(3), tokens.numbers(3) if tokens.number_follows() else None))
-        elif entity == "f":
-            surface = Surface(tokens.numbers(3), *tokens.numbers(5))
-        elif entity == "s":
-            scene.spheres.append((tokens.numbers(3), tokens.number(), surface))
-        elif entity in ("p", "pp"):
-            vertices, normals = take_polygon(tokens, entity == "pp")
-            normal = newell_normal(vertices)
-            polygon_surface = flat_surface(normal)
-            if any(normal):  # a polygon without area is invisible
-                scene.polygons.append((vertices, normals, polygon_surface))
-        elif entity == "c":
-            scene.cones.append((tokens.numbers(3), tokens.number(), tokens.numbers(3), tokens.number(), surface))
-        elif entity == "#raya plane":
-            normal, distance = tokens.numbers(3), tokens.number()
-            scene.planes.append((normalized(normal), distance / math.hypot(*normal), flat_surface(normal)))
-        elif entity == "#raya checker":
-            checker = tokens.numbers(7)
-        else:
-            tokens.refuse(f"unknown entity '{entity}'")
-    if not scene.view:
-        tokens.refuse("no 'v'")
-    return scene
-
-
 def triangles(vertices):
     """Triangulates a polygon, also a concave one, by ear clipping. Returns triples of vertex indices."""
     normal = newell_normal(vertices)
@@ -209,45 +97,6 @@ def vector(v):
     return "<" + ", ".join(f"{x!r}" for x in v) + ">"
 
 
-class Surfaces:
-    """Textures; each surface is declared once."""
-
-    def __init__(self, ambient):
-        self.ambient, self.numbers = ambient, {}
-
-    def number(self, surface):
-        return self.numbers.setdefault(surface, len(self.numbers))
-
-    def pigment(self, surface):
-        clear = f" transmit {surface.transmittance!r}" if surface.transmittance > 0 else ""
-        if not surface.checker:
-            return f"color rgb {vector(surface.colour)}{clear}"
-        even, odd, size = surface.checker[:3], surface.checker[3:6], surface.checker[6]
-        stretch = tuple(LONG if axis == surface.axis else size for axis in range(3))
-        shift = tuple(-LONG / 2 if axis == surface.axis else 0.0 for axis in range(3))
-        return f"checker color rgb {vector(even)}{clear} color rgb {vector(odd)}{clear} scale {vector(stretch)} translate {vector(shift)}"
-
-    def finish(self, surface):
-        opacity = 1 - surface.transmittance
-        diffuse = surface.diffuse / opacity if opacity != 0 else 0.0
-        shiny = f" phong {surface.specular!r} phong_size {surface.shine!r} reflection {{ {surface.specular!r} }}" if surface.specular > 0 else ""
-        return f"ambient {self.ambient * diffuse!r} diffuse {diffuse!r}{shiny}"
-
-    def declarations(self):
-        for surface, number in self.numbers.items():
-            yield f"#declare Surface{number} = texture {{ pigment {{ {self.pigment(surface)} }} finish {{ {self.finish(surface)} }} }}"
-
-    def solid(self, shape, surface, inside_only=False):
-        """Returns the texts of an object and, if it transmits light, of a second object that casts its shadow."""
-        texture = f"texture {{ Surface{self.number(surface)} }}"
-        if inside_only:
-            texture = "texture { Clear } interior_" + texture
-        if surface.transmittance <= 0:
-            return [f"{shape} {texture} }}"]
-        interior = f"interior {{ ior {surface.refraction_index!r} }}"
-        return [f"{shape} {texture} {interior} no_shadow }}", f"{shape} no_image no_reflection }}"]
-
-
 def camera(view, width, height):
     """Returns POV-Ray's camera: right and up span the image at distance 1 along the gaze, in NFF's handedness."""
     gaze = normalized(minus(view["at"], view["from"]))
@@ -258,46 +107,116 @@ def camera(view, width, height):
     return "camera { perspective " + " ".join(f"{name} {vector(value)}" for name, value in parts.items()) + " }"
 
 
-def meshes(polygons, surfaces):
-    """Yields one mesh for each surface."""
-    by_surface = {}
-    for vertices, normals, surface in polygons:
-        faces = by_surface.setdefault(surface, [])
-        for corners in triangles(vertices):
-            if normals:
-                faces.append("smooth_triangle { " + ", ".join(f"{vector(vertices[i])}, {vector(normals[i])}" for i in corners) + " }")
-            else:
-                faces.append("triangle { " + ", ".join(vector(vertices[i]) for i in corners) + " }")
-    for surface, faces in by_surface.items():
-        yield from surfaces.solid("mesh { " + "\n".join(faces), surface)
+class Scene:
+    """A POV-Ray scene made of the words of an NFF file. Raises ValueError, KeyError or IndexError if they are not NFF as raya reads it."""
+
+    def __init__(self, words):
+        self.view, self.background, self.lights, self.solids = {}, (0.0, 0.0, 0.0), [], []  # lights: (position, colour or None)
+        self.surfaces, self.faces = {}, {}  # number and triangles of each surface
+        self.surface, self.checker = Surface(), None
+        self.words = words[::-1]  # the next word is the last
+        while self.words:
+            entity = self.words.pop()
+            self.read(entity + " " + self.words.pop() if entity == "#raya" else entity)
+        for surface, faces in self.faces.items():  # one mesh for each surface
+            self.add("mesh { " + "\n".join(faces), surface)
+        if not self.view:
+            raise ValueError("no 'v'")
+
+    def numbers(self, count):
+        return tuple(float(self.words.pop()) for _ in range(count))
+
+    def read(self, entity):
+        """Reads an entity after its name."""
+        if entity == "v":
+            for _ in VIEW:
+                part = self.words.pop()
+                self.view[part] = self.numbers(VIEW[part])
+        elif entity == "b":
+            self.background = self.numbers(3)
+        elif entity == "l":
+            position, has_colour = self.numbers(3), self.words and re.match(r"[-+]?\.?\d", self.words[-1])
+            self.lights.append((position, self.numbers(3) if has_colour else None))
+        elif entity == "f":
+            self.surface = Surface(self.numbers(3), *self.numbers(5))
+        elif entity == "s":
+            *centre, radius = self.numbers(4)
+            self.add(f"sphere {{ {vector(centre)}, {abs(radius)!r}", self.surface, radius < 0)
+        elif entity in ("p", "pp"):
+            corners = [self.numbers(6 if entity == "pp" else 3) for _ in range(int(self.words.pop()))]
+            self.add_polygon([corner[:3] for corner in corners], [normalized(corner[3:]) for corner in corners] if entity == "pp" else None)
+        elif entity == "c":
+            base, (radius,), apex, (apex_radius,) = (self.numbers(count) for count in (3, 1, 3, 1))
+            shape = f"cone {{ {vector(base)}, {abs(radius)!r}, {vector(apex)}, {abs(apex_radius)!r} open"
+            if radius == apex_radius:
+                shape = f"cylinder {{ {vector(base)}, {vector(apex)}, {abs(radius)!r} open"
+            self.add(shape, self.surface, min(radius, apex_radius) < 0)
+        elif entity == "#raya plane":
+            normal, (distance,) = self.numbers(3), self.numbers(1)
+            self.add(f"plane {{ {vector(normalized(normal))}, {distance / math.hypot(*normal)!r}", self.flat_surface(normal))
+        elif entity == "#raya checker":
+            self.checker = self.numbers(7)
+        else:
+            raise ValueError(f"unknown entity '{entity}'")
+
+    def flat_surface(self, normal):
+        """Returns the surface of a plane or polygon, with the checker that precedes it, if any."""
+        checker, self.checker = self.checker, None
+        return self.surface._replace(checker=checker, axis=largest_axis(normal)) if checker else self.surface
+
+    def add_polygon(self, vertices, normals):
+        normal = newell_normal(vertices)
+        surface = self.flat_surface(normal)
+        for corners in triangles(vertices) if any(normal) else ():  # a polygon without area is invisible
+            points = (f"{vector(vertices[i])}, {vector(normals[i])}" if normals else vector(vertices[i]) for i in corners)
+            self.faces.setdefault(surface, []).append(("smooth_" if normals else "") + "triangle { " + ", ".join(points) + " }")
+
+    def add(self, shape, surface, inside_only=False):
+        """Adds an object and, if it transmits light, a second object that casts its shadow."""
+        texture = f"texture {{ Surface{self.surfaces.setdefault(surface, len(self.surfaces))} }}"
+        if inside_only:
+            texture = "texture { Clear } interior_" + texture
+        if surface.transmittance <= 0:
+            self.solids.append(f"{shape} {texture} }}")
+        else:
+            interior = f"interior {{ ior {surface.refraction_index!r} }}"
+            self.solids += [f"{shape} {texture} {interior} no_shadow }}", f"{shape} no_image no_reflection }}"]
 
 
-def objects(scene, surfaces):
-    for centre, radius, surface in scene.spheres:
-        yield from surfaces.solid(f"sphere {{ {vector(centre)}, {abs(radius)!r}", surface, radius < 0)
-    for normal, distance, surface in scene.planes:
-        yield from surfaces.solid(f"plane {{ {vector(normal)}, {distance!r}", surface)
-    yield from meshes(scene.polygons, surfaces)
-    for base, base_radius, apex, apex_radius, surface in scene.cones:
-        shape = f"cone {{ {vector(base)}, {abs(base_radius)!r}, {vector(apex)}, {abs(apex_radius)!r} open"
-        if base_radius == apex_radius:
-            shape = f"cylinder {{ {vector(base)}, {vector(apex)}, {abs(base_radius)!r} open"
-        yield from surfaces.solid(shape, surface, min(base_radius, apex_radius) < 0)
+def pigment(surface):
+    clear = f" transmit {surface.transmittance!r}" if surface.transmittance > 0 else ""
+    if not surface.checker:
+        return f"color rgb {vector(surface.colour)}{clear}"
+    even, odd, size = surface.checker[:3], surface.checker[3:6], surface.checker[6]
+    stretch = tuple(LONG if axis == surface.axis else size for axis in range(3))
+    shift = tuple(-LONG / 2 if axis == surface.axis else 0.0 for axis in range(3))
+    return f"checker color rgb {vector(even)}{clear} color rgb {vector(odd)}{clear} scale {vector(stretch)} translate {vector(shift)}"
 
 
-def povray_scene(scene, bounces, width, height):
-    """Returns the text of the POV-Ray scene."""
+def finish(surface, ambient):
+    opacity = 1 - surface.transmittance
+    diffuse = surface.diffuse / opacity if opacity != 0 else 0.0
+    shiny = f" phong {surface.specular!r} phong_size {surface.shine!r} reflection {{ {surface.specular!r} }}" if surface.specular > 0 else ""
+    return f"ambient {ambient * diffuse!r} diffuse {diffuse!r}{shiny}"
+
+
+def povray_scene(text, name, bounces, width, height):
+    """Returns the POV-Ray scene of an NFF file, as text. Raises SceneError. `raya info` checks files and names lines."""
+    try:
+        scene = Scene([word for line in text.splitlines() for word in (line if line.startswith("#raya ") else line.partition("#")[0]).split()])
+    except (ValueError, KeyError, IndexError) as problem:
+        raise SceneError(f"{name}: not NFF as raya reads it: {problem}") from None
     count = len(scene.lights)
     intensity = math.sqrt(count) / (2 * count) if count else 1.0  # SPD's default for lights and ambient light
-    surfaces = Surfaces(intensity)
-    solids = list(objects(scene, surfaces))
     lights = [f"light_source {{ {vector(position)} color rgb {vector(colour or 3 * (intensity,))} }}" for position, colour in scene.lights]
+    textures = [f"#declare Surface{number} = texture {{ pigment {{ {pigment(surface)} }} finish {{ {finish(surface, intensity)} }} }}"
+                for surface, number in scene.surfaces.items()]
     head = ["#version 3.7;",
             f"global_settings {{ assumed_gamma 1 max_trace_level {bounces + 1} adc_bailout 0 ambient_light rgb 1 }}",
             f"background {{ color rgb {vector(scene.background)} }}",
             "#declare Clear = texture { pigment { color rgb 1 transmit 1 } finish { ambient 0 diffuse 0 } }",
             camera(scene.view, width, height)]
-    return "\n".join([*head, *lights, *surfaces.declarations(), *solids]) + "\n"
+    return "\n".join([*head, *lights, *textures, *scene.solids]) + "\n"
 
 
 def main():
@@ -305,7 +224,7 @@ def main():
         sys.exit(__doc__)
     file, bounces, (width, height) = Path(sys.argv[1]), int(sys.argv[2]), map(int, sys.argv[3].split("x"))
     try:
-        print(povray_scene(parse_nff(file.read_text(), file.name), bounces, width, height), end="")
+        print(povray_scene(file.read_text(), file.name, bounces, width, height), end="")
     except (SceneError, OSError) as problem:
         sys.exit(f"povray_scene.py: {problem}")
 

@@ -1,7 +1,7 @@
 // Baseline for raya's render times: Whitted ray tracing as in kernels/README.md, of the same scenes, with Embree 3 on
 // all cores.
 //
-//   embree_peer SCENE.nff WxH BOUNCES centres|corners SAMPLES
+//   embree_peer SCENE.nff WxH BOUNCES SAMPLES
 //
 // Prints for each of three methods "METHOD RAYS SECONDS...", with the seconds of each render, and "mean METHOD R G B",
 // the image's mean colour; then "build SECONDS". `single` traces single rays; `sixteen` traces the ray trees of 4 x 4
@@ -19,12 +19,13 @@
 namespace raya {
 namespace {
 
-void measure(const char* method, Picture& picture, long (Picture::*render)(), int samples) {
+template <int N>
+void measure(const char* method, Picture& picture, bool coherent, int samples) {
     std::string times;
     long rays = 0;
     for (int i = 0; i <= samples; ++i) {  // iteration 0 is a warm-up
         const auto start = std::chrono::steady_clock::now();
-        rays = (picture.*render)();
+        rays = picture.render<N>(coherent);
         const double s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         if (i > 0) times += " " + std::to_string(s);
     }
@@ -38,11 +39,11 @@ int run(char** arguments) {
     if (std::sscanf(arguments[1], "%dx%d", &width, &height) != 2) return 2;
     const EmbreeScene embree(scene);
     const Whitted whitted(scene, embree, std::atoi(arguments[2]));
-    Picture picture(whitted, camera_of(scene.view, width, height, std::string(arguments[3]) == "corners"));
-    const int samples = std::atoi(arguments[4]);
-    measure("single", picture, &Picture::render_single_rays, samples);
-    measure("sixteen", picture, &Picture::render_packets, samples);
-    measure("coherent", picture, &Picture::render_coherent_packets, samples);
+    Picture picture(whitted, camera_of(scene.view, width, height));
+    const int samples = std::atoi(arguments[3]);
+    measure<1>("single", picture, false, samples);
+    measure<16>("sixteen", picture, false, samples);
+    measure<16>("coherent", picture, true, samples);
     std::printf("build %f\n", embree.build_s());
     return 0;
 }
@@ -51,8 +52,8 @@ int run(char** arguments) {
 }  // namespace raya
 
 int main(int argc, char** argv) {
-    if (argc != 6) {
-        std::fprintf(stderr, "usage: embree_peer SCENE.nff WxH BOUNCES centres|corners SAMPLES\n");
+    if (argc != 5) {
+        std::fprintf(stderr, "usage: embree_peer SCENE.nff WxH BOUNCES SAMPLES\n");
         return 2;
     }
     try {

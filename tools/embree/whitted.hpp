@@ -1,6 +1,5 @@
 // Secondary rays and shading of Whitted ray tracing (kernels/README.md), in fp32 with the compiler's rounding.
 #pragma once
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -11,29 +10,20 @@ namespace raya {
 struct Camera {
     V3 eye, gaze, right, top;  // right, top: from the image's centre to its edges; the image is at distance 1
     int width, height;
-    bool corners;  // sample the pixels' corners instead of their centres
 
-    V3 direction(int row, int column) const {
-        const auto fraction = [&](int index, int count) {
-            if (corners) return count > 1 ? static_cast<float>(index) / static_cast<float>(count - 1) : 0.5f;
+    V3 direction(int row, int column) const {  // through the pixel's centre
+        const auto fraction = [](int index, int count) {
             return (static_cast<float>(index) + 0.5f) / static_cast<float>(count);
         };
         return normalized(gaze + (2 * fraction(column, width) - 1) * right + (1 - 2 * fraction(row, height)) * top);
     }
 };
 
-inline Camera camera_of(const View& view, int width, int height, bool corners) {
+inline Camera camera_of(const View& view, int width, int height) {
     const Vec3 gaze = (view.at - view.from).normalized(), right = gaze.cross(view.up).normalized();
-    const double h = std::tan(view.angle_degrees * M_PI / 360);
-    const auto side = [&](int pixels) { return corners ? std::max(1, pixels - 1) : pixels; };
-    const double w = h * side(width) / side(height);
-    return {to_float(view.from),
-            to_float(gaze),
-            to_float(w * right),
-            to_float(h * right.cross(gaze)),
-            width,
-            height,
-            corners};
+    const double h = std::tan(view.angle_degrees * M_PI / 360), w = h * width / height;
+    const Vec3 top = h * right.cross(gaze);
+    return {to_float(view.from), to_float(gaze), to_float(w * right), to_float(top), width, height};
 }
 
 struct PeerLight {

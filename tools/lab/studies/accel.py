@@ -73,7 +73,7 @@ def raya_method(lab, scene, size, name):
 
 def run_embree(program, nff, size):
     """Runs tools/embree. Returns ({method: (number of rays, render seconds)}, seconds of building Embree's BVH)."""
-    command = [program, "/dev/stdin", f"{size}x{size}", str(BOUNCES), "centres", str(PEER_SAMPLES)]
+    command = [program, "/dev/stdin", f"{size}x{size}", str(BOUNCES), str(PEER_SAMPLES)]
     methods, build = {}, math.nan
     for line in output_of(command, "embree_peer", input=nff).splitlines():
         name, *numbers = line.split()
