@@ -44,36 +44,31 @@ struct ShadingPoint {
     bool leaving;  // the ray leaves the object
 };
 
-class Whitted {
-  public:
+struct Whitted {
     Whitted(const Scene& scene, const EmbreeScene& embree, int bounces)
-        : embree_(embree),
-          bounces_(bounces),
-          ambient_(static_cast<float>(ambient_intensity(scene))),
-          margin_(static_cast<float>(scene_extent(scene)) * 0x1p-20f),
-          background_(to_float(scene.background)) {
-        for (const Light& l : scene.lights) lights_.push_back({to_float(l.position), to_float(light_colour(scene, l))});
+        : embree(embree),
+          bounces(bounces),
+          ambient_light(static_cast<float>(ambient_intensity(scene))),
+          margin(static_cast<float>(scene_extent(scene)) * 0x1p-20f),
+          background(to_float(scene.background)) {
+        for (const Light& l : scene.lights) lights.push_back({to_float(l.position), to_float(light_colour(scene, l))});
     }
-
-    const EmbreeScene& embree() const { return embree_; }
-    const std::vector<PeerLight>& lights() const { return lights_; }
-    V3 background() const { return background_; }
 
     /// Returns the hit point of a ray, with its normal, colour and the origins of the next rays.
     ShadingPoint shading_point(const PendingRay& r, const PeerHit& h) const {
         ShadingPoint m;
-        m.surface = &embree_.surfaces()[static_cast<std::size_t>(h.surface)];
+        m.surface = &embree.surfaces()[static_cast<std::size_t>(h.surface)];
         m.point = r.origin + h.t * r.direction;
         m.leaving = dot(h.geometric, r.direction) > 0;
         const V3 geometric = m.leaving ? -1 * h.geometric : h.geometric;
         m.normal = dot(h.normal, geometric) < 0 ? -1 * h.normal : h.normal;
-        m.outer = m.point + margin_ * geometric;
-        m.inner = m.point - margin_ * geometric;
+        m.outer = m.point + margin * geometric;
+        m.inner = m.point - margin * geometric;
         m.colour = m.surface->checker > 0 ? checker_colour(m, geometric) : m.surface->even;
         return m;
     }
 
-    V3 ambient(const ShadingPoint& m) const { return (ambient_ * m.surface->diffuse) * m.colour; }
+    V3 ambient(const ShadingPoint& m) const { return (ambient_light * m.surface->diffuse) * m.colour; }
 
     /// Returns the contribution of a visible light; `to_light` has length 1.
     V3 light_contribution(const PendingRay& r, const ShadingPoint& m, const PeerLight& light, V3 to_light) const {
@@ -88,7 +83,7 @@ class Whitted {
     /// Pushes the reflected and refracted rays on the stack; the last one pushed is traced first.
     template <class Stack>
     void push_secondary_rays(Stack& stack, const PendingRay& r, const ShadingPoint& m) const {
-        if (r.level >= bounces_) return;
+        if (r.level >= bounces) return;
         const PeerSurface& s = *m.surface;
         float mirror_weight = s.specular;
         if (s.transmittance > 0) {
@@ -106,7 +101,6 @@ class Whitted {
                              r.level + 1});
     }
 
-  private:
     static V3 checker_colour(const ShadingPoint& m, V3 geometric) {
         const float x = std::abs(geometric.x), y = std::abs(geometric.y), z = std::abs(geometric.z);
         const float side = m.surface->checker;
@@ -116,11 +110,11 @@ class Whitted {
         return half_sum == std::floor(half_sum) ? m.surface->even : m.surface->odd;
     }
 
-    const EmbreeScene& embree_;
-    int bounces_;
-    float ambient_, margin_;
-    V3 background_;
-    std::vector<PeerLight> lights_;
+    const EmbreeScene& embree;
+    int bounces;
+    float ambient_light, margin;
+    V3 background;
+    std::vector<PeerLight> lights;
 };
 
 }  // namespace raya
