@@ -6,7 +6,7 @@ set -euo pipefail
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..
 llvm=$("$root/tools/setup" --llvm)
 for tool in clang-$llvm llvm-spirv-$llvm spirv-val spirv-dis; do
-    command -v $tool >/dev/null || { echo "skipped: no $tool"; exit 77; }
+    command -v "$tool" >/dev/null || { echo "skipped: no $tool"; exit 77; }
 done
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
