@@ -93,7 +93,8 @@ def junit_report(name, cells):
         for cell in own:
             case = xml.SubElement(suite, "testcase", classname=name, name=clean(cell.name), time=f"{cell.seconds:.3f}")
             if cell.kind != "right":
-                found = xml.SubElement(case, "failure" if cell.failed else "skipped", message=clean(cell.verdict))
+                message = cell.notes[-1] if cell.kind.startswith("X") else cell.verdict
+                found = xml.SubElement(case, "failure" if cell.failed else "skipped", message=clean(message))
                 found.text = clean("\n".join(cell.notes)) if cell.failed else None
     xml.indent(root)
     return xml.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
