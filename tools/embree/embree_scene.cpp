@@ -63,23 +63,27 @@ float cone_hit(const PeerCone& c, V3 origin, V3 direction, float near, float far
     return kNoHit;
 }
 
-// Returns t of the nearest hit of ray `i` of `n` with the cone; at least the ray's tfar without a hit.
-float hit_of_ray(const PeerCone* cones, unsigned cone, RTCRayN* ray, unsigned n, unsigned i, V3& normal) {
-    return cone_hit(cones[cone], {RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)},
-                    {RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i)},
-                    RTCRayN_tnear(ray, n, i), RTCRayN_tfar(ray, n, i), normal);
+V3 origin_of(const RTCRayN* ray, unsigned n, unsigned i) {
+    return {RTCRayN_org_x(const_cast<RTCRayN*>(ray), n, i), RTCRayN_org_y(const_cast<RTCRayN*>(ray), n, i),
+            RTCRayN_org_z(const_cast<RTCRayN*>(ray), n, i)};
+}
+V3 direction_of(const RTCRayN* ray, unsigned n, unsigned i) {
+    return {RTCRayN_dir_x(const_cast<RTCRayN*>(ray), n, i), RTCRayN_dir_y(const_cast<RTCRayN*>(ray), n, i),
+            RTCRayN_dir_z(const_cast<RTCRayN*>(ray), n, i)};
 }
 
 void intersect_cones(const RTCIntersectFunctionNArguments* args) {
+    const PeerCone& c = static_cast<const PeerCone*>(args->geometryUserPtr)[args->primID];
     RTCRayN* ray = RTCRayHitN_RayN(args->rayhit, args->N);
     RTCHitN* hit = RTCRayHitN_HitN(args->rayhit, args->N);
     for (unsigned i = 0; i < args->N; ++i) {
         if (args->valid[i] == 0) continue;
         V3 normal;
-        const float t =
-            hit_of_ray(static_cast<PeerCone*>(args->geometryUserPtr), args->primID, ray, args->N, i, normal);
-        if (!(t < RTCRayN_tfar(ray, args->N, i))) continue;
-        RTCRayN_tfar(ray, args->N, i) = t;
+        float& far = RTCRayN_tfar(ray, args->N, i);
+        const float t = cone_hit(c, origin_of(ray, args->N, i), direction_of(ray, args->N, i),
+                                 RTCRayN_tnear(ray, args->N, i), far, normal);
+        if (!(t < far)) continue;
+        far = t;
         RTCHitN_Ng_x(hit, args->N, i) = normal.x;
         RTCHitN_Ng_y(hit, args->N, i) = normal.y;
         RTCHitN_Ng_z(hit, args->N, i) = normal.z;
@@ -89,12 +93,14 @@ void intersect_cones(const RTCIntersectFunctionNArguments* args) {
 }
 
 void occlude_cones(const RTCOccludedFunctionNArguments* args) {
+    const PeerCone& c = static_cast<const PeerCone*>(args->geometryUserPtr)[args->primID];
     for (unsigned i = 0; i < args->N; ++i) {
         if (args->valid[i] == 0) continue;
         V3 normal;
-        const float t =
-            hit_of_ray(static_cast<PeerCone*>(args->geometryUserPtr), args->primID, args->ray, args->N, i, normal);
-        if (t < RTCRayN_tfar(args->ray, args->N, i)) RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
+        float& far = RTCRayN_tfar(args->ray, args->N, i);
+        const float t = cone_hit(c, origin_of(args->ray, args->N, i), direction_of(args->ray, args->N, i),
+                                 RTCRayN_tnear(args->ray, args->N, i), far, normal);
+        if (t < far) far = -INFINITY;
     }
 }
 
@@ -118,13 +124,6 @@ EmbreeScene::~EmbreeScene() {
     rtcReleaseDevice(device_);
 }
 
-unsigned EmbreeScene::attach(RTCGeometry geometry) {
-    rtcCommitGeometry(geometry);
-    const unsigned id = rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    return id;
-}
-
 void EmbreeScene::add_spheres(const Scene& scene) {
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     auto* rows = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
@@ -136,7 +135,9 @@ void EmbreeScene::add_spheres(const Scene& scene) {
         centres_.push_back(centre);
         sphere_surfaces_.push_back(s.surface);
     }
-    spheres_ = attach(geometry);
+    rtcCommitGeometry(geometry);
+    spheres_ = rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
 }
 
 void EmbreeScene::add_triangles(const Scene& scene) {
@@ -156,7 +157,9 @@ void EmbreeScene::add_triangles(const Scene& scene) {
     auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                                    3 * sizeof(unsigned), faces_.size()));
     for (unsigned i = 0; i < corners.size(); ++i) indices[i] = i;
-    triangles_ = attach(geometry);
+    rtcCommitGeometry(geometry);
+    triangles_ = rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
 }
 
 void EmbreeScene::add_cones(const Scene& scene) {
@@ -174,7 +177,9 @@ void EmbreeScene::add_cones(const Scene& scene) {
     rtcSetGeometryBoundsFunction(geometry, cone_bounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry, intersect_cones);
     rtcSetGeometryOccludedFunction(geometry, occlude_cones);
-    attach(geometry);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
 }
 
 PeerHit EmbreeScene::hit(V3 origin, V3 direction, float t, unsigned geometry, unsigned primitive, V3 normal, float u,

@@ -73,7 +73,6 @@ class EmbreeScene {
         float distance;
         int surface;
     };
-    unsigned attach(RTCGeometry geometry);
     void add_spheres(const Scene& scene);
     void add_triangles(const Scene& scene);
     void add_cones(const Scene& scene);
