@@ -12,8 +12,7 @@ raya = pytest.importorskip("raya", reason="the module is not built: -DRAYA_PYTHO
 from raya.lab import papers  # noqa: E402
 from raya.lab.claims import CLAIMS, decide, judged  # noqa: E402
 from raya.lab.document import write_document  # noqa: E402
-from raya.lab.families import CROWDED, FAMILIES  # noqa: E402
-from raya.lab.laboratory import Costs, Ensemble, Laboratory  # noqa: E402
+from raya.lab.laboratory import CROWDED, FAMILIES, Costs, Ensemble, Laboratory  # noqa: E402
 from raya.lab.page import Page  # noqa: E402
 from raya.lab.statistics import COMPATIBLE, NOT_REPRODUCED, REPRODUCED, counted, estimate, proportion  # noqa: E402
 from raya.lab.statistics import Test as Result  # noqa: E402
@@ -168,7 +167,7 @@ def judge_table4(heights, rotations=(2, 18, 34), words=768, ratio=1.0, uneven_at
     """table4. heights: additional costs of 16 columns in each picture; uneven_at_8: of a slot of p = 8; rotations, words: of the filter, words per
     rotation; ratio: budget of the comparison over that of the filter."""
     def run(rotations, words):
-        return SimpleNamespace(report={"communication": {"rotations": rotations, "rotation_words": words * rotations}}, time=lambda: {"filter": 1.0})
+        return SimpleNamespace(report={"communication": {"rotations": rotations, "rotation_words": words * rotations}, "modelled_ms": {"filter": 1.0}})
 
     rows = pd.DataFrame({"p": [0, 8, 16], "rotations": [2, 18, 34], "compare": [ratio, 1, 1]})
     lab = FakeLaboratory([block_of_16(height, uneven_at_8, 8) for height in heights])
@@ -232,8 +231,8 @@ def judge_objects(ratios, even, random):
     for count in objects.COUNTS:
         times = np.resize(ratios, objects.VARIANTS)
         for kind in (objects.EVEN, objects.WITHIN):
-            runs[count, kind, objects.PAPER] = [SimpleNamespace(asynchronous_ms=40.0) for _ in times]
-        runs[count, objects.RANDOM, objects.PAPER] = [SimpleNamespace(asynchronous_ms=40.0 * ratio) for ratio in times]
+            runs[count, kind, objects.PAPER] = [{"asynchronous (ms)": 40.0} for _ in times]
+        runs[count, objects.RANDOM, objects.PAPER] = [{"asynchronous (ms)": 40.0 * ratio} for ratio in times]
         rows.append({"objects": count, "kind": objects.RANDOM, "protocol": objects.PAPER, **dict.fromkeys(objects.TIMES, estimate(times))})
     return objects.claims_of(runs, pd.DataFrame(rows), [(objects.EVEN, objects.PAPER, growth(*even, np.array([-2, -1, 0, 1, 2]) / 50)),
                                                         (objects.RANDOM, objects.PAPER, growth(*random, np.array([-2, -1, 0, 1, 2]) / 50))], "variants")
@@ -478,7 +477,7 @@ def test_ensemble_has_equally_many_pictures_of_each_family(views, family_views):
 
 
 def test_scenes_have_6_to_31_objects():
-    """families.py, the documents and the study images state this range."""
+    """laboratory.py, the documents and the study images state this range."""
     assert all(6 <= scene.objects <= 31 for part in (0, 1, 2) for scene in ensemble_and_scenes(part)[1])
 
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 raya = pytest.importorskip("raya", reason="the module is not built; configure with -DRAYA_PYTHON=ON")
-from raya.lab import __main__ as program, manifest, shards, store, worker  # noqa: E402
+from raya.lab import __main__ as program, records, store, worker  # noqa: E402
 from raya.lab.store import Store  # noqa: E402
 
 STUDY = '''"""Squares
@@ -239,7 +239,7 @@ def test_merge_refuses_another_program_study_or_scene(study, monkeypatch):
     with pytest.raises(ValueError, match="s1: it is of study squares.py, not of fig7"):
         run("fig7", "--merge", "s1", "-o", "merged")
     with monkeypatch.context() as patch:
-        patch.setattr(manifest, "program_version", lambda: "raya 9.9.9")
+        patch.setattr(records, "program_version", lambda: "raya 9.9.9")
         with pytest.raises(ValueError, match="this is raya 9.9.9; remedy: merge with that version"):
             run(study, "a.nff", "--merge", "s1", "-o", "merged")
     Path("a.nff").rename("b.nff")
@@ -258,7 +258,7 @@ def test_merge_refuses_another_program_study_or_scene(study, monkeypatch):
 def change_header(**members):
     """Changes members of s2/shard.json, with a new digest, as somebody could who passes on a shard."""
     file = Path("s2/shard.json")
-    shards.write_header(file.parent, {**json.loads(file.read_text()), **members})
+    records.write_header(file.parent, {**json.loads(file.read_text()), **members})
 
 
 FOREIGN = [
@@ -280,7 +280,7 @@ def test_a_foreign_shard_is_data(study, members):
     if "settings" in members or "study" in members:  # otherwise the shards would be of different runs
         for other in ("s1", "s3"):
             header = json.loads(Path(other, "shard.json").read_text())
-            shards.write_header(Path(other), {**header, **{name: members[name] for name in members if name in ("settings", "study")}})
+            records.write_header(Path(other), {**header, **{name: members[name] for name in members if name in ("settings", "study")}})
     before = sorted(os.listdir())
     with pytest.raises(ValueError) as error:
         run(study, "--merge", "s1", "s2", "s3", "-o", "merged")

@@ -15,7 +15,7 @@ UNDER_90, FASTER = (f"{what}, median" for what in study.CLASS_LIMITS)
 @pytest.mark.parametrize("holds, first", [("0000000", np.inf), ("0000001", LAST), ("0000011", LAST // 2), ("1111111", study.CLASS_PES[0]),
                                           ("1101111", study.CLASS_PES[3]), ("1111110", np.inf)])
 def test_first_from(holds, first):
-    assert study.first_from(np.array([letter == "1" for letter in holds])) == first
+    assert study.first_from(study.CLASS_PES, np.array([letter == "1" for letter in holds]), np.inf) == first
 
 
 def row_of(images):

@@ -10,7 +10,7 @@ from raya.lab import statistics as s  # noqa: E402
 
 SEED, DRAWS = 20261124, 2000 if os.environ.get("RAYA_THOROUGH") == "1" else 500
 SIDE, POWER = 0.025, 0.8  # SIDE: maximum probability of a wrong verdict on one side; POWER: at the detectable deviation
-# Standard deviations of u(0) in the nine families of families.py, 64 x 64 pixels, 300 seeds.
+# Standard deviations of u(0) in the nine families of laboratory.py, 64 x 64 pixels, 300 seeds.
 FAMILY_DEVIATIONS = [0.55, 0.72, 0.60, 0.11, 0.62, 0.07, 0.20, 0.16, 0.16]
 ONE_DOMINATES = [1] + 8 * [0.01]
 

@@ -21,9 +21,9 @@ _NAMES = {"papers": "",
           "claims": "Claim Judgement decide judged",
           "laboratory": "Costs Ensemble Laboratory first_scene mean_seconds time_calls",
           "page": "Comparison Page Picture Plot Series Table format_value series_by with_paper",
-          "registry": "study",
           "statistics": "COMPATIBLE NOT_REPRODUCED REPRODUCED UNTESTABLE Estimate Test above below bonferroni_confidence counted estimate estimates every "
-                        "fitted_exponent next_value_within prediction_interval prediction_text proportion range_text tail_where within"}
+                        "first_from fitted_exponent next_value_within prediction_interval proportion range_text within",
+          "worker": "study"}
 _MODULES = {name: module for module, names in _NAMES.items() for name in names.split()}
 __all__ = ["papers", *_MODULES]
 

@@ -3,7 +3,7 @@
     python3 -m raya.lab NAME|all|FILE.py [SCENE.nff...] -o DIR     options as for `raya study`: see `raya study --help`
 
 Writes for each study DIR/NAME.json, NAME.md, its tables (.csv), plots (.svg, .png) and pictures (.png); for all studies DIR/index.html and
-manifest.json, and index.md if there are several. With --shard writes a part of the cost images (shards.py). Exit codes: 0 done; 2 bad option, scene or
+manifest.json, and index.md if there are several. With --shard writes a part of the cost images (records.py). Exit codes: 0 done; 2 bad option, scene or
 study; 3 no usable OpenCL device, or its driver crashed; 4 other results than those of the manifest, or a shard is missing. A signal ends the program
 with that signal's status.
 """

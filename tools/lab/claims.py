@@ -33,8 +33,16 @@ class Claim:
             raise ValueError(f"claims.toml, [{self.id}]: kind {self.kind!r}; one of {', '.join(KINDS)}")
 
 
-CLAIMS = {key: Claim(key, getattr(papers, entry.pop("paper")), **entry)
-          for key, entry in tomllib.loads((Path(__file__).parent / "claims.toml").read_text()).items()}
+def read_toml(name, **values):
+    """Returns the contents of a data file of the laboratory, in which {names} are replaced by values."""
+    text = (Path(__file__).parent / name).read_text()
+    for key, value in values.items():
+        text = text.replace(f"{{{key}}}", value)
+    return tomllib.loads(text)
+
+
+CLAIMS = {key: Claim(key, getattr(papers, paper), study=study, **{"kind": "test", **entry})
+          for paper, studies in read_toml("claims.toml").items() for study, entries in studies.items() for key, entry in entries.items()}
 
 
 @dataclass

@@ -12,10 +12,9 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup, escape
 from raya.lab import plots
-from raya.lab.claims import decide, errors_sentence
-from raya.lab.families import FAMILIES
+from raya.lab.claims import decide, errors_sentence, read_toml
+from raya.lab.laboratory import FAMILIES
 from raya.lab.page import format_value
-from raya.lab.papers import REFERENCES
 from raya.lab.statistics import COMPATIBLE, NOT_REPRODUCED, REPRODUCED, UNTESTABLE
 from raya.lab.store import write_atomically
 
@@ -23,41 +22,7 @@ OPEN_ROWS, MAX_ROWS = 24, 400  # a table of at most OPEN_ROWS rows is unfolded; 
 
 # Content security policy: no scripts and no external resources.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
-ABOUT = {
-    "title": "The load laboratory",
-    "question": "Which claims of the papers on two ray-tracing array machines can be reproduced on models of these machines, "
-                "and what do the models show beyond the papers?",
-    "method": [
-        "Kohata & Ito 1993 divide the screen: the SPA has 256 processing elements (PEs) on a ring and a bus, and a cyclic mapping "
-        "distributes the pixels over them. Yoshitani & Yamazaki, about 1995, divide space: each of 64 transputers on a torus holds "
-        "one voxel, and rays travel between them as packets. Havran & Sixta 1999 count tests and steps in uniform grids; raya's "
-        "counts are compared with theirs.",
-        "Both machines are models that run as OpenCL kernels. Every machine and every mapping gives the same image, bit for bit. "
-        "The kernels count loads, packets and tests. Times are modelled from these counts unless a page calls them measured.",
-        "A claim is a statement of a paper. claims.toml has each claim once, with a rule that was fixed before the pictures of docs/verdicts.md "
-        "were computed. Reproduced: the interval fulfils the rule. Not reproduced: the interval contradicts the rule. Compatible: neither, because the test has too little "
-        "power. Untestable: no study can decide the claim. Derived, without a verdict: the claim follows from another claim, or from figures "
-        "to which scenes were matched. Tests are two-sided. Holm's correction covers all "
-        "tests of this document, so a claim can be compatible although its own 95 % interval fulfils the rule. \"Weakest\" is that test of a "
-        "claim with several tests that supports it least.",
-        "An ensemble has pictures of scene families, in this order: " + "; ".join(FAMILIES) + ". Each seed gives another scene or another "
-        "view. If the command line names scenes, an ensemble has random views of these scenes instead. Intervals treat the families as strata.",
-        "\"Derived\" marks a figure that we computed from figures that the paper prints. \"[D]\" marks such a figure in a "
-        "text. \"+-\" precedes the half width of a 95 % confidence interval by Student's t.",
-    ],
-    "figures": [  # figures and tables of the papers: the study of each, or the reason why there is none
-        "Kohata & Ito, Fig. 1 and Table 1, the hardware: `raya machines spa` lists its numbers; study table2 checks the totals of Table 1.",
-        "Figs 2 and 3, ray tracing and its algorithm: drawings without numbers. `kernels/README.md` describes our algorithm.",
-        "Figs 4 and 5, the cyclic mapping and the 2-D array: drawings. `raya explore` draws every mapping; study lattice counts Fig. 5's blocks.",
-        "Fig. 6, the picture that they analyse: its scene is not published. Study table2 shows ours, study cluster has scenes like it.",
-        "Figs 7, 8, 9, 12 and 13 and Tables 2, 3 and 4: the studies of the same names.",
-        "Figs 10 and 11, positions of neighbours and transfers of the filter: drawings. Studies table3 and table4 count the rotations.",
-        "Yoshitani & Yamazaki, Figs 1 and 2, the voxels and 2-D DDA: drawings. `docs/architecture.md` describes the packets of our 3-D DDA.",
-        "Their Table 1, contents of a packet: no claim that a study can test. The studies use its 22 words; `docs/architecture.md` lists ours.",
-        "Their Fig. 3: study divisions. Their Fig. 4: study objects.",
-        "No curve of a figure was digitised: only numbers in the texts and tables are compared.",
-    ],
-}
+ABOUT = read_toml("about.toml", families="; ".join(FAMILIES))
 
 
 def json_value(value):
@@ -83,15 +48,13 @@ def rows_of(table):
 
 def json_of(page):
     """Returns the page as a JSON value, described by study.schema.json."""
-    tables = [{"name": t.name, "title": t.title, "columns": list(t.rows.columns), "rows": rows_of(t)}
-              for t in page.tables]
-    pictures = [{"name": p.name, "title": p.title, "words": p.words} for p in page.pictures]
-    comparisons = [{**json_value(c), "ratio": json_value(ratio(c))} for c in page.comparisons]
-    drawn = [{**json_value(p), "description": plots.description(p)} for p in page.plots]
     members = {f.name: getattr(page, f.name) for f in dataclasses.fields(page) if f.name not in ("name", "placeholders")}
-    claims = [record_of(judgement) for judgement in page.claims]
-    return {"study": page.name, **json_value({**members, "tables": tables, "pictures": pictures, "claims": claims,
-                                         "comparisons": comparisons, "plots": drawn})}
+    return {"study": page.name, **json_value({
+        **members, "claims": [record_of(judgement) for judgement in page.claims],
+        "tables": [{"name": t.name, "title": t.title, "columns": list(t.rows.columns), "rows": rows_of(t)} for t in page.tables],
+        "pictures": [{"name": p.name, "title": p.title, "words": p.words} for p in page.pictures],
+        "comparisons": [{**json_value(c), "ratio": ratio(c)} for c in page.comparisons],
+        "plots": [{**json_value(p), "description": plots.description(p)} for p in page.plots]})}
 
 
 def record_of(judgement):
@@ -184,19 +147,19 @@ def verdict_sentences(pages):
     return [*sentences, *filter(None, [errors_sentence(claims)])]
 
 
-def claims_with(verdict, pages):
-    """Returns a sentence with place, statement and our figures for each claim with the verdict."""
-    return [f'{c.claim.paper}, {c.claim.place}: "{c.claim.statement}" {c.reason}' for page in pages for c in page.claims if c.verdict == verdict]
+def summary_of(pages):
+    """Returns [(title, sentences)] of the summary's sections: results, then reasons, which have places and our figures."""
+    def of_verdict(verdict):
+        return [c for page in pages for c in page.claims if c.verdict == verdict]
 
+    def reasons(verdict):
+        return [f'{c.claim.paper}, {c.claim.place}: "{c.claim.statement}" {c.reason}' for c in of_verdict(verdict)]
 
-def statements_with(verdict, pages):
-    """Returns the statement of each claim with the verdict."""
-    return [c.claim.statement for page in pages for c in page.claims if c.verdict == verdict]
-
-
-def news_of(pages):
-    """Returns a sentence for each result beyond the papers."""
-    return [sentence for page in pages for sentence in page.news]
+    return [("Claims that hold", [c.claim.statement for c in of_verdict(REPRODUCED)]),
+            ("Claims that do not hold", [c.claim.statement for c in of_verdict(NOT_REPRODUCED)]),
+            ("Results beyond the papers", [sentence for page in pages for sentence in page.news]),
+            ("Why claims do not hold", reasons(NOT_REPRODUCED)),
+            ("Compatible: the test has too little power", reasons(COMPATIBLE))]
 
 
 def prose(text):
@@ -215,11 +178,6 @@ def classes_of(cells):
             "t" if max(map(len, c)) > 15 else "" for c in columns]
 
 
-def inlined(svg):
-    """Returns inline SVG for the document: colours become CSS variables, which the dark colour scheme redefines."""
-    return Markup(re.sub(r": #([0-9a-f]{6})", r": var(--plot-\1, #\1)", svg[svg.index("<svg"):]))
-
-
 def markdown_table(cells):
     lines = ["| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in cells]
     return "\n".join([lines[0], "|" + "---|" * len(cells[0])] + lines[1:])
@@ -231,45 +189,14 @@ def items(lines):
 
 def environment():
     templates = Path(__file__).resolve().parent / "templates"  # an installation has style.css there, too
-    jinja_environment = jinja2.Environment(loader=jinja2.FileSystemLoader([templates, templates.parents[2] / "host" / "report" / "page"]), trim_blocks=True,
-                              autoescape=jinja2.select_autoescape(["html.j2"]), lstrip_blocks=True,
-                              undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
-    jinja_environment.filters.update(classes=classes_of, items=items, markdown_table=markdown_table, prose=prose)
-    jinja_environment.globals.update({function.__name__: function for function in (
-        cells_of_claims, cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run,
-        claims_with, news_of, statements_with, title_of_comparisons, verdict_sentences)}, about=ABOUT, policy=Markup(POLICY),
-        OPEN_ROWS=OPEN_ROWS, MAX_ROWS=MAX_ROWS)
-    return jinja_environment
-
-
-def write_page(folder, page):
-    """Writes all files of one study, whose verdicts decide() must have set. Returns its drawings for the document: {name: SVG of a plot, or base64
-    text of a PNG}."""
-    drawings, files = {}, {}
-    for table in page.tables:
-        files[f"{table.name}.csv"] = csv_of(table.rows)
-    for picture in page.pictures:
-        drawings[picture.name] = base64.b64encode(picture.png).decode()
-        files[f"{picture.name}.png"] = picture.png
-    for plot in page.plots:
-        drawn = plots.files_of(plot)
-        files.update({f"{plot.name}.{kind}": content for kind, content in drawn.items()})
-        drawings[plot.name] = inlined(drawn["svg"].decode())
-    files.update(texts_of(page))
-    for name, content in files.items():  # only after all content has been made, so that an error leaves no files
-        write_atomically(folder / name, content)
-    return drawings
-
-
-def names_of(pages):
-    """Returns the names of all files of a document, as {name: names of the studies whose results the file contains}."""
-    names = {}
-    for page in pages:
-        names.update(dict.fromkeys([f"{table.name}.csv" for table in page.tables] + [f"{picture.name}.png" for picture in page.pictures]
-                                   + [f"{plot.name}.{kind}" for plot in page.plots for kind in ("svg", "png")]
-                                   + [f"{page.name}.json", f"{page.name}.md"], {page.name}))
-    shared = ["index.html"] + ["claims.csv", "index.md", "claims.md"] * (len(pages) > 1)
-    return {**names, **dict.fromkeys(shared, {page.name for page in pages})}
+    folders = [templates, templates.parents[2] / "host" / "report" / "page"]
+    made = jinja2.Environment(loader=jinja2.FileSystemLoader(folders), autoescape=jinja2.select_autoescape(["html.j2"]), trim_blocks=True,
+                              lstrip_blocks=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
+    made.filters.update(classes=classes_of, items=items, markdown_table=markdown_table, prose=prose)
+    made.globals.update({function.__name__: function for function in (
+        cells_of_claims, cells_of_comparisons, cells_of_points, cells_of_table, command_of, len, lines_of_run, summary_of, title_of_comparisons,
+        verdict_sentences)}, about=ABOUT, policy=Markup(POLICY), OPEN_ROWS=OPEN_ROWS, MAX_ROWS=MAX_ROWS)
+    return made
 
 
 def csv_of(rows):
@@ -290,17 +217,34 @@ def texts_of(page):
             f"{page.name}.md": markdown_of("page.md.j2", page=page)}
 
 
+def write(folder, files):
+    """Writes {file name: content}, only after all content has been made, so that an error leaves no files. Returns the names."""
+    for name, content in files.items():
+        write_atomically(folder / name, content)
+    return list(files)
+
+
+def write_page(folder, page):
+    """Writes all files of one study, whose verdicts decide() must have set. Returns (their names, drawings for the document: {name: SVG of a plot, or
+    base64 text of a PNG})."""
+    drawings = {picture.name: base64.b64encode(picture.png).decode() for picture in page.pictures}
+    files = {**{f"{table.name}.csv": csv_of(table.rows) for table in page.tables}, **{f"{one.name}.png": one.png for one in page.pictures}}
+    for plot in page.plots:
+        drawn = plots.files_of(plot)
+        files.update({f"{plot.name}.{kind}": content for kind, content in drawn.items()})
+        svg = drawn["svg"].decode()  # colours become CSS variables, which the dark colour scheme redefines
+        drawings[plot.name] = Markup(re.sub(r": #([0-9a-f]{6})", r": var(--plot-\1, #\1)", svg[svg.index("<svg"):]))
+    return write(folder, {**files, **texts_of(page)}), drawings
+
+
 def write_document(folder, pages, drawings, skip_notes=()):
     """Writes index.html. For several pages, also writes index.md, claims.md and claims.csv, and rewrites the pages' JSON and Markdown, because their
-    verdicts now take all claims into account. `skip_notes`: sentences on studies that did not run."""
-    decide([judgement for page in pages for judgement in page.claims])
+    verdicts now take all claims into account. `skip_notes`: sentences on studies that did not run. Returns the names of the files of all pages."""
+    judgements, values = [judgement for page in pages for judgement in page.claims], {"pages": pages, "skip_notes": skip_notes}
+    decide(judgements)
+    files = {"index.html": environment().get_template("document.html.j2").render(drawings=drawings, **values)}
     if len(pages) > 1:
-        claims = pd.DataFrame([record_of(judgement) for page in pages for judgement in page.claims])
-        write_atomically(folder / "claims.csv", csv_of(claims))
-        for name, content in (item for page in pages for item in texts_of(page).items()):
-            write_atomically(folder / name, content)
-    body = environment().get_template("document.html.j2").render(pages=pages, drawings=drawings, skip_notes=skip_notes, references=REFERENCES)
-    write_atomically(folder / "index.html", body)
-    if len(pages) > 1:
-        for name in ("index.md", "claims.md"):
-            write_atomically(folder / name, markdown_of(f"{name}.j2", pages=pages, skip_notes=skip_notes, references=REFERENCES))
+        files |= {name: markdown_of(f"{name}.j2", **values) for name in ("index.md", "claims.md")}
+        files["claims.csv"] = csv_of(pd.DataFrame(map(record_of, judgements)))
+        write(folder, {name: content for page in pages for name, content in texts_of(page).items()})
+    return write(folder, files)

@@ -121,17 +121,14 @@ def check(options, error):
         for other in ("shard", "size", "views", "seed", "network", "strict", "no_tuned", *REPEATING[REPEATING.index(name) + 1:]):
             if {name, other} <= given:
                 error(f"--{name} excludes --{other.replace('_', '-')}")
-    if options.quiet and options.verbose:
-        error("--quiet and --verbose: give one of them")
     repeats = options.missing or options.check  # a manifest contains the study and its settings
-    if not repeats and not options.study:
-        error("STUDY is required; remedy: raya study NAME -o DIR")
-    if not repeats and not options.output:
-        error("--output is required; remedy: raya study NAME -o DIR")
-    if options.missing and options.output:
-        error("--output with --missing: no effect; leave it out")
-    if options.output == "-":
-        error("-o -: a study writes several files, not stdout; name a folder")
+    for wrong, reason in ((options.quiet and options.verbose, "--quiet and --verbose: give one of them"),
+                          (not repeats and not options.study, "STUDY is required; remedy: raya study NAME -o DIR"),
+                          (not repeats and not options.output, "--output is required; remedy: raya study NAME -o DIR"),
+                          (options.missing and options.output, "--output with --missing: no effect; leave it out"),
+                          (options.output == "-", "-o -: a study writes several files, not stdout; name a folder")):
+        if wrong:
+            error(reason)
     names = [*STUDIES, "all"]
     if options.study and options.study not in names:
         if not options.study.endswith(".py"):

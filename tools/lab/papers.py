@@ -44,37 +44,6 @@ UNIFORM_GRIDS = {
     ("lattice", (44, 44, 44)): (9.26, 10.56),
 }
 
-REFERENCES = [
-    "Milton Abramowitz, Irene A. Stegun (eds.): Handbook of Mathematical Functions. National Bureau of Standards, "
-    "Applied Mathematics Series 55, 1964.",
-    "John Amanatides, Andrew Woo: A Fast Voxel Traversal Algorithm for Ray Tracing. Eurographics '87, pp. 3-10, 1987.",
-    "Akira Fujimoto, Takayuki Tanaka, Kansei Iwata: ARTS: Accelerated Ray-Tracing System. IEEE Computer Graphics and "
-    "Applications 6 (4), pp. 16-26, 1986.",
-    "Eric Haines: A Proposal for Standard Graphics Environments. IEEE Computer Graphics and Applications 7 (11), "
-    "pp. 3-5, 1987. (The Standard Procedural Databases, SPD.)",
-    "Vlastimil Havran, Filip Sixta: Comparison of Hierarchical Grids. Ray Tracing News 12 (1), 1999.",
-    "Alan Heirich, James Arvo: A Competitive Analysis of Load Balancing Strategies for Parallel Ray Tracing. The "
-    "Journal of Supercomputing 12, pp. 57-68, 1998.",
-    "SGS-Thomson Microelectronics: IMS T805, 32-bit floating-point transputer. Data sheet, 1996.",
-    "Sture Holm: A Simple Sequentially Rejective Multiple Test Procedure. Scandinavian Journal of Statistics 6 (2), "
-    "pp. 65-70, 1979.",
-    "Masaki Kohata, Taku Ito: Parallel Computation of Ray Tracing on a One-dimensional DSP Array "
-    "(1次元DSPアレイでの光線追跡法の並列計算). IPSJ Journal (Information Processing Society of Japan), 1993, in Japanese.",
-    "Hitoshi Nishimura, Hiroshi Deguchi, Toshikazu Tatsumi, Toru Kawata, Isao Shirakawa, Koichi Omura: Performance evaluation of parallel "
-    "processing in the computer graphics system LINKS-1 (in Japanese, abstract). Transactions of the IEICE J68-D (4), pp. 733-740, 1985.",
-    "Cellular Array Processor CAP and Applications (abstract). Journal of VLSI Signal Processing, doi:10.1007/BF00932066, 1989.",
-    "Masaharu Yoshida, Tadashi Naruse, Tokiichiro Takahashi: A Dedicated Graphics Processor SIGHT-2. Eurographics Workshop on Graphics "
-    "Hardware, pp. 151-169, 1989.",
-    "Michael Potmesil, Eric M. Hoffert: The Pixel Machine: A Parallel Image Computer. Computer Graphics 23 (3) "
-    "(SIGGRAPH '89), pp. 69-78, 1989.",
-    "Henri Casanova, Arnaud Giersch, Arnaud Legrand, Martin Quinson, Frédéric Suter: Versatile, Scalable, and "
-    "Accurate Simulation of Distributed Applications and Platforms. Journal of Parallel and Distributed Computing 74 "
-    "(10), pp. 2899-2917, 2014.",
-    "Ingo Wald, Sven Woop, Carsten Benthin, Gregory S. Johnson, Manfred Ernst: Embree: A Kernel Framework for "
-    "Efficient CPU Ray Tracing. ACM Transactions on Graphics 33 (4), 2014.",
-    "T. Yoshitani, K. Yamazaki: Realisation and evaluation of space-partition parallel ray tracing "
-    "(空間分割型並列レイティング法の実現と評価). National convention of the IPSJ, 4L-6, about 1995, in Japanese.",
-]
 
 
 def is_papers(scene, size):

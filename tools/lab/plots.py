@@ -70,20 +70,6 @@ def draw_intervals(axes, plot, series, colour):
         axes.errorbar(x, y, yerr=[y - low, half], fmt="none", ecolor=colour, elinewidth=1.2, capsize=3)
 
 
-def draw_series(axes, plot):
-    """Draws all series. Returns matplotlib's lines for the legend."""
-    lines, series_counts = [], {True: 0, False: 0}  # {is the series the paper's?: number of series drawn so far}
-    for series in plot.series:
-        paper = series.style == "paper"
-        options = line_options(series.style, series_counts[paper], len(series.x))
-        series_counts[paper] += 1
-        y = [value if math.isfinite(value) else math.nan for value in series.y]
-        lines += axes.plot(series.x, y, **options)
-        if any(series.half_widths):
-            draw_intervals(axes, plot, series, options["color"])
-    return lines
-
-
 def legend_text(series):
     """Returns the label of a series. It includes up to four values of a paper, because labels next to the points would cover the curves."""
     values = ", ".join(f"{y:.3g}" if y < 1000 else f"{y:.0f}" for y in series.y) if series.style == "paper" and len(series.y) <= 4 else ""
@@ -98,29 +84,24 @@ def power_of_ten(value, _):
     return f"$10^{{{exponent}}}$" if digit == 1 else rf"${digit}\times10^{{{exponent}}}$"
 
 
-def mark_powers_of_two(axis, values):
-    """Puts at most about nine ticks at powers of two."""
-    first, last = (math.frexp(value)[1] - 1 for value in (min(values), max(values)))
-    axis.set_major_locator(FixedLocator([2.0**n for n in range(first, last + 1, (last - first) // 9 + 1)]))
-    axis.set_minor_locator(NullLocator())
-    as_power = last > 14 or first < -3
-    axis.set_major_formatter(lambda value, _: f"$2^{{{round(math.log2(value))}}}$" if as_power else f"{value:g}")
-
-
-def mark_powers_of_ten(axis, values):
-    """Puts ticks at powers of ten; also at 2 and 5 times each power if the range is small."""
-    low, high = (min(values), max(values)) if values else (1, 10)
-    axis.set_major_locator(LogLocator(base=10, subs=(1, 2, 5) if high / low < 300 else (1,), numticks=12))
-    axis.set_minor_formatter(NullFormatter())
-    axis.set_major_formatter((lambda value, _: f"{value:g}") if 1e-4 < low <= high < 1e5 else power_of_ten)
-
-
 def set_log_axis(axes, name, values):
-    by_two = len(set(values)) > 2 and all(math.frexp(value)[0] == 0.5 for value in values)
-    (axes.set_xscale if name == "x" else axes.set_yscale)("log", base=2 if by_two else 10, nonpositive="mask")
+    """Puts at most about nine ticks at powers of two if all values are such powers; else ticks at powers of ten, and also at 2 and 5 times each power
+    if the range is small."""
+    axis, by_two = getattr(axes, f"{name}axis"), len(set(values)) > 2 and all(math.frexp(value)[0] == 0.5 for value in values)
+    getattr(axes, f"set_{name}scale")("log", base=2 if by_two else 10, nonpositive="mask")
+    low, high = (min(values), max(values)) if values else (1, 10)
     if not values:  # without values, automatic limits fail on a logarithmic axis
-        (axes.set_xlim if name == "x" else axes.set_ylim)(1, 10)
-    (mark_powers_of_two if by_two else mark_powers_of_ten)(axes.xaxis if name == "x" else axes.yaxis, values)
+        getattr(axes, f"set_{name}lim")(low, high)
+    if by_two:
+        first, last = (math.frexp(value)[1] - 1 for value in (low, high))
+        axis.set_major_locator(FixedLocator([2.0**n for n in range(first, last + 1, (last - first) // 9 + 1)]))
+        axis.set_minor_locator(NullLocator())
+        as_power = last > 14 or first < -3
+        axis.set_major_formatter(lambda value, _: f"$2^{{{round(math.log2(value))}}}$" if as_power else f"{value:g}")
+    else:
+        axis.set_major_locator(LogLocator(base=10, subs=(1, 2, 5) if high / low < 300 else (1,), numticks=12))
+        axis.set_minor_formatter(NullFormatter())
+        axis.set_major_formatter((lambda value, _: f"{value:g}") if 1e-4 < low <= high < 1e5 else power_of_ten)
 
 
 def set_axes(axes, plot, points):
@@ -146,7 +127,14 @@ def draw(plot):
     figure = Figure(figsize=(9, max(5.2, 0.24 * lines)), layout="constrained")  # inches: 900 pixels wide at 100 an inch
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    handles = draw_series(axes, plot)
+    handles, series_counts = [], {True: 0, False: 0}  # {is the series the paper's?: number of series drawn so far}
+    for series in plot.series:
+        paper = series.style == "paper"
+        options = line_options(series.style, series_counts[paper], len(series.x))
+        series_counts[paper] += 1
+        handles += axes.plot(series.x, [value if math.isfinite(value) else math.nan for value in series.y], **options)
+        if any(series.half_widths):
+            draw_intervals(axes, plot, series, options["color"])
     points = [point for series in plot.series for point in zip(series.x, series.y)]
     shown_points = [point for point in points if is_shown(plot, *point)]
     set_axes(axes, plot, shown_points)

@@ -7,13 +7,12 @@ from shlex import quote
 from types import SimpleNamespace
 
 import raya
-from raya.lab import manifest, shards
+from raya.lab import records
 from raya.lab.claims import decide
-from raya.lab.document import names_of, write_document, write_page
+from raya.lab.document import write_document, write_page
 from raya.lab.options import settings_of
 from raya.lab.page import format_value
-from raya.lab.registry import studies, study_of_file
-from raya.lab.worker import Worker, warn_as_raya
+from raya.lab.worker import Worker, studies, study_of_file, warn_as_raya
 from tqdm import tqdm
 
 EXIT_DEVICE, EXIT_DIFFERENT = 3, 4
@@ -22,7 +21,7 @@ EXIT_DEVICE, EXIT_DIFFERENT = 3, 4
 def repeating_options(options, recorded, source):
     """Returns the options that repeat the study that `source`, a manifest or shard, records. Raises ValueError if it has an invalid option."""
     try:
-        arguments = manifest.arguments_of(recorded, options.study, options.scenes)
+        arguments = records.arguments_of(recorded, options.study, options.scenes)
         repeated = settings_of([*arguments, "-o", options.output or os.devnull])
     except (ValueError, TypeError, LookupError) as error:
         raise ValueError(f"{source}: {error}") from None
@@ -30,42 +29,31 @@ def repeating_options(options, recorded, source):
     return SimpleNamespace(**{**vars(repeated), **kept})
 
 
-def selected_studies(name):
-    """Returns (studies to run, a sentence for each skipped study). Raises ValueError if the named study cannot run on this machine."""
-    if name.endswith(".py"):
-        return [study_of_file(name)], []
-    known = studies()
-    if name != "all":
-        if known[name].missing():
-            raise ValueError(f"study {name}: {known[name].missing()}")
-        return [known[name]], []
-    skip_notes = [f"study {study.name} is skipped: {study.missing()}" for study in known.values() if study.missing()]
-    return [study for study in known.values() if not study.missing()], skip_notes
-
-
-def checked_selection(options):
-    """Returns selected_studies(), prints the sentences, and raises ValueError for several scenes of a study of one."""
-    chosen, skip_notes = selected_studies(options.study)
+def selected_studies(options):
+    """Returns (studies to run, a sentence for each study that `all` skips, which it also prints). Raises ValueError if the named study cannot run on this
+    machine, and for several scenes of a study of one."""
+    if options.study.endswith(".py"):
+        chosen = [study_of_file(options.study)]
+    else:
+        chosen = [study for name, study in studies().items() if options.study in ("all", name)]
+    missing = {study.name: why for study in chosen for why in [study.missing()] if why}
+    if missing and options.study != "all":
+        raise ValueError(f"study {options.study}: {missing[options.study]}")
+    skip_notes = [f"study {name} is skipped: {why}" for name, why in missing.items()]
     for line in skip_notes:
         print(f"raya: {line}", file=sys.stderr)
     if len(chosen) == 1 and chosen[0].one_scene and len(options.scenes) > 1:
         raise ValueError(f"study {chosen[0].name} takes one scene, {len(options.scenes)} were given: run it for each, "
                          "into a folder of its own")
-    return chosen, skip_notes
+    return [study for study in chosen if study.name not in missing], skip_notes
 
 
 def command_of(study, options):
     """Returns the command line that repeats one study."""
     scenes = options.scenes[:1] if study.one_scene else options.scenes
-    arguments = ["raya", "study", options.study if options.study.endswith(".py") else study.name, *map(quote, scenes)]
-    arguments += [f"--size {options.size}"] if options.size else []
-    arguments += [f"--device {quote(options.device)}"] if options.device else []
-    arguments += [f"--network {options.network[0] * 1e6:g},{options.network[1] * 1e9:g}"] if options.network else []
-    arguments += [f"--views {options.views}"] if options.views else []
-    arguments += [f"--seed {options.seed}"] if options.seed != 1 else []
-    arguments += ["--strict"] if options.strict else []
-    arguments += ["--no-tuned"] if options.no_tuned else []
-    return " ".join(arguments + ["-o DIR"])
+    settings = [argument.replace("=", " ", 1) for argument in records.setting_arguments(vars(options))]
+    device = [f"--device {quote(options.device)}"] if options.device else []
+    return " ".join(["raya study", study.source, *map(quote, scenes), *settings, *device, *["--no-tuned"] * options.no_tuned, "-o DIR"])
 
 
 def print_page(page, folder):
@@ -90,37 +78,31 @@ def make_folder(path):
     return missing
 
 
-def divisible(chosen):
-    """Returns the studies whose cost images shards can compute. Raises ValueError if there is none."""
-    studies_with_ensembles = [study for study in chosen if study.prepare]
-    if not studies_with_ensembles:
-        raise ValueError(f"study {chosen[0].name}: has no ensembles to divide; remedy: run it without --shard")
-    return studies_with_ensembles
-
-
 def run_shard(options, chosen, scenes):
-    """Computes a shard of the studies' cost images."""
+    """Computes a shard of the studies' cost images. Raises ValueError if no study has any."""
+    if not any(study.prepare for study in chosen):
+        raise ValueError(f"study {chosen[0].name}: has no ensembles to divide; remedy: run it without --shard")
     folder, (number, count), worker = Path(options.output), options.shard, Worker()
     make_folder(folder)
-    header = shards.header_of(options, scenes)
-    shards.start(folder, header)
+    header = records.header_of(options, scenes)
+    records.start_shard(folder, header)
     try:
-        for study in chosen:
-            names, computed = worker.run(options.study if options.study.endswith(".py") else study.name, scenes, folder, options)
+        for study in filter(lambda study: study.prepare, chosen):
+            names, computed = worker.run(study.source, scenes, folder, options)
     finally:
         worker.close()
-    shards.write_header(folder, {**header, "results": names})
+    records.write_header(folder, {**header, "results": names})
     if options.verbosity >= 0:
         print(f"{folder}: shard {number}/{count} of study {options.study}: {computed} of {len(names)} results computed now")
 
 
 def print_missing(options):
     """Prints a line for each shard that is absent, incomplete or damaged. Returns the exit code."""
-    headers, problems, notes = shards.find(options.missing)
+    _, problems, notes = records.find_shards(options.missing)
     for line in notes:
         print(f"raya: {line}", file=sys.stderr)
-    for number, problem in problems.items():
-        print(f"{number}/{next(iter(headers.values()))[1]['shards']} {problem}")
+    for shard, problem in problems.items():
+        print(shard, problem)
     return EXIT_DIFFERENT if problems else 0
 
 
@@ -130,9 +112,9 @@ def check_manifest(options, recorded, chosen, skip_notes, scenes):
         folder = Path(options.output or temporary)
         code = run_all(SimpleNamespace(**{**vars(options), "output": str(folder), "verbosity": min(-1, options.verbosity)}), chosen, skip_notes,
                        scenes)
-        if not (folder / manifest.NAME).exists():
+        if not (folder / records.MANIFEST).exists():
             return code
-        lines, counts = manifest.compare(recorded, manifest.read_manifest(folder / manifest.NAME))
+        lines, counts = records.compare(recorded, records.read_manifest(folder / records.MANIFEST))
     for line in lines:
         print(line)
     measured = f", {counts['measured']} with measured times not compared" if counts["measured"] else ""
@@ -144,17 +126,16 @@ def check_manifest(options, recorded, chosen, skip_notes, scenes):
 def run_all(options, chosen, skip_notes, scenes):
     """Runs the chosen studies and writes their results. Appends a sentence to skip_notes for each study that fails on the device.
     Returns the exit code."""
-    folder, worker, pages, drawings, code = Path(options.output), Worker(), [], {}, 0
+    folder, worker, pages, drawings, files, code = Path(options.output), Worker(), [], {}, {}, 0  # files: {name: are its contents repeatable?}
     created_folders = make_folder(folder)
-    (folder / manifest.NAME).unlink(missing_ok=True)  # a manifest describes the files of one complete run
+    (folder / records.MANIFEST).unlink(missing_ok=True)  # a manifest describes the files of one complete run
     with tempfile.TemporaryDirectory(prefix="raya-lab-") as cache:
         try:
             bar = tqdm(chosen, disable=options.verbosity < 0 or not sys.stderr.isatty(), unit="study", leave=False)
             for study in bar:
                 bar.set_description(f"study {study.name}")
                 try:
-                    name = options.study if options.study.endswith(".py") else study.name
-                    page = worker.run(name, scenes, cache, options)
+                    page = worker.run(study.source, scenes, cache, options)
                 except raya.DeviceError as error:
                     if len(chosen) == 1:
                         raise
@@ -164,7 +145,8 @@ def run_all(options, chosen, skip_notes, scenes):
                     continue
                 page.run = {"command": command_of(study, options), "version": f"raya {raya.__version__}", **page.run}
                 decide(page.claims)  # write_document() decides again, with the claims of all pages
-                drawings[page.name] = write_page(folder, page)
+                names, drawings[page.name] = write_page(folder, page)
+                files.update(dict.fromkeys(names, not study.measures))
                 pages.append(page)
                 if options.verbosity >= 0:
                     bar.clear()
@@ -175,11 +157,9 @@ def run_all(options, chosen, skip_notes, scenes):
                 if created.exists() and not any(created.iterdir()):
                     created.rmdir()
     if pages:
-        write_document(folder, pages, drawings, skip_notes)
-        measured = {study.name for study in chosen if study.measures}
-        files = {name: not owners & measured for name, owners in names_of(pages).items()}
+        files.update(dict.fromkeys(write_document(folder, pages, drawings, skip_notes), all(files.values())))
         devices = {device for page in pages for device in page.run["device"].split("; ")}
-        manifest.write_manifest(folder, options, files, devices, manifest.inputs_of(options.study, scenes))
+        records.write_manifest(folder, options, files, devices, records.inputs_of(options.study, scenes))
         if options.verbosity >= 0:
             print(folder / "index.html")
     return code
@@ -187,27 +167,27 @@ def run_all(options, chosen, skip_notes, scenes):
 
 def run(options):
     """Does what the options of `raya study` say. Returns the exit code."""
-    options.version, recorded, source = manifest.program_version(), None, options.check
+    options.version, recorded, source = records.program_version(), None, options.check
     warn_as_raya(options)
     if options.missing:
         return print_missing(options)
     if options.merge:
-        recorded, source = shards.merged(options), options.merge[0]
+        recorded, source = records.merged_shards(options), options.merge[0]
     elif options.check:
-        recorded = manifest.read_manifest(options.check)
+        recorded = records.read_manifest(options.check)
     if recorded:
         options = repeating_options(options, recorded, source)
     else:  # of a record, the hash of the study's file is compared first, because the selection runs that file
-        chosen, skip_notes = checked_selection(options)
+        chosen, skip_notes = selected_studies(options)
     try:
         scenes = [raya.load(file, strict=options.strict).renamed(file) for file in options.scenes]
     except ValueError as error:
         raise ValueError(f"{error}; remedy: name the study and its scenes: raya study {options.study} SCENE..." if recorded else error) from None
     if recorded:
-        manifest.check_inputs(manifest.inputs_of(options.study, scenes), recorded["inputs"], source)
-        chosen, skip_notes = checked_selection(options)
+        records.check_inputs(records.inputs_of(options.study, scenes), recorded["inputs"], source)
+        chosen, skip_notes = selected_studies(options)
     if options.check:
         return check_manifest(options, recorded, chosen, skip_notes, scenes)
     if options.shard:
-        return run_shard(options, divisible(chosen), scenes)
+        return run_shard(options, chosen, scenes)
     return run_all(options, chosen, skip_notes, scenes)

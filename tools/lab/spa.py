@@ -27,7 +27,7 @@ def spa_ms(cycles):
 
 
 def host_model():
-    """Returns {name: (minimum, maximum)} of the host model: set-up of a call (ms), a rotation (ms), and words per second. Follows from the printed
+    """Returns the (minimum, maximum) of the host model's set-up of a call (ms), rotation (ms), and words per second. Follows from the printed
     times of 2 and 34 rotations (Table 4) and of a transfer of 256 x 256 x 3 words (Table 2), each rounded to 1 ms."""
     few, many = 2, 34
     few_ms, many_ms, image_ms = (np.array([value - ROUNDING, value + ROUNDING]) for value in
@@ -36,38 +36,26 @@ def host_model():
     setup = (many * few_ms - few * many_ms[::-1]) / (many - few)
     rotation = (many_ms - few_ms[::-1]) / (many - few)
     rate = 3e3 * papers.SIZE**2 / (image_ms - setup[::-1])[::-1]
-    return {"setup_ms": tuple(setup), "rotation_ms": tuple(rotation), "words_per_s": tuple(rate)}
+    return setup, rotation, rate
 
 
-@dataclass
-class SpaRun:
-    """A render on PEs of the SPA; if the scene does not fit into them, without their memory limit."""
-
-    result: raya.Result
-    report: dict
-
-    def time(self, factor=FACTOR):
-        """Returns the report's modelled_ms, computed with this factor of the clock."""
-        t, ratio = dict(self.report["modelled_ms"]), factor / FACTOR
-        t["total"] += (ratio - 1) * t["compute"]
-        for part in ("compute", "filter", "compare"):
-            t[part] *= ratio
-        return t
-
-    @property
-    def rotations(self):
-        return self.report["communication"]["rotations"]
+def time_of(result, factor=FACTOR):
+    """Returns the modelled_ms of a result's report, computed with this factor of the clock."""
+    t, ratio = dict(result.report["modelled_ms"]), factor / FACTOR
+    t["total"] += (ratio - 1) * t["compute"]
+    for part in ("compute", "filter", "compare"):
+        t[part] *= ratio
+    return t
 
 
 def run_on_spa(lab, scene, size, pes, offset, antialias="none"):
-    """Renders on PEs of the SPA; returns a SpaRun."""
+    """Renders on PEs of the SPA; if the scene does not fit into them, without their memory limit. Returns the result."""
     options = dict(size=size, pes=pes, offset=offset, antialias=antialias, format=format_for(scene), accel="none", split=1,
                    cost=True)
     try:
-        result = lab.render(scene, machine="spa", **options)
+        return lab.render(scene, machine="spa", **options)
     except raya.DoesNotFit:
-        result = lab.render(scene, machine="grande", bounces=SPA["bounces"], **options)
-    return SpaRun(result, result.report)
+        return lab.render(scene, machine="grande", bounces=SPA["bounces"], **options)
 
 
 def offset_times(costs, pes, antialias, factor=FACTOR):
@@ -87,24 +75,21 @@ class SmoothingRuns:
     scene: raya.Scene
     size: int
     antialias: str
-    runs: dict  # {offset: SpaRun}
+    runs: dict  # {offset: raya.Result}
     costs: object  # cost images `trace` and `supersample`, as in Costs
 
     def rows(self, factor=FACTOR):
         """Returns a data frame with a row for each rendered offset; times in ms."""
         all_rows = []
         for p, run in self.runs.items():
-            t, load = run.time(factor), run.report["load"]
+            t, load = time_of(run, factor), run.report["load"]
             last_load = load["supersample" if self.antialias == "supersample" else "trace"]
-            row = {"p": p, "rotations": run.rotations, "communication": t["communication"], "filter": t["filter"],
-                   "compare": t["compare"], "trace": factor * spa_ms(load["trace"]["max"]),
-                   "supersample": factor * spa_ms(last_load["max"]), "u": last_load["imbalance"]}
-            row["filtering"] = row["filter"] + row["communication"]
-            row["filtered"] = row["trace"] + row["filtering"]
-            row["alone"] = row["compare"] + row["supersample"]
-            row["with_first"] = row["alone"] + row["trace"]
-            all_rows.append(row)
-        return pd.DataFrame(all_rows)
+            all_rows.append({"p": p, "rotations": run.report["communication"]["rotations"], "communication": t["communication"],
+                             "filter": t["filter"], "compare": t["compare"], "trace": factor * spa_ms(load["trace"]["max"]),
+                             "supersample": factor * spa_ms(last_load["max"]), "u": last_load["imbalance"]})
+        rows = pd.DataFrame(all_rows)
+        rows["filtering"], rows["alone"] = rows["filter"] + rows["communication"], rows["compare"] + rows["supersample"]
+        return rows.assign(filtered=rows["trace"] + rows["filtering"], with_first=rows["alone"] + rows["trace"])
 
     def times(self, factor=FACTOR):
         return offset_times(self.costs, self.size, self.antialias, factor)
@@ -112,14 +97,13 @@ class SmoothingRuns:
     @property
     def recomputed(self):
         """Fraction of the pixels that were supersampled, 0..1."""
-        report = list(self.runs.values())[-1].report
-        return report["antialias"].get("recomputed_pixels", 0) / self.size**2
+        return list(self.runs.values())[-1].report["antialias"].get("recomputed_pixels", 0) / self.size**2
 
 
 def smoothing_runs(lab, scenes, antialias):
     scene, size = first_scene(scenes), lab.size(256)
     runs = {p % size: run_on_spa(lab, scene, size, size, p % size, antialias) for p in (0, 8, 16)}
-    costs = list(runs.values())[-1].result.costs
+    costs = list(runs.values())[-1].costs
     return SmoothingRuns(scene, size, antialias, runs, SimpleNamespace(**{"supersample": costs["trace"], **costs}))
 
 

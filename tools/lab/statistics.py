@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import special, stats
 
-VERDICTS = REPRODUCED, COMPATIBLE, NOT_REPRODUCED, UNTESTABLE = "reproduced", "compatible", "not reproduced", "untestable"
+REPRODUCED, COMPATIBLE, NOT_REPRODUCED, UNTESTABLE = "reproduced", "compatible", "not reproduced", "untestable"
 LEVEL = 0.05  # probability of one or more wrong verdicts "reproduced" or "not reproduced" in a document, by Holm's correction
 POWER = 0.8  # probability with which a test detects its detectable deviation
 
@@ -70,8 +70,8 @@ def hierarchical(values, families, samples=2000, seed=1):
 
 
 def estimates(columns, families=None):
-    """Returns a list with the estimate of each column of an array [value, column]."""
-    return [estimate(column, families) for column in np.asarray(columns).T]
+    """Returns (list of means, list of half widths) of the estimates of each column of an array [value, column]."""
+    return tuple(map(list, zip(*((e.mean, e.half) for e in (estimate(column, families) for column in np.asarray(columns).T)))))
 
 
 @dataclass(frozen=True)
@@ -133,12 +133,12 @@ def proportion(holds, bound):
                 f"{interval.low:.3f} .. {interval.high:.3f}", float(detectable_fraction - bound))
 
 
-def every(tests, interval=""):
+def every(tests):
     """Tests that several claims all hold. p_for: the largest p_for. p_against: the smallest p_against, with Bonferroni's correction."""
     tests = list(tests)
     against = min(1.0, len(tests) * min(test.p_against for test in tests))
     weakest = max(tests, key=lambda test: test.p_for)
-    return Test(weakest.p_for, against, interval or f"weakest: {weakest.interval}", weakest.detectable)
+    return Test(weakest.p_for, against, f"weakest: {weakest.interval}", weakest.detectable)
 
 
 def next_value_within(figure, values, tolerance, digits=3):
@@ -179,18 +179,14 @@ def prediction_interval(values):
     return tuple(np.quantile(values, [0.025, 0.975], method="weibull"))
 
 
-def prediction_text(values, digits=3):
-    low, high = prediction_interval(values)
-    return f"{low:.{digits}f} .. {high:.{digits}f}"
-
-
 def range_text(values, digits=3):
     return f"{np.min(values):.{digits}f} .. {np.max(values):.{digits}f}"
 
 
-def tail_where(values, holds):
-    """Returns the longest tail of the pandas series `values` in which `holds` (a boolean series) is true for every value."""
-    return values[holds[::-1].cummin()[::-1]]
+def first_from(values, holds, default=None):
+    """Returns the first of the values from which on `holds` is true for all values; `default` if it is false for the last one."""
+    tail = np.asarray(values)[np.logical_and.accumulate(np.asarray(holds)[::-1])[::-1]]
+    return tail[0] if len(tail) else default
 
 
 def fitted_exponent(x, y):

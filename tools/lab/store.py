@@ -91,16 +91,13 @@ class Store:
         name = hashlib.sha256(repr((self._version, request)).encode()).hexdigest() + SUFFIX
         is_new, number = name not in self._requests, self._requests.setdefault(name, len(self._requests))
         if self._shard is None:
-            return self._read(name) or self._compute(name, compute)
+            found = (read_value(folder / name) for folder in (self._folder, *self._further))
+            return next((value for value in found if value is not None), None) or self._compute(name, compute)
         if is_new and number % self._shard[1] == self._shard[0] - 1:
             self.names.append(name)
             if read_value(self._folder / name) is None:
                 self._compute(name, compute)
         return None
-
-    def _read(self, name):
-        values = (read_value(folder / name) for folder in (self._folder, *self._further))
-        return next((value for value in values if value is not None), None)
 
     def _compute(self, name, compute):
         start = time.monotonic()

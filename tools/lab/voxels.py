@@ -3,7 +3,7 @@ import math
 
 import pandas as pd
 import raya
-from raya.lab.laboratory import mean_seconds, rays_of, tests_of, time_calls
+from raya.lab.laboratory import MACHINES, mean_seconds, rays_of, tests_of, time_calls
 
 CLOCK = ("modelled from counted events on T805 transputers at 25 MHz (data sheet of the IMS T805, SGS-Thomson 1996): 40 ns a "
          "cycle; links of 1.7 MB/s in one direction and 2.4 MB/s in both together; a message of w words costs the processor at "
@@ -11,7 +11,7 @@ CLOCK = ("modelled from counted events on T805 transputers at 25 MHz (data sheet
          "in each superstep all nodes compute, then all links transfer, and each half takes the time of the busiest one. A real "
          "machine takes a time between the two. No time on this page is measured.")
 UNLIMITED_MEMORY = 1 << 40  # bytes of a node's memory
-BOUNCES = next(m for m in raya.machines() if m["name"] == "torus")["bounces"]
+BOUNCES = MACHINES["torus"]["bounces"]
 
 
 def sides_text(sides):
@@ -38,67 +38,49 @@ def balls_scene(level):
     return raya.generate.balls(level).renamed(f"balls-{level}")
 
 
-# {column of a table: member of Run} for columns whose name differs from the member's.
-MEMBERS = {
-    "divisions": "voxels", "A x B x C": "sides", "tests a ray": "tests_per_ray", "steps a ray": "steps_per_ray",
-    "modelled (s)": "modelled_s", "measured (ms)": "measured_ms", "measured, median (ms)": "median_ms",
-    "voxels of an object": "voxels_of_object", "overlapped (ms)": "overlapped_ms", "stepwise (ms)": "stepwise_ms",
-    "asynchronous (ms)": "asynchronous_ms",
-    "the root's processor (ms)": "root_processor_ms", "the root's busiest link (ms)": "root_link_ms",
-    "root / overlapped (%)": "root_share", "busiest link (bytes)": "busiest_link_bytes", "u": "imbalance",
-    "rays discarded": "discarded", "hops a packet": "hops_per_packet", "most packets in a queue": "queue_max"}
+def with_spheres(scene, change, name):
+    """Returns the scene, renamed, with change([x, y, z, radius] as text), a text, instead of the numbers of each sphere."""
+    lines = (f"s {change(line.split()[1:])}" if line.startswith("s ") else line for line in scene.nff.splitlines())
+    return raya.parse("\n".join(lines) + "\n", name)
 
 
-class Run:
-    """Figures of one render. On the torus its times are modelled, and `time` is None. On one PE, `time` is the measured time (Timing)."""
-
-    def __init__(self, scene, result, voxels, time=None):
-        e, report = result.events, result.report
-        self.scene, self.objects, self.result, self.events = scene.name, scene.objects, result, e
-        self.voxels, self.sides = math.prod(voxels), sides_text(voxels)
-        self.rays, self.tests, self.steps, self.primary = rays_of(e), tests_of(e), e["steps"], e["primary"]
-        self.tests_per_ray, self.steps_per_ray = self.tests / max(1, self.rays), self.steps / max(1, self.rays)
-        # Number of entries in the voxels' object lists, without the first entry of each object.
-        self.copies = report["torus" if time is None else "accel"]["copies"]
-        self.voxels_of_object = 1 + self.copies / self.objects
-        if time is not None:
-            self.modelled_s = 1e-3 * raya.t805_ms(e)
-            self.measured_ms, self.median_ms = 1e3 * time.minimum, 1e3 * time.median
-            return
-        torus, modelled_ms = report["torus"], report["modelled_ms"]
-        self.packets = sum(kind["made"] for kind in torus["packets"].values())
-        self.returns, self.discarded = torus["returns"]["messages"], torus["discarded"]
-        for name in ("overlapped", "stepwise", "compute", "messages", "links"):
-            setattr(self, f"{name}_ms", modelled_ms[name])
-        self.asynchronous_ms = modelled_ms.get("asynchronous", {}).get("finish", math.nan)
-        self.supersteps, self.hops, self.queue_max = torus["supersteps"], torus["hops"], torus["queue_max"]
-        self.imbalance, self.balance, self.work_ms = result.imbalance, result.efficiency, result.work_ms
-        self.hops_per_packet = self.hops / max(1, self.packets)
-        self.busiest_link_bytes = torus["bytes_per_link"]["max"]
-        self.root_processor_ms, self.root_link_ms = result.root["processor_ms"], result.root["link_ms"]
-        self.root_ms = max(result.root.values())
-        self.root_share = 100 * self.root_ms / self.overlapped_ms
-
-    def row(self, columns):
-        return {column: getattr(self, MEMBERS.get(column, column)) for column in columns}
+def figures_of(scene, result, voxels, time=None):
+    """Returns the figures of a render by their names in tables, and `result` itself. On the torus the times are modelled. On one PE, `time` is the
+    measured time (Timing)."""
+    e, report = result.events, result.report
+    rays, tests = rays_of(e), tests_of(e)
+    copies = report["torus" if time is None else "accel"]["copies"]  # entries in the voxels' object lists, without the first one of each object
+    figures = {"scene": scene.name, "objects": scene.objects, "divisions": math.prod(voxels), "A x B x C": sides_text(voxels), "rays": rays,
+               "tests": tests, "steps": e["steps"], "primary": e["primary"], "tests a ray": tests / max(1, rays),
+               "steps a ray": e["steps"] / max(1, rays), "copies": copies, "voxels of an object": 1 + copies / scene.objects, "result": result}
+    if time is not None:
+        return {**figures, "modelled (s)": 1e-3 * raya.t805_ms(e), "measured (ms)": 1e3 * time.minimum, "measured, median (ms)": 1e3 * time.median}
+    torus, ms, root = report["torus"], report["modelled_ms"], result.root
+    packets, root_ms = sum(kind["made"] for kind in torus["packets"].values()), max(root.values())
+    return {**figures, **{f"{name} (ms)": ms[name] for name in ("overlapped", "stepwise", "compute", "messages", "links")},
+            "asynchronous (ms)": ms.get("asynchronous", {}).get("finish", math.nan), "work (ms)": result.work_ms, "packets": packets,
+            "returns": torus["returns"]["messages"], "rays discarded": torus["discarded"], "supersteps": torus["supersteps"], "hops": torus["hops"],
+            "hops a packet": torus["hops"] / max(1, packets), "most packets in a queue": torus["queue_max"], "u": result.imbalance,
+            "balance": result.efficiency, "busiest link (bytes)": torus["bytes_per_link"]["max"], "the root's processor (ms)": root["processor_ms"],
+            "the root's busiest link (ms)": root["link_ms"], "the root (ms)": root_ms, "root / overlapped (%)": 100 * root_ms / ms["overlapped"]}
 
 
 def run_cases(cases, run, columns):
-    """Calls run(**case), which returns a Run, for each case. Returns a data frame with a row for each case: the arguments, `columns` of the Run, and
-    the Run itself in column `run`."""
-    return pd.DataFrame([{**case, **result.row(columns), "run": result} for case in cases for result in [run(**case)]])
+    """Calls run(**case), which returns figures_of(), for each case. Returns a data frame with a row for each case: the arguments, `columns` of the
+    figures, and all figures in column `run`."""
+    return pd.DataFrame([{**case, **{column: one[column] for column in columns}, "run": one} for case in cases for one in [run(**case)]])
 
 
 def run_on_torus(lab, scene, size, nodes, voxels, queue=None, **options):
-    """Renders on the torus without a memory limit; returns a Run. raya repeats a render that deadlocks with longer queues."""
-    return Run(scene, lab.render(scene, machine="torus", size=size, nodes=sides_text(nodes), voxels=sides_text(voxels), queue=queue,
-                                 pe_memory=UNLIMITED_MEMORY, **options), voxels)
+    """Renders on the torus without a memory limit; returns figures_of(). raya repeats a render that deadlocks with longer queues."""
+    return figures_of(scene, lab.render(scene, machine="torus", size=size, nodes=sides_text(nodes), voxels=sides_text(voxels), queue=queue,
+                                        pe_memory=UNLIMITED_MEMORY, **options), voxels)
 
 
 def run_in_one_pe(lab, scene, size, voxels, bounces=0, sampling="centres", runs=1):
-    """Renders the scene in fp32 on one PE of machine grande with a grid; returns a Run with the times of at most `runs` samples."""
+    """Renders the scene in fp32 on one PE of machine grande with a grid; returns figures_of() with the times of at most `runs` samples."""
     options = dict(machine="grande", format="fp32", size=size, pes=1, offset=0, bounces=bounces, sampling=sampling,
                    accel=f"grid:{sides_text(voxels)}")
     counted = lab.render(scene, **options)  # also warms up the timed renders
     time = time_calls(lambda: mean_seconds(lambda: lab.render(scene, **options).device_s), runs, 1, warm=False)
-    return Run(scene, counted, voxels, time)
+    return figures_of(scene, counted, voxels, time)

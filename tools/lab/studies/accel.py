@@ -24,11 +24,12 @@ number of objects?
   accel-growth.csv the exponents. Columns +- are half widths of 95 % intervals.
 """
 import math
+from functools import partial
 
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Table, estimate, fitted_exponent, mean_seconds, series_by, study
+from raya.lab import Page, Plot, Table, estimate, first_from, fitted_exponent, mean_seconds, series_by, study
 from raya.lab.laboratory import rays_of, tests_of
 from raya.lab.programs import output_of, sibling_program
 
@@ -43,20 +44,17 @@ EACH = {**{name: name for name in ("scene", "seed", "objects", "method", "rays",
         "accel_words": "accelerator words"}
 
 
-def own_scenes():
-    """Yields (series, group, seed, function that makes the scene)."""
-    for level in range(1, 7):
-        yield "balls", f"balls {level}", 0, lambda level=level: raya.generate.balls(level)
-    for count in (10, 100, 1_000, 10_000, 100_000):
-        for seed in range(1, SEEDS + 1):
-            yield "random", f"random {count}", seed, lambda count=count, seed=seed: raya.generate.random(count, seed)
+# (series, group, seed, function that makes the scene)
+OWN_SCENES = [*(("balls", f"balls {level}", 0, partial(raya.generate.balls, level)) for level in range(1, 7)),
+              *(("random", f"random {count}", seed, partial(raya.generate.random, count, seed))
+                for count in (10, 100, 1_000, 10_000, 100_000) for seed in range(1, SEEDS + 1))]
 
 
 class Method:
     """One scene with one method, ready to be timed. `seconds`: the timing samples; `turns`: the shortest time of each turn (ms)."""
 
-    def __init__(self, name, turn, **figures):
-        self.name, self.turn, self.figures, self.seconds, self.turns = name, turn, figures, [], []
+    def __init__(self, name, turn, hash="", **figures):
+        self.name, self.turn, self.hash, self.figures, self.seconds, self.turns = name, turn, hash, figures, [], []
 
 
 def raya_method(lab, scene, size, name):
@@ -65,10 +63,8 @@ def raya_method(lab, scene, size, name):
                    bounces=BOUNCES, accel=name)
     first = lab.render(scene, **options)
     e, words = first.events, first.report["accel"].get("words", 0)
-    method = Method(name, lambda: [mean_seconds(lambda: lab.render(scene, **options).render_s)], rays=rays_of(e), tests=tests_of(e),
-                    steps=e["steps"], scene_words=first.job_words - words, accel_words=words, build=1e3 * first.accel_s)
-    method.hash = first.hash
-    return method
+    return Method(name, lambda: [mean_seconds(lambda: lab.render(scene, **options).render_s)], first.hash, rays=rays_of(e), tests=tests_of(e),
+                  steps=e["steps"], scene_words=first.job_words - words, accel_words=words, build=1e3 * first.accel_s)
 
 
 def run_embree(program, nff, size):
@@ -84,19 +80,11 @@ def run_embree(program, nff, size):
     return methods, build
 
 
-def embree_method(scene, size, failures, group):
-    program = sibling_program("embree_peer")
-    if not program:
-        return None
-    try:
-        methods, build = run_embree(program, scene.nff, size)
-    except ValueError as error:
-        failures.append(f"{group}: {error}")
-        return None
+def embree_method(program, scene, size):
+    methods, build = run_embree(program, scene.nff, size)
     fastest = min(methods, key=lambda method: min(methods[method][1]))
-    unknown = dict.fromkeys(("tests", "steps", "scene_words", "accel_words"), math.nan)
-    return Method(EMBREE, lambda: run_embree(program, scene.nff, size)[0][fastest][1], rays=methods[fastest][0],
-                  build=1e3 * build, **unknown)
+    return Method(EMBREE, lambda: run_embree(program, scene.nff, size)[0][fastest][1], rays=methods[fastest][0], build=1e3 * build,
+                  **dict.fromkeys(("tests", "steps", "scene_words", "accel_words"), math.nan))
 
 
 def measure(lab, size, scenes):
@@ -115,8 +103,11 @@ def measure(lab, size, scenes):
             if method.hash != methods[0].hash or method.figures["rays"] != methods[0].figures["rays"]:
                 raise raya.DeviceError(f"{group}: --accel {method.name} and {methods[0].name} give different images, {method.hash} and "
                                        f"{methods[0].hash}: an error of the device or its compiler; run `raya verify`")
-        peer = embree_method(scene, size, failures, group)
-        methods += [peer] if peer else []
+        if program := sibling_program("embree_peer"):
+            try:
+                methods.append(embree_method(program, scene, size))
+            except ValueError as error:
+                failures.append(f"{group}: {error}")
         for turn in range(ROUNDS):
             for method in methods:
                 if turn == 0 or sum(method.seconds) < SAMPLING_S:
@@ -163,7 +154,7 @@ def ratios_text(ratio_list):
 @study("accel", measures=True)
 def accel(lab, scenes):
     size = lab.size(256)
-    measured_scenes = [(USER_SCENES, s.name, 0, lambda s=s: s) for s in scenes] if scenes else own_scenes()
+    measured_scenes = [(USER_SCENES, s.name, 0, lambda s=s: s) for s in scenes] if scenes else OWN_SCENES
     runs, skipped, failures = measure(lab, size, measured_scenes)
     rows, growth = rows_of(runs), growth_of(runs)
     series = [(name, one) for name, one in runs.groupby("series", sort=False)]
@@ -175,8 +166,19 @@ def accel(lab, scenes):
     tables = [Table("accel", "Each number of objects and method", rows.drop(columns=["series"])),
               Table("accel-scenes", "Each scene and method", each, on_page=False)]
     tables += [Table("accel-growth", "Exponent of the number of objects in the time per ray and in the tests per ray", growth)] if len(growth) else []
+    style = "points" if (rows["series"] == USER_SCENES).any() else "line"
+
+    def plot(name, title, label, series_rows, lines, column):
+        return Plot(name, title, "objects", label, series_by(series_rows, lines, "objects", column, style=style), "xy")
+
+    counted = rows[rows["method"] != EMBREE].assign(line=lambda r: r["series"] + ", " + r["method"])
+    plots = [plot(f"accel-{series}", f"Time against the number of objects: {series}", "shortest time of a render (ms)", series_rows,
+                  "method", "best (ms)") for series, series_rows in rows.groupby("series", sort=False)] + [
+         plot("accel-tests", "Tests per ray against the number of objects", "tests per ray", counted, "line", "tests a ray"),
+         plot("accel-memory", "Memory of a PE against the number of objects", "scene with grid or BVH (KB)", counted,
+              "line", "memory (KB)")]
     return Page({"size": size, "bounces": BOUNCES, "rounds": ROUNDS, "format": "fp32"}, findings, tables=tables,
-                plots=plots_of(rows), placeholders={
+                plots=plots, placeholders={
                     "tile": math.gcd(size, 16), "sampling_s": SAMPLING_S, "max_render_s": MAX_RENDER_S, "min_fitted": MIN_FITTED_OBJECTS,
                     "scenes": "those of the command line." if scenes else "SPD's balls, where each level has nine times as many "
                     "spheres as the previous level; and spheres at random positions in a cube, some of them mirrors, with several "
@@ -215,12 +217,11 @@ def growth_of(runs):
 def faster_from(ratio_list, method):
     """Returns part of a sentence: from how many objects on a method is faster than testing all objects. ratio_list: in ascending order of
     objects."""
-    start = len(ratio_list)
-    while start > 0 and ratio_list[start - 1]["times"].low_or_mean > 1:
-        start -= 1
-    if start == len(ratio_list):
-        return f"{method} is not measurably faster at {ratio_list[-1]['objects']} objects"
-    return f"{method} is faster from {ratio_list[start]['objects']} objects on{' (the smallest number tried)' if start == 0 else ''}"
+    objects = [ratio["objects"] for ratio in ratio_list]
+    first = first_from(objects, [ratio["times"].low_or_mean > 1 for ratio in ratio_list])
+    if first is None:
+        return f"{method} is not measurably faster at {objects[-1]} objects"
+    return f"{method} is faster from {first} objects on{' (the smallest number tried)' if first == objects[0] else ''}"
 
 
 def finding_of_threshold(runs, series):
@@ -256,17 +257,3 @@ def findings_of_embree(runs, failures):
         names = ", ".join(f"{o['scene']} (seed {o['seed']})" if o["seed"] else o["scene"] for _, o in others.iterrows())
         findings.append(f"No ratio for Embree in {names}: its number of rays differs from raya's by more than one in a thousand.")
     return findings + ([f"Embree was not measured in {'; '.join(failures)}."] if failures else [])
-
-
-def plots_of(rows):
-    style = "points" if (rows["series"] == USER_SCENES).any() else "line"
-
-    def plot(name, title, label, series_rows, lines, column):
-        return Plot(name, title, "objects", label, series_by(series_rows, lines, "objects", column, style=style), "xy")
-
-    counted = rows[rows["method"] != EMBREE].assign(line=lambda r: r["series"] + ", " + r["method"])
-    return [plot(f"accel-{series}", f"Time against the number of objects: {series}", "shortest time of a render (ms)", series_rows,
-                 "method", "best (ms)") for series, series_rows in rows.groupby("series", sort=False)] + [
-        plot("accel-tests", "Tests per ray against the number of objects", "tests per ray", counted, "line", "tests a ray"),
-        plot("accel-memory", "Memory of a PE against the number of objects", "scene with grid or BVH (KB)", counted,
-             "line", "memory (KB)")]

@@ -17,8 +17,7 @@ Which offset of the cyclic mapping renders this image fastest, communication inc
   load, and "takes longer" is in % of the chosen offset's time.
 """
 import pandas as pd
-import raya
-from raya.lab import Comparison, Page, Plot, Series, Table, below, estimate, every, judged, papers, study
+from raya.lab import Comparison, Page, Plot, Series, Table, below, estimate, every, first_scene, judged, papers, study
 from raya.lab.laboratory import SEEDS, format_for
 from raya.lab.spa import CLOCK, FACTOR, FACTORS, default_size, offset_times
 
@@ -58,54 +57,42 @@ class Choice:
         return 100 * (ms / self.best["total_ms"] - 1) if self.best["total_ms"] > 0 else 0
 
 
-def ensembles_of(lab, scene):
+def ensembles_of(lab, scene=None):
+    """Returns the ensembles that choose and evaluate an offset: views of a scene, or pictures of the scene families for the claim."""
+    if scene is None:
+        return [lab.ensemble([], papers.SIZE, "supersample", part=part) for part in (0, 2)]
     return [lab.ensemble([scene], lab.size(default_size(scene)), "supersample", VIEWS, part=part) for part in (0, 2)]
-
-
-def choices_of(lab, scene):
-    size = lab.size(default_size(scene))
-    picture = lab.costs(scene, size, "supersample")
-    search, evaluation = ensembles_of(lab, scene)
-    return [Choice(scene, size, pes, method, picture, search, evaluation) for pes in numbers_of_pes(size) for method in METHODS]
 
 
 def numbers_of_pes(size):
     return [size] + [pes for pes in (256, 64) if pes != size and pes <= size * size]
 
 
-def seeds_text(lab, part):
-    return f"from {lab.seed + part * SEEDS}"
-
-
-def scenes_of(scenes):
-    return scenes or [raya.example("centre")]
-
-
 def prepare(lab, scenes):
-    for scene in scenes_of(scenes):
+    for scene in scenes or [first_scene([]), None]:
         ensembles_of(lab, scene)
-    if not scenes:
-        ensembles_of_claim(lab)
 
 
 @study("best-offset", prepare=prepare)
 def best_offset(lab, scenes):
-    chosen_scenes = scenes_of(scenes)
-    by_scene = [choices_of(lab, scene) for scene in chosen_scenes]
+    by_scene, scene_settings = [], []
+    for scene in scenes or [first_scene([])]:
+        size = lab.size(default_size(scene))
+        picture, ensembles = lab.costs(scene, size, "supersample"), ensembles_of(lab, scene)
+        by_scene.append([Choice(scene, size, pes, method, picture, *ensembles) for pes in numbers_of_pes(size) for method in METHODS])
+        scene_settings.append({"scene": scene.name, "size": size, "format": format_for(scene), "fold": "cyclic"})
     all_choices = [choice for choices in by_scene for choice in choices]
-    first = by_scene[0]
-    scene_settings = [{"scene": choices[0].scene, "size": choices[0].size, "format": format_for(scene), "fold": "cyclic"}
-                      for choices, scene in zip(by_scene, chosen_scenes)]
+    search_seeds, evaluation_seeds = (f"from {lab.seed + part * SEEDS}" for part in (0, 2))
     return Page({"scenes": scene_settings, "factor": FACTOR, "views": 2 * VIEWS, "rule": MAX_LOSS},
                 [*map(finding_of_best, by_scene), *map(finding_of_views, all_choices)],
                 [Comparison(f"best p, {c.pes} PEs, {c.antialias}", "", None, int(c.best["offset"]),
                             f"u of the first pass is {c.best['imbalance']:.3f}; Kohata & Ito's p = sqrt(P) is {c.root}")
-                 for c in first],
+                 for c in by_scene[0]],
                 [claim_of_enough(lab)] if not scenes else [], tables_of(all_choices),
                 [plot for number, choices in enumerate(by_scene, 1) for plot in plots_of(choices, number)],
                 clock=CLOCK, placeholders={
-                    "search": f"{VIEWS} views with seeds {seeds_text(lab, 0)}", "evaluation": f"{VIEWS} other views with seeds {seeds_text(lab, 2)}",
-                    "claim_search": seeds_text(lab, 0), "claim_evaluation": seeds_text(lab, 2)})
+                    "search": f"{VIEWS} views with seeds {search_seeds}", "evaluation": f"{VIEWS} other views with seeds {evaluation_seeds}",
+                    "claim_search": search_seeds, "claim_evaluation": evaluation_seeds})
 
 
 def finding_of_best(choices):
@@ -128,12 +115,8 @@ def finding_of_views(c):
             f"p = sqrt(P) = {c.root} {root} %, p = 0 {zero} %, and p = {picture}, the best for the scene's own view, {of_picture} %.")
 
 
-def ensembles_of_claim(lab):
-    return [lab.ensemble([], papers.SIZE, "supersample", part=part) for part in (0, 2)]
-
-
 def claim_of_enough(lab):
-    search, evaluation = ensembles_of_claim(lab)
+    search, evaluation = ensembles_of(lab)
     families, tests, texts = evaluation.families, [], []
     for pes in numbers_of_pes(papers.SIZE):
         for method in METHODS:
@@ -149,19 +132,18 @@ def claim_of_enough(lab):
 def tables_of(choices):
     views, best, offsets = [], [], []
     for c in choices:
-        head, time = {"scene": c.scene, "PEs": c.pes, "anti-aliasing": c.antialias}, c.time
-        near, root, zero = (c.longer(offset) for offset in (c.chosen_near, c.root, 0))
+        head, time, t = {"scene": c.scene, "PEs": c.pes, "anti-aliasing": c.antialias}, c.time, c.times
         views.append({**head, "best p": c.chosen, "time (ms)": time.mean, "time, +- (ms)": time.half,
-                      "best p of 0..sqrt(P)": c.chosen_near, "best p of 0..sqrt(P) takes longer (%)": near.mean,
-                      "best p of 0..sqrt(P), +- (%)": near.half, "p = sqrt(P) takes longer (%)": root.mean,
-                      "p = sqrt(P), +- (%)": root.half, "p = 0 takes longer (%)": zero.mean, "p = 0, +- (%)": zero.half})
+                      "best p of 0..sqrt(P)": c.chosen_near})
+        for name, offset in (("best p of 0..sqrt(P)", c.chosen_near), ("p = sqrt(P)", c.root), ("p = 0", 0)):
+            longer = c.longer(offset)
+            views[-1].update({f"{name} takes longer (%)": longer.mean, f"{name}, +- (%)": longer.half})
         best.append({"scene": c.scene, "size": c.size, "PEs": c.pes, "anti-aliasing": c.antialias,
                      "best p": int(c.best["offset"]), "best p, factors 1 to 8": c.factors,
                      "time (ms)": c.best["total_ms"], "time on the ring (ms)": c.best["ring_ms"], "u, first pass": c.best["imbalance"],
                      "best p of 0..sqrt(P)": int(c.best_near["offset"]), "best p of 0..sqrt(P), time (ms)": c.best_near["total_ms"],
                      "best p of 0..sqrt(P), u": c.best_near["imbalance"], "p = sqrt(P) (ms)": c.times["total_ms"][c.root],
                      "p = 0 (ms)": c.times["total_ms"][0]})
-        t = c.times
         offsets.append(pd.DataFrame({**head, "p": t["offset"], "u, first pass": t["imbalance"],
                                      "first pass (ms)": t["trace_ms"], "neighbours' arithmetic (ms)": t["smooth_ms"],
                                      "supersampling (ms)": t["supersample_ms"], "rotations": t["rotations"],

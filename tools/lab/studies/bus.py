@@ -15,7 +15,7 @@ of neighbouring pixels over the ring?
   synchronisation.
 """
 import pandas as pd
-from raya.lab import Page, Plot, Series, Table, first_scene, study, tail_where
+from raya.lab import Page, Plot, Series, Table, first_from, first_scene, study
 from raya.lab.laboratory import SPA, format_for
 from raya.lab.voxels import powers_of_two
 
@@ -44,17 +44,13 @@ def rows_of(lab, scene, size, antialias):
     return pd.DataFrame(rows)
 
 
-def ring_is_faster_from(rows, bus_ms):
-    """Returns part of a sentence: from how many PEs on the ring takes less time than bus_ms, the time of the faster bus method (ms)."""
-    pes = tail_where(rows["P"], rows["ring (ms)"] < bus_ms)
-    return f"from {pes.iloc[0]} PEs on" if len(pes) else f"for no number of PEs up to {rows['P'].iloc[-1]}"
-
-
 def finding_of_ring(rows):
     best = rows[["bus (ms)", "broadcasts, time (ms)"]].min(1)
     words = rows[["bus, words alone (ms)", "broadcasts, words alone (ms)"]].min(1)
     last = rows.iloc[-1]
-    return (f"{last['anti-aliasing']}: the ring is fastest {ring_is_faster_from(rows, best)}, and {ring_is_faster_from(rows, words)} if bus "
+    faster = [first_from(rows["P"], rows["ring (ms)"] < bus_ms) for bus_ms in (best, words)]
+    whole, alone = (f"from {pes} PEs on" if pes else f"for no number of PEs up to {last['P']}" for pes in faster)
+    return (f"{last['anti-aliasing']}: the ring is fastest {whole}, and {alone} if bus "
             f"transfers need no synchronisation. On {last['P']} PEs the ring takes {last['ring (ms)']:.1f} ms for "
             f"{last['rotations']} rotations, the bus {last['bus (ms)']:.1f} ms for {last['transfers']} transfers or "
             f"{last['broadcasts, time (ms)']:.1f} ms for {last['broadcasts']} broadcasts. The faster bus method takes "

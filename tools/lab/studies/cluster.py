@@ -16,8 +16,8 @@ What are the figures of Tables 2 to 4 for scenes that have their objects in the 
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Comparison, Page, Plot, Series, Table, estimate, estimates, judged, next_value_within, papers, prediction_text, range_text, study
-from raya.lab.families import CROWDED
+from raya.lab import Comparison, Page, Plot, Series, Table, estimate, estimates, judged, next_value_within, papers, prediction_interval, range_text, study
+from raya.lab.laboratory import CROWDED
 from raya.lab.spa import CLOCK, FACTOR, offset_times, spa_ms
 
 MATCH = 0.1  # maximum relative difference between a matched scene's u(0) and the paper's
@@ -65,9 +65,12 @@ def matched_times(lab, antialias):
 
 
 def series_of_matched(label, times, columns):
-    """Returns a plot's series: the sum of the given columns for p = 0 .. 16, as mean and interval over the matched scenes."""
-    of_offset = estimates([one[columns].sum(axis=1)[:17] for one in times])
-    return Series(label, range(17), [e.mean for e in of_offset], half_widths=[e.half for e in of_offset])
+    """Returns a list with a plot's series, the sum of the given columns for p = 0 .. 16, as mean and interval over the matched scenes; empty for fewer
+    than two of them."""
+    if len(times) < 2:
+        return []
+    means, half_widths = estimates([one[columns].sum(axis=1)[:17] for one in times])
+    return [Series(label, range(17), means, half_widths=half_widths)]
 
 
 def ensemble_of(lab, scenes):
@@ -93,8 +96,13 @@ def cluster(lab, scenes):
     not_fitted = [comparison(what + ", matched scenes", unit, column, paper, derived, matched, "not fitted")
                   for what, unit, column, paper, derived in NOT_FITTED] if len(matched) > 1 else []
     marks = [Series("Kohata & Ito, from their tables", [papers.IMBALANCE_0], [papers.IMBALANCE_16], "paper")] * in_paper
-    return Page({"scenes": len(rows), "matched": len(matched), "size": size, "pes": size, "factor": FACTOR},
-                findings_of(rows, matched), fitted + not_fitted,
+    means = ", ".join(f"{what} {estimate(rows[column]).text(2 if paper < 100 else 0)} {unit}".rstrip() + f" instead of {paper:g}"
+                      for what, unit, column, paper in FITTED)
+    findings = [f"The mean u(16) over {len(matched)} matched scenes is {estimate(matched['u(16)']).text()}; the match does not use it. "
+                f"A further scene has one in {range_text(prediction_interval(matched['u(16)']))} with 95 % probability; the paper has {papers.IMBALANCE_16}."
+                ] if len(matched) > 1 else []
+    findings.append(f"With the seeds of this study the fitted means are not exactly the paper's: {means}.")
+    return Page({"scenes": len(rows), "matched": len(matched), "size": size, "pes": size, "factor": FACTOR}, findings, fitted + not_fitted,
                 claims_of(matched, about) if in_paper and len(matched) > 2 else [],
                 [Table("cluster", "Each scene", rows, on_page=False)],
                 [Plot("cluster", "Load imbalance of each scene: cyclic mapping against column split", "u(0)", "u(16)",
@@ -102,16 +110,6 @@ def cluster(lab, scenes):
                        Series("matched scenes", matched["u(0)"], matched["u(16)"], "points")] + marks)],
                 clock=CLOCK,
                 placeholders={"ensemble": ensemble.description, "match": f"{100 * MATCH:.0f}"}, compared_with=papers.SPA)
-
-
-def findings_of(rows, matched):
-    means = ", ".join(f"{what} {estimate(rows[column]).text(2 if paper < 100 else 0)} {unit}".rstrip() + f" instead of {paper:g}"
-                      for what, unit, column, paper in FITTED)
-    findings = [f"With the seeds of this study the fitted means are not exactly the paper's: {means}."]
-    if len(matched) > 1:
-        findings.insert(0, f"The mean u(16) over {len(matched)} matched scenes is {estimate(matched['u(16)']).text()}; the match does not use it. "
-                        f"A further scene has one in {prediction_text(matched['u(16)'])} with 95 % probability; the paper has {papers.IMBALANCE_16}.")
-    return findings
 
 
 def claims_of(matched, about):

@@ -13,7 +13,7 @@ import numpy as np
 import raya
 from raya.lab import Comparison, Page, Plot, Table, above, below, estimate, every, judged, next_value_within, papers, range_text, series_by, study
 from raya.lab.laboratory import tests_of
-from raya.lab.voxels import near_cube, powers_of_two, run_cases, run_in_one_pe, sides_text
+from raya.lab.voxels import near_cube, powers_of_two, run_cases, run_in_one_pe, sides_text, with_spheres
 
 DIVISIONS = powers_of_two(8192)
 OBJECTS = (64, 256, 512, 1024)
@@ -37,7 +37,8 @@ def divisions(lab, scenes):
     by_scene = [scene_rows for _, scene_rows in rows.groupby("scene", sort=False)]
     settings = [scene_rows[["scene", "objects"]].iloc[0].to_dict() for scene_rows in by_scene]
     findings = [finding_of_optimum(name, by_scene) for name in SUBJECTS]
-    findings.append(finding_of_rise(by_scene))
+    rises = ", ".join(f"{one['modelled (s)'].iloc[-1] / one['modelled (s)'].min():.2f} ({one['scene'].iloc[0]})" for one in by_scene)
+    findings.append(f"At {DIVISIONS[-1]} divisions the modelled time is {rises} times its minimum.")
     largest_scene = by_scene[-1]
     if from_paper:
         falls = {name: fall_of(largest_scene, name) for name in SUBJECTS}
@@ -46,8 +47,21 @@ def divisions(lab, scenes):
                         f"measured time {falls['measured']:.1f} times. We count {falls['tests']:.1f} times as many tests; "
                         "theirs fall to \"about 1/5\" from 32 to 1024 divisions.")
     shown = rows.drop(columns=["cut", "objects", "voxels of an object", "run"])
+    comparisons = []
+    if from_paper:
+        comparisons = [Comparison(f"{name}, 32 divisions / 1024 divisions, 1024 objects", "", paper,
+                                  fall_of(by_scene[-1], name.split()[0]), remark, name != "tests")
+                       for name, paper, remark in (("modelled time", papers.DIVISIONS_FALL, "a T805's"),
+                                                   ("measured time", papers.DIVISIONS_FALL, "this device's"),
+                                                   ("tests", papers.TESTS_FALL, "Yoshitani & Yamazaki: \"about 1/5\""))]
+    for name, (*_, optimum) in SUBJECTS.items():
+        for scene_rows in by_scene:
+            best = row_of_minimum(scene_rows, name)
+            paper = best["objects"] if from_paper and name != "measured" else None
+            comparisons.append(Comparison(f"{optimum}, {best['scene']}", "divisions", paper, best["divisions"],
+                                          best["A x B x C"]))
     return Page({"size": size, "bounces": 0, "format": "fp32", "scenes": settings}, findings,
-                comparisons_of(by_scene, from_paper), claims_of(lab, size) if from_paper else [],
+                comparisons, claims_of(lab, size) if from_paper else [],
                 [Table("divisions", "Each number of objects and divisions", shown)],
                 [Plot(f"divisions-{name}", title, "divisions", label, series_by(rows, "scene", "divisions", column),
                       "xy") for name, (title, label, column, _) in SUBJECTS.items()],
@@ -65,31 +79,10 @@ def row_of_minimum(scene_rows, name):
     return scene_rows.loc[scene_rows[SUBJECTS[name][2]].idxmin()]
 
 
-def ratio_to_minimum(scene_rows, row, name):
-    return row[SUBJECTS[name][2]] / row_of_minimum(scene_rows, name)[SUBJECTS[name][2]]
-
-
 def fall_of(scene_rows, name):
     """Returns the figure at 32 divisions divided by the figure at 1024 divisions."""
     figures = scene_rows.set_index("divisions")[SUBJECTS[name][2]]
     return figures[papers.FEW_DIVISIONS] / figures[papers.MANY_DIVISIONS]
-
-
-def comparisons_of(by_scene, from_paper):
-    comparisons = []
-    if from_paper:
-        comparisons = [Comparison(f"{name}, 32 divisions / 1024 divisions, 1024 objects", "", paper,
-                                  fall_of(by_scene[-1], name.split()[0]), remark, name != "tests")
-                       for name, paper, remark in (("modelled time", papers.DIVISIONS_FALL, "a T805's"),
-                                                   ("measured time", papers.DIVISIONS_FALL, "this device's"),
-                                                   ("tests", papers.TESTS_FALL, "Yoshitani & Yamazaki: \"about 1/5\""))]
-    for name, (*_, optimum) in SUBJECTS.items():
-        for scene_rows in by_scene:
-            best = row_of_minimum(scene_rows, name)
-            paper = best["objects"] if from_paper and name != "measured" else None
-            comparisons.append(Comparison(f"{optimum}, {best['scene']}", "divisions", paper, best["divisions"],
-                                          best["A x B x C"]))
-    return comparisons
 
 
 def finding_of_optimum(name, by_scene):
@@ -102,21 +95,8 @@ def finding_of_optimum(name, by_scene):
             f"{len(best)} scenes{more}.")
 
 
-def finding_of_rise(by_scene):
-    rises = ", ".join(f"{ratio_to_minimum(scene_rows, scene_rows.iloc[-1], 'modelled'):.2f} "
-                      f"({scene_rows['scene'].iloc[0]})" for scene_rows in by_scene)
-    return f"At {by_scene[0]['divisions'].iloc[-1]} divisions the modelled time is {rises} times its minimum."
-
-
 RADII, VIEWS = (0.5, 1.0, 1.5, 2.0), 3  # layouts of the claims: radii relative to the even scene; random views of each
 TOLERANCE = 0.2  # of the claims tests-to-a-fifth and time-to-a-fifth
-
-
-def with_radii(scene, factor):
-    """Returns the scene with all radii of spheres multiplied by `factor`."""
-    lines = (f"{line[:line.rindex(' ')]} {float(line.split()[4]) * factor:.9g}" if line.startswith("s ") else line
-             for line in scene.nff.splitlines())
-    return raya.parse("\n".join(lines) + "\n", f"{scene.name}, radii x {factor:g}")
 
 
 def layouts_of(lab, size, count):
@@ -124,7 +104,8 @@ def layouts_of(lab, size, count):
     time of a T805, ms."""
     figures = {"tests": [], "time": []}
     for i, factor in enumerate(RADII):
-        scene = with_radii(raya.generate.uniform(count, near_cube(count)), factor)
+        even = raya.generate.uniform(count, near_cube(count))
+        scene = with_spheres(even, lambda one: f"{' '.join(one[:3])} {float(one[3]) * factor:.9g}", f"{even.name}, radii x {factor:g}")
         for seed in range(lab.seed + i * VIEWS, lab.seed + (i + 1) * VIEWS):
             view = scene.random_view(seed)
             events = [lab.render(view, machine="grande", format="fp32", size=size, pes=1, offset=0, bounces=0,

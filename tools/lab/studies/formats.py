@@ -16,16 +16,10 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Page, Plot, Table, series_by, study
+from raya.lab.laboratory import MACHINES
 
 REDUCED = [name + cut for name in "e8m21 e8m18 e8m15 e7m15 e6m15 e6m14 e6m13".split() for cut in ("", "t")]
 STEP, SAMPLES = 1 / 255, 5  # STEP: one step of an 8-bit channel, the smallest visible difference
-GRANDE = next(m for m in raya.machines() if m["name"] == "grande")
-
-
-def bits_of(form):
-    """Returns (exponent bits, fraction bits, rounding)."""
-    exponent, fraction, cut = re.fullmatch(r"e(\d+)m(\d+)(t?)", "e8m23" if form == "fp32" else form).groups()
-    return int(exponent), int(fraction), "truncate" if cut else "nearest"
 
 
 def difference(expected, image):
@@ -39,16 +33,16 @@ def difference(expected, image):
 
 
 def rows_of(lab, scene, size):
-    expected = raya.reference(scene, size, GRANDE["bounces"])
+    expected = raya.reference(scene, size, MACHINES["grande"]["bounces"])
     options = dict(machine="grande", size=size, pes=size, offset=16 % size, accel="none")
     rows = {}
     for sample in range(SAMPLES):
         for form in ["fp32", *REDUCED]:
             result = lab.render(scene, format=form, **options)
             if sample == 0:
-                exponent, fraction, rounding = bits_of(form)
-                rows[form] = {"scene": scene.name, "format": form, "exponent_bits": exponent, "fraction_bits": fraction,
-                              "rounding": rounding, **difference(expected, result.image), "image_hash": result.hash, "u": result.imbalance,
+                exponent, fraction, cut = re.fullmatch(r"e(\d+)m(\d+)(t?)", "e8m23" if form == "fp32" else form).groups()
+                rows[form] = {"scene": scene.name, "format": form, "exponent_bits": int(exponent), "fraction_bits": int(fraction),
+                              "rounding": "truncate" if cut else "nearest", **difference(expected, result.image), "image_hash": result.hash, "u": result.imbalance,
                               "measured_kernel_s": np.inf}
             rows[form]["measured_kernel_s"] = min(rows[form]["measured_kernel_s"], result.device_s)
     rows = pd.DataFrame(rows.values())
@@ -69,19 +63,8 @@ def formats(lab, scenes):
                          "most off by > 1/255 (%)": 100 * format_rows["share_over"].max(),
                          "time / fp32, least (measured)": ratio.min(), "time / fp32, largest (measured)": ratio.max()})
     nearest = rows[(rows["rounding"] == "nearest") & (rows["fraction_bits"] < 23)]
-    return Page({"size": size, "machine": "grande", "pes": size, "offset": 16 % size, "bounces": GRANDE["bounces"],
-                 "samples": SAMPLES, "lanes": lanes[0], "device": lab.session.device["name"]}, findings_of(rows),
-                tables=[Table("formats-overview", "Each format, over all scenes", overview),
-                        Table("formats", "Each scene and format", rows, on_page=False)],
-                plots=[Plot("formats", "PSNR against the number of fraction bits, rounding to nearest", "fraction bits", "PSNR (dB)",
-                            series_by(nearest.sort_values("fraction_bits", kind="stable"), "scene", "fraction_bits",
-                                      "psnr_db", style="points"))])
-
-
-def findings_of(rows):
     spa, fp32 = (rows[rows["format"] == form] for form in ("e6m15", "fp32"))
     psnr = rows.pivot(index="scene", columns="format", values="psnr_db").reindex(rows["scene"].unique())
-
     u = rows.pivot(index="scene", columns="format", values="u")
     load_changes = u.div(u["fp32"], axis=0).sub(1).abs().max()
 
@@ -94,11 +77,18 @@ def findings_of(rows):
     gains = pd.concat([psnr[form] - psnr[form + "t"] for form in REDUCED if not form.endswith("t")])
     changes = [f"From {a} to {b} the PSNR changes by {spread(psnr[b] - psnr[a])}." for a, b in
                (("e6m13", "e6m15"), ("e8m15", "e8m21"), ("e6m15", "e8m15"))]
-    return [f"spa22 (e6m15) has a PSNR of {text(spa, 'psnr_db')} dB, fp32 has {text(fp32, 'psnr_db')} dB; "
-            f"{text(spa, 'share_over', 100, 2)} % of spa22's pixels and {text(fp32, 'share_over', 100, 2)} % of fp32's have an error above "
-            f"1/255; spa22 takes {text(spa, 'measured_ratio_to_fp32', 1, 2)} "
-            "times fp32's kernel time (measured).",
-            f"The load imbalance u in a reduced format differs from that in fp32 by at most {100 * load_changes.max():.1f} % (spa22: "
-            f"{100 * load_changes['e6m15'].max():.1f} %).",
-            f"Rounding to nearest has a higher PSNR than truncation in {(gains > 0).sum()} of {len(gains)} pairs of the same "
-            f"format and scene: {spread(gains)}.", *changes]
+    findings = [f"spa22 (e6m15) has a PSNR of {text(spa, 'psnr_db')} dB, fp32 has {text(fp32, 'psnr_db')} dB; "
+                f"{text(spa, 'share_over', 100, 2)} % of spa22's pixels and {text(fp32, 'share_over', 100, 2)} % of fp32's have an error above "
+                f"1/255; spa22 takes {text(spa, 'measured_ratio_to_fp32', 1, 2)} "
+                "times fp32's kernel time (measured).",
+                f"The load imbalance u in a reduced format differs from that in fp32 by at most {100 * load_changes.max():.1f} % (spa22: "
+                f"{100 * load_changes['e6m15'].max():.1f} %).",
+                f"Rounding to nearest has a higher PSNR than truncation in {(gains > 0).sum()} of {len(gains)} pairs of the same "
+                f"format and scene: {spread(gains)}.", *changes]
+    return Page({"size": size, "machine": "grande", "pes": size, "offset": 16 % size, "bounces": MACHINES["grande"]["bounces"],
+                 "samples": SAMPLES, "lanes": lanes[0], "device": lab.session.device["name"]}, findings,
+                tables=[Table("formats-overview", "Each format, over all scenes", overview),
+                        Table("formats", "Each scene and format", rows, on_page=False)],
+                plots=[Plot("formats", "PSNR against the number of fraction bits, rounding to nearest", "fraction bits", "PSNR (dB)",
+                            series_by(nearest.sort_values("fraction_bits", kind="stable"), "scene", "fraction_bits",
+                                      "psnr_db", style="points"))])

@@ -24,22 +24,18 @@ BOUNCES, SPD_SIZE = 4, 513  # BOUNCES: SPD's depth of 5, without the eye ray
 COLUMNS = ("scene", "A x B x C", "copies", "tests", "steps", "measured (ms)")
 
 
-def grids_for(name):
-    """Returns the grids published for the scene; for other scenes, those published for lattice."""
-    known = [grid for scene, grid in papers.UNIFORM_GRIDS if scene == name]
-    return known or [(20, 20, 20), (44, 44, 44)]
-
-
 @study("havran", measures=True)
 def havran(lab, scenes):
     size = lab.size(257)  # every second of SPD's 513 pixel corners along a side
     own = [raya.generate.balls(4).renamed("balls"), raya.generate.lattice(12).renamed("lattice")]
-    cases = [{"scene": scene, "grid": grid} for scene in scenes or own for grid in grids_for(scene.name)]
+    published_grids = {name: [grid for scene, grid in papers.UNIFORM_GRIDS if scene == name] for name in ("balls", "lattice")}
+    cases = [{"scene": scene, "grid": grid} for scene in scenes or own
+             for grid in published_grids.get(scene.name, published_grids["lattice"])]
     table = run_cases(cases, lambda scene, grid: run_in_one_pe(lab, scene, size, grid, BOUNCES, "corners"), COLUMNS)
     rows = pd.DataFrame([row_of(*some) for some in zip(table["run"], table["grid"])])
     kinds = {"primary": "eye rays", "reflected": "reflected", "refracted": "refracted", "shadow": "shadow rays",
              "walks": "walks"}
-    rays = pd.DataFrame([{name: run.events[kind] for kind, name in kinds.items()} for run in table["run"]])
+    rays = pd.DataFrame([{name: run["result"].events[kind] for kind, name in kinds.items()} for run in table["run"]])
     table = table.drop(columns=["grid", "run"]).join(rays)
     table["tests a walk"], table["steps a walk"] = (table[name] / table["walks"] for name in ("tests", "steps"))
     table = table[["scene", "A x B x C", "copies", *rays.columns, "tests", "steps", "tests a walk", "steps a walk",
@@ -48,7 +44,8 @@ def havran(lab, scenes):
     published = [Series("Havran & Sixta", known["their steps"], known["their tests"], "paper")] if len(known) else []
     return Page({"size": size, "bounces": BOUNCES, "sampling": "corners", "format": "fp32"},
                 [finding_of(known, what) for what in ("tests", "steps")],
-                [c for _, row in rows.iterrows() for c in comparisons_of(row)],
+                [Comparison(f"{row['scene']} {row['sides']}: {what} per ray", "", row[f"their {what}"], row[what], remark) for _, row in rows.iterrows()
+                 for what, remark in (("tests", ""), ("steps", f"{row['beyond']:.2f} without the first voxel of each walk"))],
                 tables=[Table("havran", "Counts for each scene and grid", table)],
                 plots=[Plot("havran", "Tests per ray against steps per ray", "steps per ray", "tests per ray",
                             series_by(rows, "scene", "steps", "tests", style="points") + published, "xy")],
@@ -57,16 +54,9 @@ def havran(lab, scenes):
 
 
 def row_of(run, grid):
-    tests, steps = papers.UNIFORM_GRIDS.get((run.scene, grid), (math.nan, math.nan))
-    return {"scene": run.scene, "sides": run.sides, "tests": run.tests_per_ray, "steps": run.steps_per_ray,
-            "beyond": (run.steps - run.events["walks"]) / run.rays, "their tests": tests, "their steps": steps}
-
-
-def comparisons_of(row):
-    name = f"{row['scene']} {row['sides']}"
-    yield Comparison(f"{name}: tests per ray", "", row["their tests"], row["tests"])
-    yield Comparison(f"{name}: steps per ray", "", row["their steps"], row["steps"],
-                     f"{row['beyond']:.2f} without the first voxel of each walk")
+    tests, steps = papers.UNIFORM_GRIDS.get((run["scene"], grid), (math.nan, math.nan))
+    return {"scene": run["scene"], "sides": run["A x B x C"], "tests": run["tests a ray"], "steps": run["steps a ray"],
+            "beyond": (run["steps"] - run["result"].events["walks"]) / run["rays"], "their tests": tests, "their steps": steps}
 
 
 def finding_of(known, what):

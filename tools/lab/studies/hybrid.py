@@ -27,18 +27,18 @@ MEMORIES = {"32 KB": 32 * 1024, "4 MB": 4 * 1024 * 1024}  # bytes of a node: as 
 def row_of(lab, scene, size, sides, groups):
     runs = [run_on_torus(lab, scene, size, near_cube(NODES // groups), (sides,) * 3, pixels=(groups, g))
             for g in range(groups)]
-    loads = np.concatenate([run.result.loads for run in runs])
-    memory = runs[0].result.node_memory
+    loads = np.concatenate([run["result"].loads for run in runs])
+    memory = runs[0]["result"].node_memory
+    most, total = ({name: of([run[name] for run in runs]) for name in names} for of, names in (
+        (max, ("overlapped (ms)", "stepwise (ms)", "messages (ms)", "supersteps")),
+        (sum, ("hops", "packets", "tests", "rays", "rays discarded", "work (ms)"))))
     return {"scene": scene.name, "voxels": sides_text((sides,) * 3), "groups": groups, "nodes a group": NODES // groups,
-            "overlapped (ms)": max(run.overlapped_ms for run in runs),
-            "stepwise (ms)": max(run.stepwise_ms for run in runs), "u over all nodes": loads.max() / loads.mean() - 1,
-            "most messages (ms)": max(run.messages_ms for run in runs),
-            "hops a packet": sum(run.hops for run in runs) / max(1, sum(run.packets for run in runs)),
-            "supersteps": max(run.supersteps for run in runs),
-            "tests a ray": sum(run.tests for run in runs) / max(1, sum(run.rays for run in runs)),
-            "rays discarded": sum(run.discarded for run in runs), "part of the scene (bytes)": memory["scene"],
+            "overlapped (ms)": most["overlapped (ms)"], "stepwise (ms)": most["stepwise (ms)"], "u over all nodes": loads.max() / loads.mean() - 1,
+            "most messages (ms)": most["messages (ms)"], "hops a packet": total["hops"] / max(1, total["packets"]),
+            "supersteps": most["supersteps"], "tests a ray": total["tests"] / max(1, total["rays"]),
+            "rays discarded": total["rays discarded"], "part of the scene (bytes)": memory["scene"],
             "scene and shortest buffers (bytes)": memory["shortest"], "scene and this study's buffers (bytes)": memory["used"],
-            "work": sum(run.work_ms for run in runs)}
+            "work": total["work (ms)"]}
 
 
 def rows_of(lab, scene, size, sides):
@@ -65,65 +65,51 @@ def hybrid(lab, scenes):
                          "tests a ray", "rays discarded"]]
     memory = rows[head + ["part of the scene (bytes)", "scene and shortest buffers (bytes)",
                           "scene and this study's buffers (bytes)", "fits 32 KB", "fits 4 MB"]]
-    return Page({"scenes": [scene.name for scene in chosen_scenes], "size": size, "nodes": NODES, "voxels": list(SIDES),
-                 "links": "torus3d", "format": "fp32", "bounces": BOUNCES}, findings_of(every),
-                [Comparison(f"best G, {one['scene'][0]}, {one['voxels'][0]} voxels", "groups", None, best,
-                            "shortest overlapped time, modelled without a memory limit") for one, best in zip(every, best_groups)],
-                tables=[Table("hybrid", "Time of the whole machine", times),
-                        Table("hybrid-memory", "Memory of the node that needs most", memory)], plots=plots_of(rows),
-                clock=CLOCK)
-
-
-def size_text(size):
-    """Returns, for example, '1.6 KB'; rounded up, because it is a requirement."""
-    for unit, scale in (("GB", 1 << 30), ("MB", 1 << 20), ("KB", 1 << 10)):
-        if size >= scale:
-            return f"{np.ceil(10 * size / scale) / 10:.1f} {unit}"
-    return f"{size} bytes"
-
-
-def findings_of(every):
-    def for_each_scene(text, with_voxels=", {}"):
-        return "; ".join(f"{r['scene'][0]}{with_voxels.format(r['voxels'][0])}: {text(r)}" for r in every)
-
-    def balance(r):
-        return "{:.2f} and {:.2f}".format(*r["u over all nodes"].iloc[[0, -1]])
-
-    def best(bound):
-        def text(r):
-            i = r[f"{bound} (ms)"].idxmin()
-            speedup = r[f"speed-up, {bound}"]
-            return f"G = {r['groups'][i]}, speed-up {speedup[i]:.1f} ({speedup[0]:.1f} with one group)"
-        return text
-
-    def memory(name):
-        def text(r):
-            fit = r[r[f"fits {name}"] == "yes"]
-            if not len(fit):
-                return f"no G (one group needs {size_text(r['scene and shortest buffers (bytes)'][0])} per node)"
-            if len(fit) == len(r):
-                return "every G"
-            i = fit["overlapped (ms)"].idxmin()
-            return (f"G = {', '.join(map(str, fit['groups']))}; the best of these is {r['groups'][i]} with a speed-up of "
-                    f"{r['speed-up, overlapped'][i]:.1f}")
-        return text
-
-    return [f"The number of groups of {NODES} nodes with the shortest overlapped time, without a memory limit: "
-            f"{for_each_scene(best('overlapped'), ' with {} voxels')}.",
-            f"The number of groups with the shortest stepwise time, without a memory limit: {for_each_scene(best('stepwise'))}.",
-            *(f"Numbers of groups that fit in nodes of {name}, with the shortest buffers: {for_each_scene(memory(name))}."
-              for name in MEMORIES), f"Imbalance u over all nodes, with one group and with {NODES} groups: {for_each_scene(balance)}."]
-
-
-def plots_of(rows):
     labelled = rows.assign(label=rows["scene"] + ", " + rows["voxels"] + " voxels")
 
     def plot(name, title, y_label, column, log="x", more=()):
         return Plot(name, title, "groups G", y_label, series_by(labelled, "label", "groups", column) + list(more), log)
 
     limits = [Series(name, [1, NODES], [size, size]) for name, size in MEMORIES.items()]
-    return [*(plot(name, f"Speed-up against the number of groups, {bound}", "speed-up, modelled", f"speed-up, {bound}")
-              for name, bound in (("hybrid", "overlapped"), ("hybrid-stepwise", "stepwise"))),
-            plot("hybrid-balance", "Load imbalance over the nodes of all groups", "u = (max load - mean load) / mean load", "u over all nodes"),
-            plot("hybrid-memory", "Memory of the node that needs most, with the shortest buffers", "memory (bytes)",
-                 "scene and shortest buffers (bytes)", "xy", limits)]
+    plots = [*(plot(name, f"Speed-up against the number of groups, {bound}", "speed-up, modelled", f"speed-up, {bound}")
+               for name, bound in (("hybrid", "overlapped"), ("hybrid-stepwise", "stepwise"))),
+             plot("hybrid-balance", "Load imbalance over the nodes of all groups", "u = (max load - mean load) / mean load", "u over all nodes"),
+             plot("hybrid-memory", "Memory of the node that needs most, with the shortest buffers", "memory (bytes)",
+                  "scene and shortest buffers (bytes)", "xy", limits)]
+    return Page({"scenes": [scene.name for scene in chosen_scenes], "size": size, "nodes": NODES, "voxels": list(SIDES),
+                 "links": "torus3d", "format": "fp32", "bounces": BOUNCES}, findings_of(every),
+                [Comparison(f"best G, {one['scene'][0]}, {one['voxels'][0]} voxels", "groups", None, best,
+                            "shortest overlapped time, modelled without a memory limit") for one, best in zip(every, best_groups)],
+                tables=[Table("hybrid", "Time of the whole machine", times),
+                        Table("hybrid-memory", "Memory of the node that needs most", memory)], plots=plots,
+                clock=CLOCK)
+
+
+def findings_of(every):
+    def for_each_scene(text, argument=None, with_voxels=", {}"):
+        return "; ".join(f"{r['scene'][0]}{with_voxels.format(r['voxels'][0])}: {text(r, argument)}" for r in every)
+
+    def balance(r, _):
+        return "{:.2f} and {:.2f}".format(*r["u over all nodes"].iloc[[0, -1]])
+
+    def best(r, bound):
+        i, speedup = r[f"{bound} (ms)"].idxmin(), r[f"speed-up, {bound}"]
+        return f"G = {r['groups'][i]}, speed-up {speedup[i]:.1f} ({speedup[0]:.1f} with one group)"
+
+    def memory(r, name):
+        fit = r[r[f"fits {name}"] == "yes"]
+        if not len(fit):
+            size = r["scene and shortest buffers (bytes)"][0]
+            scale, unit = next(one for one in ((1 << 30, "GB"), (1 << 20, "MB"), (1 << 10, "KB")) if size >= one[0])
+            return f"no G (one group needs {np.ceil(10 * size / scale) / 10:.1f} {unit} per node)"  # rounded up, because it is a requirement
+        if len(fit) == len(r):
+            return "every G"
+        i = fit["overlapped (ms)"].idxmin()
+        return (f"G = {', '.join(map(str, fit['groups']))}; the best of these is {r['groups'][i]} with a speed-up of "
+                f"{r['speed-up, overlapped'][i]:.1f}")
+
+    return [f"The number of groups of {NODES} nodes with the shortest overlapped time, without a memory limit: "
+            f"{for_each_scene(best, 'overlapped', ' with {} voxels')}.",
+            f"The number of groups with the shortest stepwise time, without a memory limit: {for_each_scene(best, 'stepwise')}.",
+            *(f"Numbers of groups that fit in nodes of {name}, with the shortest buffers: {for_each_scene(memory, name)}."
+              for name in MEMORIES), f"Imbalance u over all nodes, with one group and with {NODES} groups: {for_each_scene(balance)}."]

@@ -23,20 +23,11 @@ FINER_VIEWS, WINDOWS, ITERATIONS = 108, 24, 1000  # numbers of pictures at twice
 ALIKE, STRONGLY, HIGH, SHARE = 0.8, 2, 0.8, 0.95  # bounds of neighbours-alike; columns-vary; cyclic-is-high; cyclic-is-high and gain-for-all
 
 
-def paper_like_scenes():
-    """Returns ten scenes of 6 to 30 spheres and planes, as in the paper's experiments."""
-    scenes = [raya.example(name) for name in ("centre", "spheres", "mirrors", "glass", "planes")]
-    scenes += [raya.generate.random(n, n).renamed(f"random-{n}") for n in (6, 12, 20, 30)]
-    return scenes + [raya.generate.uniform(27, (3, 3, 3)).renamed("uniform-27")]
-
-
 def rows_of(pictures, objects, pes, offset):
-    u = np.array([raya.imbalances(one.trace, pes, [0, offset]) for one in pictures])  # [picture, offset]
-    rows = pd.DataFrame({"no.": range(1, len(pictures) + 1), "scene": [one.label for one in pictures],
-                         "objects": objects, "side (pixels)": [len(one.trace) for one in pictures]})
-    for p, values in zip((0, offset), u.T):
-        rows[f"u, p = {p}"], rows[f"efficiency, p = {p}"] = values, 1 / (1 + values)
-    return rows
+    u_0, u_p = np.array([raya.imbalances(one.trace, pes, [0, offset]) for one in pictures]).T
+    return pd.DataFrame({"no.": range(1, len(pictures) + 1), "scene": [one.label for one in pictures], "objects": objects,
+                         "side (pixels)": [len(one.trace) for one in pictures], "u, p = 0": u_0, "efficiency, p = 0": 1 / (1 + u_0),
+                         f"u, p = {offset}": u_p, f"efficiency, p = {offset}": 1 / (1 + u_p)})
 
 
 def mandelbrot(side, seed):
@@ -69,8 +60,11 @@ def ensembles_of(lab, scenes):
 
 @study("images", prepare=ensembles_of)
 def images(lab, scenes):
-    pes, shown_scenes = lab.size(256), scenes or paper_like_scenes()
+    pes = lab.size(256)
     p = round(pes**0.5)
+    shown_scenes = scenes or [  # ten scenes of 6 to 30 spheres and planes, as in the paper's experiments
+        *(raya.example(name) for name in ("centre", "spheres", "mirrors", "glass", "planes")),
+        *(raya.generate.random(n, n).renamed(f"random-{n}") for n in (6, 12, 20, 30)), raya.generate.uniform(27, (3, 3, 3)).renamed("uniform-27")]
     pictures = [lab.costs(scene, side) for side in (pes, 2 * pes) for scene in shown_scenes]
     rows = rows_of(pictures, [scene.objects for scene in shown_scenes] * 2, pes, p)
     split_column, cyclic_column = "efficiency, p = 0", f"efficiency, p = {p}"
@@ -80,11 +74,29 @@ def images(lab, scenes):
     groups.update({f"ensemble at {len(one.pictures[0].trace)} x {len(one.pictures[0].trace)}": rows_of(one.pictures, 0, pes, p)
                    for one in (ensemble, finer)})
     groups["Mandelbrot windows"] = pd.DataFrame({split_column: 1 / (1 + windows[:, 0]), cyclic_column: 1 / (1 + windows[:, 1])})
+    table = pd.DataFrame({"pictures": list(groups), "number": [len(group) for group in groups.values()]})
+    for name, column in (("p = 0", split_column), ("cyclic", cyclic_column)):
+        means = [estimate(group[column]) for group in groups.values()]
+        table[name], table[f"{name}, +-"] = [m.mean for m in means], [m.half for m in means]
+        for which, extreme in (("least", min), ("largest", max)):
+            table[f"{name}, {which}"] = [extreme(group[column]) for group in groups.values()]
+    means = "; ".join(f"{estimate(g[split_column]).text()} and {estimate(g[cyclic_column]).text()} for {label} ({len(g)} images)"
+                      for label, g in groups.items())
+    worst = rows.loc[rows[cyclic_column].idxmin()]
+    worse = (rows[split_column] > rows[cyclic_column]).sum()
+    size = "{0} x {0}".format(worst["side (pixels)"])
+    rest = (f"The column split is better for {worse} of {len(rows)} images." if worse else
+            f"The cyclic mapping is at least as good as the column split on all {len(rows)} images.")
+    findings = [f"Mean efficiency of the column split and of the cyclic mapping: {means}.",
+                f"In the scenes' own views the efficiency is {rows[split_column].min():.3f} to {rows[split_column].max():.3f} with "
+                f"the column split and {rows[cyclic_column].min():.3f} to {rows[cyclic_column].max():.3f} with p = {p}.",
+                f"The cyclic mapping's lowest efficiency is {worst[cyclic_column]:.3f}, for {worst['scene']} at {size}; there the column split "
+                f"has {worst[split_column]:.3f}. {rest}"]
     return Page({"pes": pes, "offset": p, "images": len(rows), "windows": WINDOWS, "iterations": ITERATIONS, "seed": lab.seed},
-                findings_of(groups, rows, split_column, cyclic_column, p),
+                findings,
                 comparisons_of(rows, split_column, cyclic_column, pes),
                 claims_of(ensemble, finer, windows, pes, p) if not scenes else [],
-                [table_of_groups(groups, split_column, cyclic_column),
+                [Table("images-groups", "Mean efficiency of each group of images, with 95 % intervals", table),
                  Table("images", "Load imbalance and efficiency of each image", rows)],
                 plots_of(rows, groups, split_column, cyclic_column, pes, p),
                 [f"The cyclic mapping also balances another problem: over {WINDOWS} windows of the Mandelbrot set its mean efficiency is "
@@ -119,31 +131,6 @@ def claims_of(ensemble, finer, windows, pes, p):
                    f"The mean u falls by {estimate(windows[:, 0] - windows[:, 1]).text()} from p = 0 to {p}, to {estimate(windows[:, 1]).text()}.")]
 
 
-def table_of_groups(groups, split_column, cyclic_column):
-    table = pd.DataFrame({"pictures": list(groups), "number": [len(rows) for rows in groups.values()]})
-    for name, column in (("p = 0", split_column), ("cyclic", cyclic_column)):
-        means = [estimate(rows[column]) for rows in groups.values()]
-        table[name], table[f"{name}, +-"] = [m.mean for m in means], [m.half for m in means]
-        for which, extreme in (("least", min), ("largest", max)):
-            table[f"{name}, {which}"] = [extreme(rows[column]) for rows in groups.values()]
-    return Table("images-groups", "Mean efficiency of each group of images, with 95 % intervals", table)
-
-
-def findings_of(groups, rows, split_column, cyclic_column, p):
-    means = "; ".join(f"{estimate(g[split_column]).text()} and {estimate(g[cyclic_column]).text()} for {label} ({len(g)} images)"
-                      for label, g in groups.items())
-    worst = rows.loc[rows[cyclic_column].idxmin()]
-    worse = (rows[split_column] > rows[cyclic_column]).sum()
-    size = "{0} x {0}".format(worst["side (pixels)"])
-    rest = (f"The column split is better for {worse} of {len(rows)} images." if worse else
-            f"The cyclic mapping is at least as good as the column split on all {len(rows)} images.")
-    return [f"Mean efficiency of the column split and of the cyclic mapping: {means}.",
-            f"In the scenes' own views the efficiency is {rows[split_column].min():.3f} to {rows[split_column].max():.3f} with "
-            f"the column split and {rows[cyclic_column].min():.3f} to {rows[cyclic_column].max():.3f} with p = {p}.",
-            f"The cyclic mapping's lowest efficiency is {worst[cyclic_column]:.3f}, for {worst['scene']} at {size}; there the column split "
-            f"has {worst[split_column]:.3f}. {rest}"]
-
-
 def comparisons_of(rows, split_column, cyclic_column, pes):
     first = rows.iloc[0]
     same = pes == papers.PES and first["scene"] == "centre" and first["side (pixels)"] == papers.SIZE
@@ -151,10 +138,9 @@ def comparisons_of(rows, split_column, cyclic_column, pes):
     source = "Kohata & Ito: their most unbalanced image" if same else ""
     return [*with_paper(same, [Comparison(f"{name}, p = 0", "", papers.EFFICIENCY_0, first[split_column], source, True),
                                Comparison(f"{name}, cyclic", "", papers.EFFICIENCY_16, first[cyclic_column], source, True)]),
-            Comparison("lowest of all, p = 0", "", None, rows[split_column].min(), "Kohata & Ito: differs strongly between images"),
-            Comparison("highest of all, p = 0", "", None, rows[split_column].max()),
-            Comparison("lowest of all, cyclic", "", None, rows[cyclic_column].min(), "Kohata & Ito: high for all images"),
-            Comparison("highest of all, cyclic", "", None, rows[cyclic_column].max())]
+            *(Comparison(f"{which} of all, {name}", "", None, value, remark)
+              for name, column, about in (("p = 0", split_column, "differs strongly between images"), ("cyclic", cyclic_column, "high for all images"))
+              for which, value, remark in (("lowest", rows[column].min(), f"Kohata & Ito: {about}"), ("highest", rows[column].max(), "")))]
 
 
 def plots_of(rows, groups, split_column, cyclic_column, pes, p):

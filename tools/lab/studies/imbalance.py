@@ -4,7 +4,7 @@ import pandas as pd
 import raya
 from raya.lab import (Comparison, Page, Plot, Series, Table, above, bonferroni_confidence, estimate, estimates, every,
                       first_scene, judged, papers, range_text, study)
-from raya.lab.mappings import shortest_square
+from raya.lab.studies.lattice import shortest_square
 
 U_AND_PICTURES = """
 - The load of a PE is the sum of the modelled cycles of its pixels. The load imbalance u = (max load - mean load) / mean load needs no clock rate.
@@ -41,40 +41,37 @@ def page_of(name, lab, scenes, first_pass):
     ensemble = lab.ensemble(scenes, size, antialias)
     u = raya.imbalances(image_of(lab.costs(scene, size, antialias)), size, offsets)
     picture_u = ensemble.map(lambda costs: raya.imbalances(image_of(costs), size, offsets))  # [picture, offset]
-    means = estimates(picture_u, ensemble.families)
+    means, half_widths = estimates(picture_u, ensemble.families)
     best = (picture_u <= picture_u[:, :n + 1].min(1, keepdims=True)).sum(0)
     rows = pd.DataFrame({
-        "p": offsets, "u": u, "mean u": [m.mean for m in means], "+-": [m.half for m in means],
+        "p": offsets, "u": u, "mean u": means, "+-": half_widths,
         "least u": picture_u.min(0), "largest u": picture_u.max(0), f"best of 0..{n} (pictures)": best,
         "shortest vector (pixels)": [shortest_square(p, size)**0.5 for p in offsets]})
+    of_families = [{"family": family, "pictures": len(one), **{f"u({p})": one[:, p].mean() for p in (0, n // 2, 3 * n // 4, n)},
+                    f"best of 0..{n}": int(one[:, :n + 1].mean(0).argmin())}
+                   for family in dict.fromkeys(ensemble.families) for one in [picture_u[np.array(ensemble.families) == family]]]
     in_paper, near = first_pass and papers.is_papers(scene.name, size), rows[:n + 1]
     phase = "first pass" if first_pass else "supersampling without the first pass"
+    p8, p16 = 8 % size, 16 % size
+    zero, eight, sixteen = (estimate(picture_u[:, p], ensemble.families).text() for p in (0, p8, p16))
+    findings = [f"The mean u of {len(picture_u)} pictures is {zero} at p = 0, {eight} at p = 8 and {sixteen} at p = 16.",
+                best_sentence(picture_u, ensemble.families, n),
+                f"In the single picture, u is {u[0]:.3f} at p = 0, {u[p8]:.3f} at p = 8 and {u[p16]:.3f} at p = 16. The best of the "
+                f"offsets 0..{n} is p = {u[:n + 1].argmin()} with u = {u[:n + 1].min():.3f}; the best of all {len(u)} offsets is p = "
+                f"{u.argmin()} with u = {u.min():.3f}. {(u < u[p16]).sum()} offsets have a lower u than p = 16."]
     return Page({"scene": scene.name, "size": size, "pes": size, "pictures": len(picture_u)},
-                findings_of(u, picture_u, ensemble.families, means, n),
-                comparisons_of(rows, picture_u, n, in_paper),
+                findings, comparisons_of(rows, picture_u, n, in_paper),
                 claims_of(picture_u, ensemble, n, first_pass) if not scenes else [],
                 [Table(f"{name}-near", f"Load imbalance u at the offsets 0..{n}: {scene.name}, and {len(picture_u)} pictures", near),
                  Table(name, "Load imbalance u at each offset", rows, on_page=False),
-                 table_of_families(name, picture_u, ensemble.families, n)],
+                 Table(f"{name}-families", "Mean u of each family at four offsets, and the offset with the lowest mean u", of_families)],
                 plots_of(name, scene.name, phase, rows, near, len(picture_u), in_paper),
                 placeholders={"ensemble": ensemble.description}, compared_with=papers.SPA)
 
 
-def table_of_families(name, picture_u, families, n):
-    names = list(dict.fromkeys(families))
-    rows = [{"family": family, "pictures": families.count(family),
-             **{f"u({p})": picture_u[np.array(families) == family, p].mean() for p in (0, n // 2, 3 * n // 4, n)},
-             f"best of 0..{n}": int(picture_u[np.array(families) == family, :n + 1].mean(0).argmin())} for family in names]
-    return Table(f"{name}-families", "Mean u of each family at four offsets, and the offset with the lowest mean u", rows)
-
-
-def against_n(picture_u, families, n, confidence=0.95):
-    """Returns an estimate of u(p) - u(n) for each p = 0..n - 1. Each difference is taken within the same picture."""
-    return [estimate(picture_u[:, p] - picture_u[:, n], families, confidence) for p in range(n)]
-
-
 def best_sentence(picture_u, families, n):
-    differences = against_n(picture_u, families, n, bonferroni_confidence(n))
+    # u(p) - u(n) for each p = 0..n - 1, within the same picture
+    differences = [estimate(picture_u[:, p] - picture_u[:, n], families, bonferroni_confidence(n)) for p in range(n)]
     worse, better = ([p for p, d in enumerate(differences) if sign * d.low_or_mean > 0 and sign * d.high_or_mean > 0] for sign in (1, -1))
     means = picture_u[:, :n + 1].mean(0)
     lowest = int(means.argmin())
@@ -103,16 +100,6 @@ def claims_of(picture_u, ensemble, n, first_pass):
             judged("good-at-8", above(half - GOOD_FRACTION * gains, 0, families), about,
                    f"Compared with p = 0, the mean u is lower by {estimate(half, families).text()} with p = {n // 2}, and by "
                    f"{estimate(gains, families).text()} with the best offset of 0..{n} for each picture.")]
-
-
-def findings_of(u, picture_u, families, means, n):
-    half, best = 8 % len(u), 16 % len(u)  # the offsets p = 8 and p = 16 of the paper
-    return [f"The mean u of {len(picture_u)} pictures is {means[0].text()} at p = 0, {means[half].text()} at p = 8 and "
-            f"{means[best].text()} at p = 16.",
-            best_sentence(picture_u, families, n),
-            f"In the single picture, u is {u[0]:.3f} at p = 0, {u[half]:.3f} at p = 8 and {u[best]:.3f} at p = 16. The best of the "
-            f"offsets 0..{n} is p = {u[:n + 1].argmin()} with u = {u[:n + 1].min():.3f}; the best of all {len(u)} offsets is p = "
-            f"{u.argmin()} with u = {u.min():.3f}. {(u < u[best]).sum()} offsets have a lower u than p = 16."]
 
 
 def comparisons_of(rows, picture_u, n, in_paper):

@@ -13,7 +13,7 @@ From which number of nodes upwards is the root the bottleneck?
 - Output: inject.csv has a row for each number of nodes and method: supersteps, modelled times (ms), the root's time in % of the overlapped time,
   bytes over the busiest link, and numbers of packets, rays and hops.
 """
-from raya.lab import Page, Plot, Series, Table, series_by, study, tail_where
+from raya.lab import Page, Plot, Series, Table, first_from, series_by, study
 from raya.lab.voxels import BOUNCES, CLOCK, even_scene, near_cube, powers_of_two, run_cases, run_on_torus
 
 MAX_NODES, DIFFERENCE_RATIO = 512, 1.1  # maximum number of nodes; ratio above which the times of the two methods count as different
@@ -29,8 +29,27 @@ def inject(lab, scenes):
     rows = run_cases(CASES, lambda nodes, inject: run_on_torus(lab, scene, size, near_cube(nodes), near_cube(nodes),
                                                            inject=inject), COLUMNS)
     root, all_nodes = (rows[rows["inject"] == method].reset_index() for method in ("root", "all"))
+    a, b = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (root, all_nodes))
+    one, last, all_last = all_nodes["overlapped (ms)"][0], root.iloc[-1], all_nodes.iloc[-1]
+    ratio = root["overlapped (ms)"] / all_nodes["overlapped (ms)"]
+    different = ratio[ratio > DIFFERENCE_RATIO]
+    first, where, more = ("first takes more than 1.1 times", f" on {all_nodes['nodes'][different.index[0]]} nodes",
+                          f"{different.iloc[0]:.2f} times; ") if len(different) else ("never takes more than 1.1 times", "", "")
+    findings = [f"The root determines the overlapped time {bound_text(root)} if it makes all primary rays, and {bound_text(all_nodes)} if all nodes "
+                "make them.",
+                f"With method root the fastest machine has {a['nodes']} nodes: it takes {a['overlapped (ms)']:.0f} ms overlapped and is "
+                f"{one / a['overlapped (ms)']:.1f} times as fast as one node. With method all the fastest machine has {b['nodes']} nodes: it takes "
+                f"{b['overlapped (ms)']:.0f} ms and is {one / b['overlapped (ms)']:.1f} times as fast as one node.",
+                f"Overlapped, method root {first} as long as method all{where}: {more}on {all_last['nodes']} nodes the time with method root is "
+                f"{ratio.iloc[-1]:.2f} times that with method all.",
+                f"With method all, {all_last['nodes']} nodes make "
+                f"{1 + all_last['rays discarded'] / all_last['primary']:.1f} primary rays for each that they keep. They discard the others, which "
+                "enter at other nodes' voxels, and are charged for all.",
+                f"On {last['nodes']} nodes, method root takes {last['stepwise (ms)'] / all_last['stepwise (ms)']:.2f} times as long as method all, "
+                f"stepwise. It has {last['supersteps']} supersteps instead of {all_last['supersteps']}, because the root stops making rays "
+                "in a superstep when an eighth of its queue is full."]
     return Page({"scene": scene.name, "size": size, "nodes": MAX_NODES, "links": "torus3d", "format": "fp32",
-                 "bounces": BOUNCES}, findings_of(root, all_nodes),
+                 "bounces": BOUNCES}, findings,
                 tables=[Table("inject", "Time and work with primary rays made by the root and by all nodes",
                               rows.drop(columns=["primary", "run"]))],
                 plots=[Plot("inject", "Time against the number of nodes", "number of nodes", "modelled time (ms)",
@@ -45,32 +64,5 @@ def inject(lab, scenes):
 
 def bound_text(rows):
     """Part of a sentence: the smallest number of nodes (at least two) such that the root is the bottleneck for this and all larger numbers."""
-    nodes = tail_where(rows["nodes"][1:], rows["root / overlapped (%)"][1:] >= 100)
-    return f"from {nodes.iloc[0]} nodes upwards" if len(nodes) else "for no number of nodes"
-
-
-def finding_of_difference(root, all_nodes):
-    ratio = root["overlapped (ms)"] / all_nodes["overlapped (ms)"]
-    last = f"on {all_nodes['nodes'].iloc[-1]} nodes the time with method root is {ratio.iloc[-1]:.2f} times that with method all"
-    different = ratio[ratio > DIFFERENCE_RATIO]
-    if not len(different):
-        return f"Overlapped, method root never takes more than 1.1 times as long as method all: {last}."
-    return (f"Overlapped, method root first takes more than 1.1 times as long as method all on {all_nodes['nodes'][different.index[0]]} nodes: "
-            f"{different.iloc[0]:.2f} times; {last}.")
-
-
-def findings_of(root, all_nodes):
-    a, b = (rows.loc[rows["overlapped (ms)"].idxmin()] for rows in (root, all_nodes))
-    one, last, all_last = all_nodes["overlapped (ms)"][0], root.iloc[-1], all_nodes.iloc[-1]
-    return [f"The root determines the overlapped time {bound_text(root)} if it makes all primary rays, and {bound_text(all_nodes)} if all nodes "
-            "make them.",
-            f"With method root the fastest machine has {a['nodes']} nodes: it takes {a['overlapped (ms)']:.0f} ms overlapped and is "
-            f"{one / a['overlapped (ms)']:.1f} times as fast as one node. With method all the fastest machine has {b['nodes']} nodes: it takes "
-            f"{b['overlapped (ms)']:.0f} ms and is {one / b['overlapped (ms)']:.1f} times as fast as one node.",
-            finding_of_difference(root, all_nodes),
-            f"With method all, {all_last['nodes']} nodes make "
-            f"{1 + all_last['rays discarded'] / all_last['primary']:.1f} primary rays for each that they keep. They discard the others, which "
-            "enter at other nodes' voxels, and are charged for all.",
-            f"On {last['nodes']} nodes, method root takes {last['stepwise (ms)'] / all_last['stepwise (ms)']:.2f} times as long as method all, "
-            f"stepwise. It has {last['supersteps']} supersteps instead of {all_last['supersteps']}, because the root stops making rays "
-            "in a superstep when an eighth of its queue is full."]
+    nodes = first_from(rows["nodes"][1:], rows["root / overlapped (%)"][1:] >= 100)
+    return f"from {nodes} nodes upwards" if nodes else "for no number of nodes"

@@ -16,10 +16,22 @@ import pandas as pd
 import raya
 from raya.lab import (Comparison, Page, Plot, Series, Table, above, bonferroni_confidence, estimate, estimates, every, judged,
                       papers, study)
-from raya.lab.mappings import shares_blocks, shortest_square
 from scipy.stats import rankdata, spearmanr
 
 MAX_CORRELATION = -0.5  # the shortest vector "predicts" u if their rank correlation is at most this
+
+
+def shortest_square(offset, side):
+    """Returns the squared length, in pixels squared, of the shortest vector of the lattice with the basis (p, 1) and (W, 0), in (columns, rows), for an
+    offset p and an image of W = side columns."""
+    rows = np.arange(1, side + 1)  # after `side` rows a slot is back in its first column
+    right = rows * offset % side
+    return int((rows**2 + np.minimum(right, side - right)**2).min())
+
+
+def shares_blocks(offset, side, n):
+    """Returns true if no PE owns two or more pixels of an n x n block, wherever the block lies in the image."""
+    return n <= side and all(min(rows * offset % side, side - rows * offset % side) >= n for rows in range(1, n))
 
 
 @study("lattice", prepare=lambda lab, scenes: lab.ensemble(scenes, lab.size(256)))
@@ -34,10 +46,10 @@ def lattice(lab, scenes):
     beyond = [p for p in range(n + 1, size) if p != size - n]
     longer = [p for p in beyond if squares[p] > squares[n]]
     as_long = [p for p in beyond if squares[p] == squares[n]]
-    means = estimates(u, families)
+    means, half_widths = estimates(u, families)
     rows = pd.DataFrame({
-        "p": range(size), "shortest vector (pixels)": np.sqrt(squares), "mean u": [m.mean for m in means],
-        "+-": [m.half for m in means], "mean rank": rankdata(u, axis=1).mean(0),
+        "p": range(size), "shortest vector (pixels)": np.sqrt(squares), "mean u": means,
+        "+-": half_widths, "mean rank": rankdata(u, axis=1).mean(0),
         **{f"u, {name}": some.mean(0) for name, some in of_family.items()},
         "n x n blocks shared": ["yes" if shares_blocks(p, size, n) else "no" for p in range(size)]})
     wins = (u < u[:, n:n + 1]).sum(0)
@@ -47,9 +59,18 @@ def lattice(lab, scenes):
         columns={"mean rank": f"mean rank of {size}"})
     table[f"pictures better than p = {n}"] = wins[chosen]
     correlations = [spearmanr(np.sqrt(squares), one)[0] for one in u]
+    mean = rows["mean u"]
+    comparisons = [Comparison(f"mean u, p = {n}", "", None, mean[n], half_width=rows["+-"][n]),
+                   Comparison("lowest mean u of all offsets", "", None, mean[best], f"p = {best}",
+                              half_width=rows["+-"][best])]
+    for vector, offsets in (("shortest vector longer", longer), ("shortest vector as long", as_long)):
+        comparisons += [Comparison(f"number of offsets beyond {n}, {vector}", "", None, len(offsets), ", ".join(map(str, offsets))),
+                        Comparison(f"... of these with a lower mean u than p = {n}", "", None, int((mean[offsets] < mean[n]).sum()),
+                                   "Kohata & Ito: beyond sqrt(P) only the direction of the bias changes")]
+    comparisons.append(Comparison("rank correlation of u and shortest vector", "", None, float(np.mean(correlations)), "mean of the pictures"))
     return Page({"size": size, "pes": size, "reference": n, "pictures": len(u)},
                 findings_of(rows, u, families, n, longer, as_long, correlations, squares),
-                comparisons_of(rows, n, longer, as_long, correlations),
+                comparisons,
                 claims_of(u, ensemble, rows, n, beyond) if n * n == size and not scenes else [],
                 [Table("lattice-chosen", f"p = 0, p = {n}, offsets with shortest vectors as long or longer, and the best of all",
                        table), Table("lattice", "Shortest vector and u of each offset", rows, on_page=False)],
@@ -111,19 +132,6 @@ def findings_of(rows, u, families, n, longer, as_long, correlations, squares):
             f"Over all offsets, the rank correlation of u with the length of the shortest vector is {low:.2f} to {high:.2f}, by picture: {how} "
             f"(correlation at most {MAX_CORRELATION}). Over the offsets with a shortest vector of {half:.1f} pixels or more, the mean "
             f"correlation is {long_correlation:.2f}."]
-
-
-def comparisons_of(rows, n, longer, as_long, correlations):
-    mean, best = rows["mean u"], int(rows["mean u"].idxmin())
-    comparisons = [Comparison(f"mean u, p = {n}", "", None, mean[n], half_width=rows["+-"][n]),
-                   Comparison("lowest mean u of all offsets", "", None, mean[best], f"p = {best}",
-                              half_width=rows["+-"][best])]
-    for vector, offsets in (("shortest vector longer", longer), ("shortest vector as long", as_long)):
-        comparisons += [Comparison(f"number of offsets beyond {n}, {vector}", "", None, len(offsets), ", ".join(map(str, offsets))),
-                        Comparison(f"... of these with a lower mean u than p = {n}", "", None, int((mean[offsets] < mean[n]).sum()),
-                                   "Kohata & Ito: beyond sqrt(P) only the direction of the bias changes")]
-    return comparisons + [Comparison("rank correlation of u and shortest vector", "", None, float(np.mean(correlations)),
-                                     "mean of the pictures")]
 
 
 def plots_of(rows, n, longer, as_long, pictures):

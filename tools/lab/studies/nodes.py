@@ -25,11 +25,12 @@ QUEUE = 256  # packets; short enough for the device memory of 4096 nodes, long e
 MAX_NODES, SIDES, MAX_NODE_SUPERSTEPS = 4096, 16, 1 << 22
 MAX_ASYNC = 512  # maximum number of nodes for the discrete-event simulation
 VOXELS = sides_text((SIDES,) * 3)
+TIMES = "overlapped (ms)", "stepwise (ms)", "asynchronous (ms)"
 COLUMNS = ("u", "hops a packet", "supersteps", "busiest link (bytes)", "tests a ray", "steps a ray", "rays discarded")
 
 
 def series_of(lab, scene, size, fixed, links, known):
-    """Returns a table of renders on 1, 2, 4, ... nodes. fixed: each torus has VOXELS, else one voxel per node. known: {settings: Run}, a cache."""
+    """Returns a table of renders on 1, 2, 4, ... nodes. fixed: each torus has VOXELS, else one voxel per node. known: {settings: figures}, a cache."""
     rows, one = [], None
     for nodes in powers_of_two(MAX_NODES):
         if rows and rows[-1]["supersteps"] * nodes > MAX_NODE_SUPERSTEPS:
@@ -40,22 +41,15 @@ def series_of(lab, scene, size, fixed, links, known):
                                                            async_=nodes <= MAX_ASYNC)
         one = one or run
         rows.append({"scene": scene.name, "voxels": VOXELS if fixed else "one a node", "links": links, "nodes": nodes,
-                     **run.row(["overlapped (ms)", "stepwise (ms)", "asynchronous (ms)"]),
-                     "speed-up, asynchronous": one.asynchronous_ms / run.asynchronous_ms,
-                     "speed-up, overlapped": one.overlapped_ms / run.overlapped_ms,
-                     "speed-up, stepwise": one.stepwise_ms / run.stepwise_ms,
-                     "efficiency, overlapped": one.overlapped_ms / run.overlapped_ms / nodes, **run.row(COLUMNS),
-                     "waits for": bottleneck(nodes, run), "run": run, "balance": run.balance})
+                     **{column: run[column] for column in TIMES},
+                     **{f"speed-up, {bound}": one[f"{bound} (ms)"] / run[f"{bound} (ms)"] for bound in ("asynchronous", "overlapped", "stepwise")},
+                     "efficiency, overlapped": one["overlapped (ms)"] / run["overlapped (ms)"] / nodes, **{column: run[column] for column in COLUMNS},
+                     # the processor or link that determines the overlapped time
+                     "waits for": "the root's link" if run["the root's busiest link (ms)"] >= run["overlapped (ms)"] else
+                                  ("the root" if nodes > 1 else "its one node") if run["the root's processor (ms)"] >= run["overlapped (ms)"] else
+                                  "a link" if run["links (ms)"] >= run["overlapped (ms)"] else "a node",
+                     "balance": run["balance"]})
     return pd.DataFrame(rows)
-
-
-def bottleneck(nodes, run):
-    """Returns the name of the processor or link that determines the overlapped time."""
-    if run.root_link_ms >= run.overlapped_ms:
-        return "the root's link"
-    if run.root_processor_ms >= run.overlapped_ms:
-        return "the root" if nodes > 1 else "its one node"
-    return "a link" if run.links_ms >= run.overlapped_ms else "a node"
 
 
 @study("nodes")
@@ -75,7 +69,7 @@ def nodes(lab, scenes):
         findings += findings_of_speedup(three, fixed)
     fixed = by_scene[0][-1]
     best_fixed = fixed.loc[fixed["overlapped (ms)"].idxmin()]
-    rows = pd.concat(sum(by_scene, ()), ignore_index=True).drop(columns=["run", "balance"])
+    rows = pd.concat(sum(by_scene, ()), ignore_index=True).drop(columns="balance")
     return Page({"scenes": [scene.name for scene in chosen_scenes], "size": size, "nodes": MAX_NODES,
                  "voxels": VOXELS, "queue": QUEUE, "format": "fp32", "bounces": BOUNCES}, findings, comparisons,
                 tables=[Table("nodes", "Time and work on each torus", rows)], plots=plots_of(by_scene),
@@ -106,8 +100,7 @@ def plots_of(by_scene):
         plots.append(Plot(f"nodes-speedup-{number}", f"Speed-up of {scene}, 3-D torus", "number of nodes", "modelled speed-up",
                           series + [Series("linear", fixed["nodes"], fixed["nodes"])], "xy"))
         hops += [Series(f"{scene}, {rows['links'][0]}", rows["nodes"], rows["hops a packet"]) for rows in (three, two)]
-        balance += [Series(f"{scene}, {label}", rows["nodes"], rows["balance"])
-                    for rows, label in both[::-1]]
+        balance += [Series(f"{scene}, {label}", rows["nodes"], rows["balance"]) for rows, label in both[::-1]]
     return plots + [
         Plot("nodes-hops", "Hops of a packet, one voxel per node", "number of nodes", "mean hops of a packet", hops, "x"),
         Plot("nodes-balance", "Balance of computing, 3-D torus", "number of nodes", "mean load / largest load", balance, "xy")]

@@ -32,7 +32,7 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Page, Plot, Series, Table, above, estimate, every, judged, papers, series_by, study
-from raya.lab.voxels import CLOCK, even_scene, run_on_torus
+from raya.lab.voxels import CLOCK, even_scene, run_on_torus, with_spheres
 
 COUNTS, OTHER_WORDS, SIDES = (64, 192, 256, 512, 1024, 8320), (32, 48), 4  # numbers of objects; words of a ray packet; voxels along each axis
 RADII, VARIANTS, MAX_RADIUS = (0.5, 1, 2), 9, 0.45  # factors of the radii; variants of a scene; maximum of radius / voxel side
@@ -50,17 +50,15 @@ def render(lab, scene, size, **options):
 
 def even_variant(count, factor, seed):
     """Returns an even scene. Its spheres have the radii of even_scene() times a factor, and random places within their voxels."""
-    rng, lines = np.random.default_rng(seed), []
-    side = 2 / SIDES  # side of a voxel; the cube is [-1, 1]^3
-    for line in even_scene(count).nff.splitlines():
-        if line.startswith("s "):
-            *centre, radius = map(float, line.split()[1:])
-            radius = min(factor * radius, MAX_RADIUS * side)
-            voxel = np.floor((np.array(centre) + 1) / side)
-            centre = -1 + side * voxel + rng.uniform(radius, side - radius, 3)
-            line = "s " + " ".join(f"{value:.7g}" for value in (*centre, radius))
-        lines.append(line)
-    return raya.parse("\n".join(lines) + "\n", f"even-{count}, variant {seed}").random_view(seed).moved_into_voxels()
+    rng, side = np.random.default_rng(seed), 2 / SIDES  # side of a voxel; the cube is [-1, 1]^3
+
+    def change(sphere):
+        *centre, radius = map(float, sphere)
+        radius = min(factor * radius, MAX_RADIUS * side)
+        voxel = np.floor((np.array(centre) + 1) / side)
+        return " ".join(f"{value:.7g}" for value in (*(-1 + side * voxel + rng.uniform(radius, side - radius, 3)), radius))
+
+    return with_spheres(even_scene(count), change, f"even-{count}, variant {seed}").random_view(seed).moved_into_voxels()
 
 
 def scenes_of(count, seeds):
@@ -87,11 +85,11 @@ def depth_of(lab, scene, size):
     """Returns three figures: the fraction of primary rays that hit an object; and, of the primary rays that enter the scene's box, the fraction that
     end in their first voxel and the mean number of voxels that they visit."""
     run = render(lab, scene.without_lights(), size, packets=True)
-    packets = run.result.packets
+    packets, events = run["result"].packets, run["result"].events
     primary = packets[packets["kind"] == raya.PACKET_KINDS.index("primary")]
-    walks = max(1, run.events["walks"])
-    return (run.events["primary_hits"] / run.events["primary"], 1 - len(np.unique(primary["pixel"])) / walks,
-            run.events["steps"] / walks)
+    walks = max(1, events["walks"])
+    return (events["primary_hits"] / events["primary"], 1 - len(np.unique(primary["pixel"])) / walks,
+            events["steps"] / walks)
 
 
 @study("objects", one_scene=True)
@@ -105,7 +103,7 @@ def objects(lab, scenes):
         for protocol, options in PROTOCOLS.items():
             for kind, kind_scenes in scenes_by_kind.items():
                 runs[count, kind, protocol] = [render(lab, one, size, async_=True, **options) for one in kind_scenes]
-        times = {kind: np.array([[run.result.simulate(cycle_ns=ns) for ns in CLOCKS.values()] for run in runs[count, kind, PAPER]])
+        times = {kind: np.array([[run["result"].simulate(cycle_ns=ns) for ns in CLOCKS.values()] for run in runs[count, kind, PAPER]])
                  for kind in (EVEN, RANDOM)}  # [variant, clock]
         clocks[count] = dict(zip(CLOCKS, (times[RANDOM] / times[EVEN]).T))
         for kind in (EVEN, RANDOM):
@@ -116,27 +114,41 @@ def objects(lab, scenes):
         if count in (COUNTS[0], COUNTS[-1]):
             for more in OTHER_WORDS:
                 run = render(lab, scenes_by_kind[EVEN][0], size, **{**PROTOCOLS[PAPER], "packet_words": more})
-                words.append({"objects": count, "words a ray": more, "overlapped (ms)": run.overlapped_ms,
-                              "stepwise (ms)": run.stepwise_ms})
+                words.append({"objects": count, "words a ray": more, "overlapped (ms)": run["overlapped (ms)"],
+                              "stepwise (ms)": run["stepwise (ms)"]})
     rows = pd.DataFrame([row_of(key, kind_runs, exact) for key, kind_runs in runs.items()])
-    ratios = pd.DataFrame([ratio_of(runs, count, kind, protocol) for protocol in PROTOCOLS for kind in (RANDOM, WITHIN)
-                           for count in COUNTS])
+    # (time of a scene of this kind) / (time of the even scene of the same variant), an estimate for each of TIMES
+    ratios = pd.DataFrame([{"objects": count, "kind": kind, "protocol": protocol, **{time: estimate([
+        run[f"{time} (ms)"] / even[f"{time} (ms)"] for run, even in zip(runs[count, kind, protocol], runs[count, EVEN, protocol])])
+        for time in TIMES}} for protocol in PROTOCOLS for kind in (RANDOM, WITHIN) for count in COUNTS])
     growth = [(kind, protocol, growth_of(runs[COUNTS[0], kind, protocol], runs[COUNTS[-1], kind, protocol]))
               for protocol in PROTOCOLS for kind in (EVEN, RANDOM)]
-    depths, words, sweep = pd.DataFrame(depths), pd.DataFrame(words), sweep_of(runs, clocks)
-    more = ["This study ignores the scenes of the command line: it generates scenes like those of Yoshitani & Yamazaki."
-            ] if scenes else []
+    depths, words, sweep = pd.DataFrame(depths), pd.DataFrame(words), sweep_of(clocks)
+    spread = ratios[["objects", "kind", "protocol"]].copy()
+    for time in TIMES:
+        spread[time], spread[f"{time} +-"] = [e.mean for e in ratios[time]], [e.half for e in ratios[time]]
+    factors = pd.DataFrame([  # geometric means: unlike means, those of factors multiply to that of their product
+        {"kind": kind, "protocol": protocol, **np.exp(np.log(growth_rows).mean())} for kind, protocol, growth_rows in growth])
+    factors.insert(5, "+-", [estimate(growth_rows["objects / time"]).half for *_, growth_rows in growth])
+    low, high = (sweep.loc[pick] for pick in (sweep["random / even"].idxmin(), sweep["random / even"].idxmax()))
+    more = ["This study ignores the scenes of the command line: it generates scenes like those of Yoshitani & Yamazaki."] if scenes else []
     return Page({"nodes": "4x4x4", "voxels": "4x4x4", "links": "torus2d", "size": size, "bounces": 0, "format": "fp32",
                  "words": papers.RAY_WORDS, "variants": VARIANTS, "seed": lab.seed, "objects": list(COUNTS)},
-                findings_of(runs, rows, ratios, depths, words) + [finding_of_sweep(sweep)] + more,
+                [*findings_of(runs, rows, ratios, depths, words),
+                 f"For all radii and clocks, time of random / time of even objects (asynchronous) is {low['random / even']:.2f} ({low['objects']} "
+                 f"objects, {low['variants']}) to {high['random / even']:.2f} ({high['objects']} objects, {high['variants']}).", *more],
                 claims=claims_of(runs, ratios, growth, f"{VARIANTS} variants of each scene, seeds {seeds[0]}..{seeds[-1]}"),
-                tables=[*tables_of(rows, ratios, growth, depths, words),
+                tables=[Table("objects", "Time and work for each number of objects", rows),
+                        Table("objects-ratios", "Time of random / time of even objects", spread),
+                        Table("objects-growth", "Growth from the fewest to the most objects: objects / time as a product of four factors", factors),
+                        Table("objects-primary", "Voxels that primary rays visit", depths.drop(columns="half")),
+                        Table("objects-words", "Times with larger ray packets, protocol of Yoshitani & Yamazaki, even scenes", words),
                         Table("objects-sweep", "Time of random / time of even, asynchronous, protocol of Yoshitani & Yamazaki", sweep)],
                 plots=plots_of(rows, ratios, depths),
                 clock=CLOCK, placeholders={"radii": ", ".join(map(str, RADII)), "largest": MAX_RADIUS})
 
 
-def sweep_of(runs, clocks):
+def sweep_of(clocks):
     """Returns a table of time of random / time of even objects: for each factor of the radii at 25 MHz, and for each clock over all variants."""
     rows = []
     for count, by_clock in clocks.items():
@@ -147,36 +159,23 @@ def sweep_of(runs, clocks):
     return pd.DataFrame(rows)
 
 
-def finding_of_sweep(sweep):
-    low, high = (sweep.loc[pick] for pick in (sweep["random / even"].idxmin(), sweep["random / even"].idxmax()))
-    return (f"For all radii and clocks, time of random / time of even objects (asynchronous) is {low['random / even']:.2f} ({low['objects']} "
-            f"objects, {low['variants']}) to {high['random / even']:.2f} ({high['objects']} objects, {high['variants']}).")
-
-
 def row_of(key, runs, exact):
     count, kind, protocol = key
     columns = ("copies", "tests a ray", "steps a ray", "returns", "rays discarded", "u")
     row = {"objects": count, "kind": kind, "protocol": protocol, "scenes": len(runs),
-           **pd.DataFrame([run.row(columns) for run in runs]).mean(), "copies without margin": exact[count, kind]}
+           **pd.DataFrame(runs)[list(columns)].mean(), "copies without margin": exact[count, kind]}
     for time in TIMES:
-        e = estimate([getattr(run, f"{time}_ms") for run in runs])
+        e = estimate([run[f"{time} (ms)"] for run in runs])
         row[f"{time} (ms)"], row[f"{time} +- (ms)"] = e.mean, e.half
-    return {**row, "busiest node computes (ms)": np.mean([run.compute_ms for run in runs]),
-            "the root alone (ms)": np.mean([run.root_ms for run in runs])}
-
-
-def ratio_of(runs, count, kind, protocol):
-    """Returns estimates of (time of a scene of this kind) / (time of the even scene of the same variant), for each of TIMES."""
-    pairs = list(zip(runs[count, kind, protocol], runs[count, EVEN, protocol]))
-    return {"objects": count, "kind": kind, "protocol": protocol,
-            **{time: estimate([getattr(run, f"{time}_ms") / getattr(even, f"{time}_ms") for run, even in pairs]) for time in TIMES}}
+    return {**row, "busiest node computes (ms)": np.mean([run["compute (ms)"] for run in runs]),
+            "the root alone (ms)": np.mean([run["the root (ms)"] for run in runs])}
 
 
 def growth_of(first, last):
     """Returns growth of objects / growth of time and its four factors, for each variant. first, last: Runs with the fewest and most objects."""
     def one(a, b):
-        steps, tests = b.events["steps"] / a.events["steps"], b.tests / a.tests
-        work, time, count = b.work_ms / a.work_ms, b.overlapped_ms / a.overlapped_ms, COUNTS[-1] / COUNTS[0]
+        steps, tests = b["steps"] / a["steps"], b["tests"] / a["tests"]
+        work, time, count = b["work (ms)"] / a["work (ms)"], b["overlapped (ms)"] / a["overlapped (ms)"], COUNTS[-1] / COUNTS[0]
         return {"objects": count, "time": time, "objects / time": count / time, "fewer voxels a ray": 1 / steps,
                 "tests a voxel grow less": count * steps / tests, "fixed costs": tests / work,
                 "one node's bound": work / time}
@@ -194,7 +193,7 @@ def texts_of(time_ratios, time):
 def claims_of(runs, ratios, growth, about):
     """Judges by asynchronous times whether random scenes are slower, because the paper's machine is asynchronous. The reason has the bounds, too."""
     random_ratios = select(ratios, RANDOM, PAPER)
-    times = {kind: np.array([[run.asynchronous_ms for run in runs[count, kind, PAPER]] for count in COUNTS]) for kind in (EVEN, RANDOM, WITHIN)}
+    times = {kind: np.array([[run["asynchronous (ms)"] for run in runs[count, kind, PAPER]] for count in COUNTS]) for kind in (EVEN, RANDOM, WITHIN)}
     random_ratio, within_ratio = ((times[kind] / times[EVEN]).mean(0) for kind in (RANDOM, WITHIN))  # [variant]
     slower = [above(random_ratio, 1), above(random_ratio - within_ratio)]
     even, random = growth[0][2], growth[1][2]
@@ -233,28 +232,10 @@ def findings_of(runs, rows, ratios, depths, words):
     return [copies,
             f"A primary ray in the scene's box visits {va:.2f} voxels in the mean with {a['objects']} even objects and {vb:.2f} with "
             f"{b['objects']}, a ratio of {va / vb:.2f}. {a[end]:.0f} % and {b[end]:.0f} % of these rays end in their first voxel.",
-            f"With {COUNTS[0]} even objects, {theirs.events['primary']} primary rays cause {theirs.returns} returns under the protocol of {PAPER} "
-            f"and {ours.returns} under raya's, where each contribution is a return. Under raya's protocol all nodes together discard "
-            f"{ours.discarded} primary rays.",
+            f"With {COUNTS[0]} even objects, {theirs['primary']} primary rays cause {theirs['returns']} returns under the protocol of {PAPER} "
+            f"and {ours['returns']} under raya's, where each contribution is a return. Under raya's protocol all nodes together discard "
+            f"{ours['rays discarded']} primary rays.",
             f"Overlapped time with larger ray packets, compared with the {papers.RAY_WORDS} words of Table 1: {more}."]
-
-
-def geometric_means(rows):
-    """Returns the geometric mean of each column: unlike means, those of factors multiply to that of their product."""
-    return np.exp(np.log(rows).mean())
-
-
-def tables_of(rows, ratios, growth, depths, words):
-    spread = ratios[["objects", "kind", "protocol"]].copy()
-    for time in TIMES:
-        spread[time], spread[f"{time} +-"] = [e.mean for e in ratios[time]], [e.half for e in ratios[time]]
-    factors = pd.DataFrame([{"kind": kind, "protocol": protocol, **geometric_means(growth_rows)} for kind, protocol, growth_rows in growth])
-    factors.insert(5, "+-", [estimate(growth_rows["objects / time"]).half for *_, growth_rows in growth])
-    return [Table("objects", "Time and work for each number of objects", rows),
-            Table("objects-ratios", "Time of random / time of even objects", spread),
-            Table("objects-growth", "Growth from the fewest to the most objects: objects / time as a product of four factors", factors),
-            Table("objects-primary", "Voxels that primary rays visit", depths.drop(columns="half")),
-            Table("objects-words", "Times with larger ray packets, protocol of Yoshitani & Yamazaki, even scenes", words)]
 
 
 def plots_of(rows, ratios, depths):

@@ -22,7 +22,7 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Page, Plot, Series, Table, range_text, study
-from raya.lab.families import WIDE_FAMILIES
+from raya.lab.laboratory import WIDE_FAMILIES
 from raya.lab.statistics import hierarchical
 from scipy.stats import norm, spearmanr
 
@@ -116,7 +116,8 @@ def offsets(lab, scenes):
             mean, loss = hierarchical(values, families), hierarchical(values - root, families)
             rows.append({"P": pes, "mapping": name, "mean u": mean.mean, "+-": mean.half, "mean u - u(sqrt(P))": loss.mean,
                          "+-, difference": loss.half, "better than sqrt(P) (pictures)": int((values < root).sum()),
-                         "rotations each way": rotations(chosen[name], pes) if name in chosen and pes <= size else np.nan})
+                         "rotations each way": np.minimum(chosen[name], pes - chosen[name]).mean() + 1
+                         if name in chosen and pes <= size else np.nan})
         ranks = np.array([spearmanr(*pair)[0] for pair in zip(own, u) if min(map(np.ptp, pair)) > 0])  # undefined for a constant
         ratio = np.median(own / np.maximum(u, 1e-12), axis=1)
         accuracy.append({"P": pes, "median rank correlation": np.median(ranks), "rank correlations": range_text(ranks, 2),
@@ -125,26 +126,19 @@ def offsets(lab, scenes):
     rows, accuracy = pd.DataFrame(rows), pd.DataFrame(accuracy)
     reference = rows[rows["mapping"] == "p = sqrt(P) / k"].set_index("P")["mean u"]
     series = [Series(name, group["P"], group["mean u"] / group["P"].map(reference)) for name, group in rows.groupby("mapping", sort=False)]
-    return Page({"size": size, "pictures": len(families), "families": len(set(families))}, findings_of(rows, accuracy),
-                tables=[Table("offsets", "Mean u of each choice of the offset", rows),
-                        Table("offsets-accuracy", "Predictions and measured u over all offsets of a picture", accuracy)],
-                plots=[Plot("offsets", "Mean load imbalance relative to that of p = sqrt(P) / k", "PEs", "mean u / mean u(sqrt(P) / k)", series, "xy")],
-                placeholders={"ensemble": ensemble.description})
 
-
-def rotations(offsets, pes):
-    """Returns the mean number of the ring's rotations, in each of its two directions, that exchange the pixels of neighbouring rows."""
-    return np.minimum(offsets, pes - offsets).mean() + 1
-
-
-def findings_of(rows, accuracy):
     def differences(name):
         chosen = rows[rows["mapping"] == name]
         low, high = chosen["mean u - u(sqrt(P))"] + chosen["+-, difference"], chosen["mean u - u(sqrt(P))"] - chosen["+-, difference"]
         return (f"{name}: u is lower than with p = sqrt(P) for P = {', '.join(map(str, chosen['P'][low < 0])) or 'none'}, and higher for P = "
                 f"{', '.join(map(str, chosen['P'][high > 0])) or 'none'} (95 % intervals of the difference).")
 
-    return [differences(name) for name in ("predicted, own", "predicted, others", "golden ratio", "p = sqrt(P) / k", "longest dual vector", "2-D grid",
-                                              "random", "column split (p = 0)")] + [
-        f"The median of predicted / measured u is {range_text(accuracy['median predicted / measured u'], 2)} over the numbers of PEs; the median rank "
-        f"correlation over the offsets of a picture is {range_text(accuracy['median rank correlation'], 2)}."]
+    findings = [differences(name) for name in ("predicted, own", "predicted, others", "golden ratio", "p = sqrt(P) / k", "longest dual vector", "2-D grid",
+                                                  "random", "column split (p = 0)")] + [
+            f"The median of predicted / measured u is {range_text(accuracy['median predicted / measured u'], 2)} over the numbers of PEs; the median rank "
+            f"correlation over the offsets of a picture is {range_text(accuracy['median rank correlation'], 2)}."]
+    return Page({"size": size, "pictures": len(families), "families": len(set(families))}, findings,
+                tables=[Table("offsets", "Mean u of each choice of the offset", rows),
+                        Table("offsets-accuracy", "Predictions and measured u over all offsets of a picture", accuracy)],
+                plots=[Plot("offsets", "Mean load imbalance relative to that of p = sqrt(P) / k", "PEs", "mean u / mean u(sqrt(P) / k)", series, "xy")],
+                placeholders={"ensemble": ensemble.description})

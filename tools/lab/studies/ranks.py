@@ -35,18 +35,126 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, first_scene, series_by, study
+from raya.lab.laboratory import format_for
 from raya.lab.programs import missing_mpirun, render_on_ranks, run_on_ranks
-from raya.lab.rank_model import PARTS, RingModel, TorusModel
-from raya.lab.voxels import even_scene, powers_of_two
+from raya.lab.voxels import UNLIMITED_MEMORY, even_scene, near_cube, powers_of_two, sides_text
 
 TURNS, SAMPLING_S, WEAK_SAMPLING_S = 3, 5, 2  # maximum renders of a case; seconds of renders of a case after which it gets no further render
 MAX_OTHER_LOAD = 0.05  # fraction of the processor time used by other programs, above which measurements count as unreliable
 
 
-def measurable_ranks():
-    """Returns ({number of ranks to measure: number of cores that these ranks have together}, report of `raya ping` on two ranks)."""
-    counts = powers_of_two(min(max(2 * os.cpu_count(), 4), 16))
-    return {ranks: min(ranks, os.cpu_count()) for ranks in counts}, json.loads(run_on_ranks(2, ["ping"]))
+# {name: ((alpha in s, beta in s/byte), source)}
+NETWORKS = {"10 GbE": ((30e-6, 0.8e-9), "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us per message, about that of TCP"),
+            "InfiniBand HDR": ((1e-6, 0.04e-9), "assumed: 200 Gbit/s of a 4x port; 1 us per message: 0.6 us of the adapter, and MPI")}
+MAX_RANKS = 65_536
+SIDES, QUEUE = (8, 8, 8), 1024  # number of the torus's nodes along each axis; number of packets that a node's queue holds
+PARTS = ("compute", "host", "exchange", "collect", "broadcast")  # parts of a render's time
+
+
+def rounds(ranks):
+    """Returns the number of rounds of a broadcast to all ranks."""
+    return (ranks - 1).bit_length()
+
+
+class RingModel:
+    """Model of a ring with the 3 x 3 filter. The ring has as many PEs as image columns or ranks, whichever is more."""
+
+    name, label = "ring", "trace"
+
+    def __init__(self, lab, scene, file, size):
+        costs = lab.costs(scene, size)
+        self.arguments = [file, "--machine", "grande", "--accel", "none", "--antialias", "filter", "--format",
+                          format_for(scene), "--size", str(size)]
+        self.ranks = powers_of_two(min(MAX_RANKS, size * size))
+        self.counts = []
+        for ranks in self.ranks:
+            pes = max(size, ranks)
+            offset = (round(pes**0.5) if ranks > size else 16) % size
+            loads = np.bincount(raya.ranks_of_pes(pes, ranks), raya.loads(costs.trace, pes=pes, offset=offset))
+            self.counts.append({"pes": pes, "u": loads.max() / loads.mean() - 1,
+                                "rotations": raya.rotations(size, size, pes=pes, offset=offset),
+                                "block": 12 * raya.largest_share(size, size, pes=pes, offset=offset),
+                                "image": 12 * size * size, "scene": 4 * costs.job_words})
+        self.arrays = [f"{counts['pes']} PEs" for counts in self.counts]
+
+    def weak(self, ranks):
+        """Returns the arguments of a render with `ranks` times as many pixels (weak scaling)."""
+        return [*self.arguments[:-1], str(round(int(self.arguments[-1]) * ranks**0.5))]
+
+    def predict(self, i, one_rank, network, processors):
+        """Returns {part: predicted seconds} for PARTS, on self.ranks[i] ranks. one_rank: measured seconds of one rank, by part; network: (alpha,
+        beta)."""
+        counts, ranks, (alpha, beta) = self.counts[i], self.ranks[i], network
+        return {"compute": (one_rank["trace"] * (1 + counts["u"]) + one_rank["rest"]) / processors, "host": one_rank["host"],
+                "exchange": (ranks > 1) * counts["rotations"] * (alpha + beta * counts["block"]),
+                "collect": 2 * (ranks - 1) * alpha + beta * counts["image"] * (1 - 1 / ranks),
+                "broadcast": rounds(ranks) * (alpha + beta * counts["scene"])}
+
+
+class TorusModel:
+    """Model of a torus of 8 x 8 x 8 nodes, whose counts come from one render. For more ranks than nodes, extrapolate_counts() computes the counts of
+    larger tori."""
+
+    name, label = "torus", "trace_voxel"
+
+    def __init__(self, lab, scene, file, size):
+        sides = sides_text(SIDES)
+        self.arguments = [file, "--machine", "torus", "--nodes", sides, "--voxels", sides, "--queue", str(QUEUE),
+                          "--size", str(size)]
+        self.ranks = powers_of_two(MAX_RANKS)
+        result = lab.render(scene, machine="torus", size=size, nodes=sides, voxels=sides, queue=QUEUE, packets=True,
+                            pe_memory=UNLIMITED_MEMORY)
+        nodes = int(np.prod(SIDES))
+        status, words = 4 * raya.STATUS_WORDS * nodes, 4 * result.copied_words
+        counted = {ranks: {**count_on_bricks(result, ranks), "status": status, "scene": words, "host": 1}
+                   for ranks in powers_of_two(nodes)}
+        self.counts = [counted[r] if r <= nodes else extrapolate_counts(counted[nodes], r // nodes) for r in self.ranks]
+        self.arrays = [f"{sides} nodes" if r <= nodes else f"{sides_text(near_cube(r))} nodes, assumed"
+                       for r in self.ranks]
+        self.objects = scene.objects
+
+    def weak(self, ranks):
+        """Returns the arguments of a render with `ranks` times as many objects, spread evenly (weak scaling)."""
+        file = os.path.join(os.path.dirname(self.arguments[0]), f"even-{ranks}.nff")
+        even_scene(self.objects * ranks).save(file)
+        return [file, *self.arguments[1:]]
+
+    def predict(self, i, one_rank, network, processors):
+        counts, ranks, (alpha, beta) = self.counts[i], self.ranks[i], network
+        busiest_rank_s = one_rank["trace"] * counts["cycles"] / counts["total_cycles"] + one_rank["rest"] * counts["max_nodes"] / counts["nodes"]
+        remote_fraction = 1 - 1 / ranks
+        return {"compute": busiest_rank_s * ranks / processors, "host": one_rank["host"] * counts["host"],
+                "exchange": (ranks > 1) * (counts["messages"] * alpha + counts["bytes"] * beta),
+                "collect": counts["supersteps"] * (rounds(ranks) * alpha + beta * counts["status"] * remote_fraction),
+                "broadcast": (ranks - 1) * alpha + beta * counts["scene"] * remote_fraction}
+
+
+def count_on_bricks(result, ranks):
+    """Returns the counts of a torus render on ranks: cycles, messages and bytes, each as the sum over the supersteps of the maximum over the ranks. A
+    rank models a brick, a cuboid of nodes. In a superstep, all packets from a brick to another rank in one direction form one message."""
+    rank_of, ends = raya.ranks_of_nodes(SIDES, ranks), raya.link_ends(SIDES)
+    cycles, words = result.step_cycles, result.step_link_words
+    by_rank = np.stack([cycles[:, rank_of == rank].sum(1) for rank in range(ranks)], 1)
+    source, target = np.repeat(rank_of[:, None], 6, 1), rank_of[ends]
+    node, direction = np.nonzero(source != target)
+    face = (source[node, direction].astype(np.int64) * ranks + target[node, direction]) * 6 + direction
+    faces, index = np.unique(face, return_inverse=True)
+    sums, maxima = np.zeros((len(words), len(faces))), {}  # [superstep, face]
+    np.add.at(sums.T, index, 4 * words[:, node, direction].T.astype(float))
+    for name, values in (("messages", (sums > 0).astype(float)), ("bytes", sums)):
+        sent_received = [np.stack([values[:, end == rank].sum(1) for rank in range(ranks)], 1)
+                         for end in (faces // 6 // ranks, faces // 6 % ranks)]
+        maxima[name] = np.maximum(*sent_received).max(1).sum()
+    return {"nodes": len(rank_of), "max_nodes": np.bincount(rank_of).max(), "supersteps": len(cycles),
+            "cycles": float(by_rank.max(1).sum()), "total_cycles": float(cycles.sum()), **maxima}
+
+
+def extrapolate_counts(counts, times):
+    """Extrapolates the counts to a torus with `times` as many nodes and one rank per node: every node is divided into `times` smaller nodes."""
+    side = times ** (1 / 3)
+    change = {"nodes": times, "supersteps": side, "cycles": 1 / times, "messages": side, "bytes": 1 / side**2,
+              "status": times, "host": side * times}
+    return {name: value * change.get(name, 1) for name, value in counts.items()}
 
 
 def parts_of(machine, report):
@@ -113,14 +221,16 @@ def ranks(lab, scenes):
         for scene, file in zip((on_ring, on_torus), files):
             scene.save(file)
         before = processor_time()
-        available_cores, ping = measurable_ranks()
+        ping = json.loads(run_on_ranks(2, ["ping"]))
+        available_cores = {ranks: min(ranks, os.cpu_count()) for ranks in powers_of_two(min(max(2 * os.cpu_count(), 4), 16))}
         machines = [kind(lab, scene, file, size) for kind, scene, file in
                     zip((RingModel, TorusModel), (on_ring, on_torus), files)]
         device = lab.session.device["name"]
         trials = [measure(dict.fromkeys(available_cores, machine.arguments), device) for machine in machines]
         weak = [measure({ranks: machine.weak(ranks) for ranks in available_cores}, device, WEAK_SAMPLING_S) for machine in machines]
         busy, whole, own = (b - a for a, b in zip(before, processor_time()))
-    networks = networks_of(ping, lab.network)
+    fitted = (ping["alpha_s"], ping["beta_s_per_byte"]), f"fitted to the ping-pong, {ping['library']}"
+    networks = {"this host": fitted, **NETWORKS, **({"given": (lab.network, "--network")} if lab.network else {})}
     one_rank_parts = [parts_of(machine, trial[1][1]) for machine, trial in zip(machines, trials)]
     rows = pd.DataFrame([row for machine, one in zip(machines, one_rank_parts) for row in rows_of(machine, one, networks)])
     checks = pd.DataFrame([row for some in zip(machines, one_rank_parts, trials)
@@ -128,7 +238,12 @@ def ranks(lab, scenes):
     scaling = pd.DataFrame([row for machine, *both in zip(machines, trials, weak)
                             for name, some in zip(("strong", "weak"), both)
                             for row in scaling_of(machine, name, some, available_cores)])
-    summary = pd.DataFrame([summary_of(*one) for one in rows.groupby(["machine", "network"], sort=False)])
+    summary = []
+    for (machine, network), group in rows.groupby(["machine", "network"], sort=False):
+        half, best = group["ranks"][group["communication (%)"] >= 50], group.loc[group["time (ms)"].idxmin()]
+        summary.append({"machine": machine, "network": network, "half at (ranks)": half.iloc[0] if len(half) else None,
+                        "fastest (ranks)": best["ranks"], "array": best["array"], "time (ms)": best["time (ms)"], "speed-up": best["speed-up"]})
+    summary = pd.DataFrame(summary)
     other_load = min(max((busy - own) / whole, 0), 1) if whole > 0 else 0
     return Page({"scene": on_ring.name, "torus_scene": on_torus.name, "size": size, "torus_size": size,
                  "ranks": int(rows["ranks"].iloc[-1]), "turns": TURNS, "enough": SAMPLING_S, "alpha_s": ping["alpha_s"],
@@ -137,19 +252,20 @@ def ranks(lab, scenes):
                 [Comparison(f"{c['machine']}, {c['ranks']} ranks: predicted / measured", "", None,
                             c["predicted / measured"], c["remark"])
                  for _, c in checks[checks["ranks"] > 1].iterrows()],
-                tables=tables_of(rows, checks, scaling, summary, networks, ping), plots=[*plots_of(rows, checks)],
+                tables=[
+                    Table("ranks", "Number of ranks at which communication takes half of the time, and fastest number of ranks", summary),
+                    Table("ranks-here", "Predicted and measured times on this host", checks),
+                    Table("ranks-scaling", "Strong and weak scaling, measured on this host", scaling),
+                    Table("ranks-networks", "Networks of the model", [
+                        {"network": name, "alpha (us)": 1e6 * a, "beta (ns a byte)": 1e9 * b, "source": source}
+                        for name, ((a, b), source) in networks.items()]),
+                    Table("ranks-messages", "Times of messages between two ranks on this host", [
+                        {"bytes": m["bytes"], "measured (us)": 1e6 * m["seconds"],
+                         "fitted (us)": 1e6 * (ping["alpha_s"] + ping["beta_s_per_byte"] * m["bytes"])} for m in ping["messages"]]),
+                    Table("ranks-all", "Parts of the predicted time on each number of ranks", rows, on_page=False)],
+                plots=[*plots_of(rows, checks)],
                 clock="measured on this host where stated; all other times are predicted from the measured times of one rank. The measured time of "
                 "a render starts after its kernels are built and the scene is broadcast. Predicted total times include the broadcast.")
-
-
-def networks_of(ping, given):
-    """Returns {name: ((alpha in s, beta in s/byte), source)}"""
-    fitted = ping["alpha_s"], ping["beta_s_per_byte"]
-    networks = {"this host": (fitted, f"fitted to the ping-pong, {ping['library']}"),
-                "10 GbE": ((30e-6, 0.8e-9), "assumed: 10 Gbit/s of IEEE 802.3ae; 30 us per message, about that of TCP"),
-                "InfiniBand HDR": ((1e-6, 0.04e-9), "assumed: 200 Gbit/s of a 4x port; 1 us per message: 0.6 us of the "
-                                   "adapter, and MPI")}
-    return {**networks, "given": (given, "--network")} if given else networks
 
 
 def rows_of(machine, one_rank, networks):
@@ -174,14 +290,6 @@ def checks_of(machine, one_rank, trial, network, available_cores):
                "measured, best (ms)": 1e3 * min(seconds), "median (ms)": 1e3 * float(np.median(seconds)),
                "largest (ms)": 1e3 * max(seconds), "predicted / measured": predicted / min(seconds) / 1e3,
                "remark": "ranks share cores" if cores < count else "the model uses this measurement" if count == 1 else ""}
-
-
-def summary_of(key, network_rows):
-    half = network_rows["ranks"][network_rows["communication (%)"] >= 50]
-    best = network_rows.loc[network_rows["time (ms)"].idxmin()]
-    return {"machine": key[0], "network": key[1], "half at (ranks)": half.iloc[0] if len(half) else None,
-            "fastest (ranks)": best["ranks"], "array": best["array"], "time (ms)": best["time (ms)"],
-            "speed-up": best["speed-up"]}
 
 
 def findings_of_model(summary, checks):
@@ -216,20 +324,6 @@ def findings_of_measures(scaling, other_load, ping):
             f"Fitted: a message between two ranks on this host ({ping['library']}) takes {1e6 * ping['alpha_s']:.2f} us plus "
             f"{1e9 * ping['beta_s_per_byte']:.3f} ns per byte. Measured: a message of one byte takes {1e6 * first['seconds']:.2f} us; one of 4 MB "
             f"has a rate of {1e-9 * last['bytes'] / last['seconds']:.1f} GB/s."]
-
-
-def tables_of(rows, checks, scaling, summary, networks, ping):
-    alpha, beta = ping["alpha_s"], ping["beta_s_per_byte"]
-    return [Table("ranks", "Number of ranks at which communication takes half of the time, and fastest number of ranks", summary),
-            Table("ranks-here", "Predicted and measured times on this host", checks),
-            Table("ranks-scaling", "Strong and weak scaling, measured on this host", scaling),
-            Table("ranks-networks", "Networks of the model", [
-                {"network": name, "alpha (us)": 1e6 * a, "beta (ns a byte)": 1e9 * b, "source": source}
-                for name, ((a, b), source) in networks.items()]),
-            Table("ranks-messages", "Times of messages between two ranks on this host", [
-                {"bytes": m["bytes"], "measured (us)": 1e6 * m["seconds"],
-                 "fitted (us)": 1e6 * (alpha + beta * m["bytes"])} for m in ping["messages"]]),
-            Table("ranks-all", "Parts of the predicted time on each number of ranks", rows, on_page=False)]
 
 
 def plots_of(rows, checks):

@@ -20,14 +20,15 @@ How does a ring render scenes that exceed the memory of a PE, and when is a toru
 - Frames: the image of a frame goes to the host (as printed), to a frame memory on the bus (as the paper proposes), or in either way while the next frame
   is traced. A series of many frames, times from Table 2 and from this study.
 """
+from itertools import product
+
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Series, Table, estimate, papers, proportion, series_by, study, tail_where
-from raya.lab.families import FAMILIES, view_of
-from raya.lab.laboratory import SPA, format_for
+from raya.lab import Page, Plot, Series, Table, estimate, first_from, papers, proportion, series_by, study
+from raya.lab.laboratory import FAMILIES, SPA, format_for, view_of
 from raya.lab.spa import CLOCK as RING_CLOCK
-from raya.lab.voxels import balls_scene, even_scene, near_cube, powers_of_two, run_on_torus
+from raya.lab.voxels import UNLIMITED_MEMORY, balls_scene, even_scene, near_cube, powers_of_two, run_on_torus
 
 PROCESSORS = (64, 256, 1024)
 EVEN = (30, 120, 480, 1920, 7680, 61440)
@@ -36,10 +37,9 @@ FAMILY_PES, VIEWS_EACH, FAMILY_PARTS = 64, 3, (1, 4, 16)
 FAMILY_MEMORIES = (1024, 1280)  # bytes: less than most pictures of the families need in one part
 VIEWS_EVEN, COUNTS = 4, (8, 30, 120, 480, 1920)
 MEMORIES = [kilobytes * 1024 for kilobytes in (8, 16, 32, 64)]
-UNLIMITED = 1 << 40
 
 
-def render(lab, scene, size, pes, parts, memory=UNLIMITED, offset=None):
+def render(lab, scene, size, pes, parts, memory=UNLIMITED_MEMORY, offset=None):
     """Returns the result; None if the scene does not fit the memory (bytes of a PE) in this number of parts."""
     try:
         return lab.render(scene, machine="spa", size=size, pes=pes, offset=round(pes**0.5) % size if offset is None else offset, accel="none",
@@ -74,10 +74,10 @@ def torus_figures(lab, scene, size, pes):
     runs = {}
     for groups in powers_of_two(pes)[::4]:
         nodes = near_cube(pes // groups)
-        runs[groups] = max(run_on_torus(lab, scene, size, nodes, near_cube(pes), queue=256, pixels=(groups, g)).overlapped_ms for g in {0, groups // 2})
+        runs[groups] = max(run_on_torus(lab, scene, size, nodes, near_cube(pes), queue=256, pixels=(groups, g))["overlapped (ms)"] for g in {0, groups // 2})
     whole = run_on_torus(lab, scene, size, near_cube(pes), near_cube(pes), queue=256)
     groups = min(runs, key=runs.get)
-    return {"torus, overlapped (ms)": whole.overlapped_ms, "torus, stepwise (ms)": whole.stepwise_ms, "hybrid, overlapped (ms)": runs[groups],
+    return {"torus, overlapped (ms)": whole["overlapped (ms)"], "torus, stepwise (ms)": whole["stepwise (ms)"], "hybrid, overlapped (ms)": runs[groups],
             "hybrid, groups": groups}
 
 
@@ -114,15 +114,9 @@ def best_for_memory(lab, scene, size, pes):
 
 def family_rows(lab, size):
     """Returns a row for each picture of each family, number of parts and offset."""
-    rows, pes = [], FAMILY_PES
-    for family, make in FAMILIES.items():
-        for view in range(VIEWS_EACH):
-            scene = make(lab.seed + view)
-            for parts in FAMILY_PARTS:
-                for offset in (0, round(pes**0.5)):
-                    figure = figures(render(lab, scene, size, pes, parts, offset=offset), pes)
-                    rows.append({"family": family, "view": view, "p": offset, **figure})
-    return pd.DataFrame(rows)
+    return pd.DataFrame([
+        {"family": family, "view": view, "p": p, **figures(render(lab, make(lab.seed + view), size, FAMILY_PES, parts, offset=p), FAMILY_PES)}
+        for (family, make), view, parts, p in product(FAMILIES.items(), range(VIEWS_EACH), FAMILY_PARTS, (0, round(FAMILY_PES**0.5)))])
 
 
 def family_estimates(rows):
@@ -142,16 +136,14 @@ def family_estimates(rows):
 def best_parts(lab, size):
     """Returns a row for each picture of the families that does not fit one of the memories in one part, but in several: for the smallest of these."""
     rows = []
-    for family, make in FAMILIES.items():
-        for view in range(VIEWS_EACH):
-            scene = make(lab.seed + view)
-            for memory in FAMILY_MEMORIES:
-                times = times_by_parts(lab, scene, size, FAMILY_PES, memory)
-                if times and 1 not in times:
-                    fewest, best = min(times), min(times, key=times.get)
-                    rows.append({"family": family, "view": view, "memory (bytes)": memory, "fewest parts": fewest, "best G": best,
-                                 "time, fewest / best": times[fewest] / times[best]})
-                    break  # one row for a picture, so that the rows are independent
+    for (family, make), view in product(FAMILIES.items(), range(VIEWS_EACH)):
+        for memory in FAMILY_MEMORIES:
+            times = times_by_parts(lab, make(lab.seed + view), size, FAMILY_PES, memory)
+            if times and 1 not in times:
+                fewest, best = min(times), min(times, key=times.get)
+                rows.append({"family": family, "view": view, "memory (bytes)": memory, "fewest parts": fewest, "best G": best,
+                             "time, fewest / best": times[fewest] / times[best]})
+                break  # one row for a picture, so that the rows are independent
     return pd.DataFrame(rows)
 
 
@@ -176,23 +168,10 @@ def break_evens(lab, size):
                 fitting = (render(lab, scene, size, pes, parts, SPA["pe_memory_bytes"]) for parts in parts_to_try(pes))
                 ring = min(figures(result, pes)["time (ms)"] for result in fitting if result)
                 torus = run_on_torus(lab, scene, size, near_cube(pes), near_cube(pes), queue=256)
-                times.append((ring, torus.overlapped_ms, torus.stepwise_ms))
+                times.append((ring, torus["overlapped (ms)"], torus["stepwise (ms)"]))
             ring, overlapped, stepwise = np.array(times).T
             rows.append({"spheres": kind, "view": seed, "overlapped": crossing(COUNTS, ring / overlapped), "stepwise": crossing(COUNTS, ring / stepwise)})
     return pd.DataFrame(rows)
-
-
-def frames_of(compute_ms):
-    """Returns the time of a frame in a series of frames: (label, ms). compute_ms: tracing of a frame."""
-    image, display = papers.IMAGE_MS, papers.DISPLAY_MS
-    return {"as printed": papers.OBJECTS_MS + compute_ms + image + display, "frame memory on the bus": papers.OBJECTS_MS + compute_ms + image,
-            "overlapped with the next frame": max(compute_ms, image + display), "frame memory, overlapped": max(compute_ms, image)}
-
-
-def break_even(rows, column):
-    """Returns the least N from which on the torus is faster, or the scene fits the ring in no number of parts; None if there is none."""
-    faster = tail_where(rows["N"], ~(rows["time (ms)"] <= rows[column]))
-    return int(faster.iloc[0]) if len(faster) else None
 
 
 @study("ring-of-objects")
@@ -212,9 +191,13 @@ def ring_of_objects(lab, scenes):
     families = family_rows(lab, size)
     estimated = family_estimates(families)
     fewest, crossings = best_parts(lab, size), break_evens(lab, size)
-    frames = pd.DataFrame([{"frames": name, "ms": ms, "frames a second": 1e3 / ms} for name, ms in frames_of(papers.COMPUTE_MS).items()])
-    evens_of = {pes: {bound: break_even(group, f"torus, {bound} (ms)") for bound in ("overlapped", "stepwise")}
-                for pes, group in against.groupby("P")}
+    compute, image, display = papers.COMPUTE_MS, papers.IMAGE_MS, papers.DISPLAY_MS
+    frame_ms = {"as printed": papers.OBJECTS_MS + compute + image + display, "frame memory on the bus": papers.OBJECTS_MS + compute + image,
+                "overlapped with the next frame": max(compute, image + display), "frame memory, overlapped": max(compute, image)}
+    frames = pd.DataFrame([{"frames": name, "ms": ms, "frames a second": 1e3 / ms} for name, ms in frame_ms.items()])
+    # The least N from which on the torus is faster, or the scene fits the ring in no number of parts.
+    evens_of = {pes: {bound: first_from(group["N"], ~(group["time (ms)"] <= group[f"torus, {bound} (ms)"]))
+                      for bound in ("overlapped", "stepwise")} for pes, group in against.groupby("P")}
     shown = pd.DataFrame([{key: value if key == "G" else value.text() for key, value in row.items()} for row in estimated])
     answers = answers_of(estimated, fewest, crossings)
     return Page({"size": size, "processors": ", ".join(map(str, PROCESSORS)), "views": len(FAMILIES) * VIEWS_EACH, "family_pes": FAMILY_PES,
@@ -260,11 +243,12 @@ def answers_of(estimated, fewest, crossings):
 
 def findings_of(rows, memory, estimated, evens_of, frames):
     objects = {bound: "; ".join(f"P = {pes}: {even[bound] or 'none of these'}" for pes, even in evens_of.items()) for bound in ("overlapped", "stepwise")}
-    few = [row for row in memory.itertuples(index=False)]
     split = rows[rows["G"] > 1]
     rays = split["rays rotate, at least (ms)"] / split["time (ms)"]
     return [f"Objects from which on the torus is faster than the ring that fits 32 KB: {objects['overlapped']} (overlapped); {objects['stepwise']} (stepwise).",
-            "The best number of parts for a memory: " + "; ".join(f"{row[0]}, {row[1]} KB: {row[4]} (fewest that fit: {row[2]})" for row in few) + ".",
+            "The best number of parts for a memory: " + "; ".join(
+                f"{scene}, {kilobytes} KB: {best} (fewest that fit: {fewest})" for scene, kilobytes, fewest, _, best, _ in memory.itertuples(index=False))
+            + ".",
             *(f"G = {row['G']}, families: u {row['u'].text()}, with waits {row['u with waits'].text()}. With p = 0 computing takes "
               f"{row['computing time, p = 0 / cyclic'].text(2)} times as long as with the cyclic mapping; the whole takes "
               f"{row['time, bus with transfers / ring'].text(2)} times as long with transfers over the bus, "

@@ -13,10 +13,9 @@ From how many objects on is a torus of transputers, which divides space, faster 
 """
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Series, Table, series_by, study
+from raya.lab import Page, Plot, Series, Table, first_from, series_by, study
 from raya.lab.spa import CLOCK as RING_CLOCK
 from raya.lab.spa import run_on_spa
-from raya.lab.statistics import tail_where
 from raya.lab.voxels import BOUNCES, CLOCK, even_scene, near_cube, run_on_torus
 
 PROCESSORS = (8, 64, 512)
@@ -29,27 +28,20 @@ def row_of(lab, pes, scene, size):
     time = ring.report["modelled_ms"]
     ring_ms = time["compute"] + time["communication"] + time["objects"] + time["image"]
     # The events of all PEs on one transputer, divided by the PEs, times the load imbalance of the busiest PE.
-    same_clock_ms = raya.t805_ms(ring.result.events) / pes * (1 + ring.report["load"]["imbalance"])
-    return {"P": pes, "N": scene.objects, "ring (ms)": ring_ms, "ring, T805 (ms)": same_clock_ms, "torus, overlapped (ms)": torus.overlapped_ms,
-            "torus, stepwise (ms)": torus.stepwise_ms, "ring / torus": ring_ms / torus.overlapped_ms,
-            "ring / torus, stepwise": ring_ms / torus.stepwise_ms, "ring / torus, one clock": same_clock_ms / torus.overlapped_ms,
-            "tests a ray, ring": scene.objects, "tests a ray, torus": torus.tests_per_ray}
-
-
-def break_even(rows, column):
-    """Returns the least N from which on the ratio is above 1; None if there is none."""
-    above = tail_where(rows["N"], rows[column] > 1)
-    return int(above.iloc[0]) if len(above) else None
+    same_clock_ms = raya.t805_ms(ring.events) / pes * (1 + ring.report["load"]["imbalance"])
+    return {"P": pes, "N": scene.objects, "ring (ms)": ring_ms, "ring, T805 (ms)": same_clock_ms, "torus, overlapped (ms)": torus["overlapped (ms)"],
+            "torus, stepwise (ms)": torus["stepwise (ms)"], "ring / torus": ring_ms / torus["overlapped (ms)"],
+            "ring / torus, stepwise": ring_ms / torus["stepwise (ms)"], "ring / torus, one clock": same_clock_ms / torus["overlapped (ms)"],
+            "tests a ray, ring": scene.objects, "tests a ray, torus": torus["tests a ray"]}
 
 
 @study("ring-or-torus")
 def ring_or_torus(lab, scenes):
     size = lab.size(128)
     rows = pd.DataFrame([row_of(lab, pes, scene, size) for pes in PROCESSORS for scene in (scenes or map(even_scene, OBJECTS))])
-    evens = pd.DataFrame([{"P": pes, **{f"break-even N, {name}": break_even(group, column) or f"above {group['N'].max()}" for name, column in
-                                        (("overlapped", "ring / torus"), ("stepwise", "ring / torus, stepwise"),
-                                         ("one clock", "ring / torus, one clock"))}}
-                          for pes, group in rows.groupby("P")])
+    ratios = {"overlapped": "ring / torus", "stepwise": "ring / torus, stepwise", "one clock": "ring / torus, one clock"}
+    evens = pd.DataFrame([{"P": pes, **{f"break-even N, {name}": first_from(group["N"], group[column] > 1, f"above {group['N'].max()}")
+                                        for name, column in ratios.items()}} for pes, group in rows.groupby("P")])
     findings = [f"P = {pes}: with the machines' own clocks the torus is faster from {overlapped} objects on if it waits for nothing, and from "
                 f"{stepwise} on step by step; with one clock, waiting for nothing, from {one} on."
                 for pes, overlapped, stepwise, one in evens.itertuples(index=False)]

@@ -18,7 +18,6 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Plot, Series, Table, estimate, estimates, first_scene, judged, papers, study
-from raya.lab.mappings import squarest_grid
 
 HALF_EFFICIENCY, KEEPS_UP, VIEWS = 0.5, 0.9, 18  # KEEPS_UP: minimum of efficiency / efficiency of the 2-D mapping
 GRID = "2-D, A x B PEs"
@@ -31,23 +30,21 @@ PLAIN = [*OFFSETS, GRID, "random"]  # mappings with the cyclic fold, and those w
 FOLDED = [f"{name}, block fold" for name in OFFSETS]
 
 
-def options_of(name, side, pes):
-    if name == GRID:
-        return {"mapping": "grid:{}x{}".format(*squarest_grid(pes))}
-    if name == "random":
-        return {"mapping": "random:1", "pes": pes}
-    fold = "block" if name in FOLDED else "cyclic"
-    return {"offset": OFFSETS[name.removesuffix(", block fold")](side, pes) % side, "fold": fold, "pes": pes}
+def squarest_grid(pes):
+    """Returns the 2-D mapping that is nearest to a square: A rows of B PEs, where A is the largest divisor of `pes` that is at most sqrt(pes)."""
+    rows = max(a for a in range(1, int(pes**0.5) + 1) if pes % a == 0)
+    return f"grid:{rows}x{pes // rows}"
 
 
 def efficiencies(image):
     side, total, rows = len(image), int(image.sum()), []
-    for pes in 2 ** np.arange(4, 2 * int(np.log2(side)) + 1):
-        row = {"P": pes, "upper bound": total / raya.lower_bound(image, pes) / pes}
-        for name in PLAIN + FOLDED:
-            loads = raya.loads(image, **options_of(name, side, int(pes)))
-            row[name] = loads.mean() / loads.max()
-        rows.append(row)
+    for pes in [2**k for k in range(4, 2 * int(np.log2(side)) + 1)]:
+        options = {GRID: {"mapping": squarest_grid(pes)}, "random": {"mapping": "random:1", "pes": pes}}
+        for name, offset in OFFSETS.items():
+            options[name] = {"offset": offset(side, pes) % side, "pes": pes}
+            options[f"{name}, block fold"] = {**options[name], "fold": "block"}
+        loads = {name: raya.loads(image, **options[name]) for name in PLAIN + FOLDED}
+        rows.append({"P": pes, "upper bound": total / raya.lower_bound(image, pes) / pes, **{name: one.mean() / one.max() for name, one in loads.items()}})
     return pd.DataFrame(rows)
 
 
@@ -59,9 +56,31 @@ def scale(lab, scenes):
     view_tables = [efficiencies(costs.trace) for costs in ensemble.pictures]
     between = (rows["P"] > side) & (rows["P"] < side * side)
     largest = int(image.max()) * image.size / int(image.sum())  # cost of the most expensive pixel / mean cost of a pixel
-    halves = pd.DataFrame([half_of(name, rows) for name in ["upper bound", *PLAIN, *FOLDED]])
+    halves = []  # the largest P up to which the efficiency of a mapping is at least 50 % (0: none), and the speed-up for this P
+    for name in ["upper bound", *PLAIN, *FOLDED]:
+        efficient = rows[(rows[name] >= HALF_EFFICIENCY).cummin()]
+        pes, efficiency = efficient[["P", name]].iloc[-1] if len(efficient) else (0, 0.0)
+        halves.append({"mapping": name, "50 % or more up to P": int(pes), "speed-up there": efficiency * pes})
+    halves = pd.DataFrame(halves)
+    half = rows[rows["P"] * 2 > side].iloc[0]
     texts = [f"{name}: {pes or 'none'}" for name, pes, _ in halves[1:1 + len(PLAIN)].itertuples(index=False)]
-    means = means_of(view_tables, ensemble.families)
+    means = pd.DataFrame({"P": rows["P"], "upper bound": np.mean([v["upper bound"] for v in view_tables], axis=0)})
+    for name in PLAIN:
+        means[name], means[f"{name}, +-"] = estimates([v[name] for v in view_tables], ensemble.families)
+
+    def lines(names, times=1):
+        return [Series(name, rows["P"], rows[name] * times) for name in names]
+
+    both = [name + fold for name in (FIXED, ADAPTED, "column split") for fold in ("", ", block fold")]
+    plots = [Plot("scale", "Efficiency against the number of PEs, cyclic fold", "number of PEs", "efficiency",
+                  lines(["upper bound", *PLAIN]), "x"),
+             Plot("scale-folds", "Efficiency against the number of PEs, both folds", "number of PEs", "efficiency", lines(both),
+                  "x"),
+             Plot("scale-speedup", "Speed-up against the number of PEs, cyclic fold", "number of PEs", "speed-up",
+                  lines(["upper bound", *PLAIN], rows["P"]), "xy"),
+             Plot("scale-views", f"Efficiency against the number of PEs, mean of {len(view_tables)} pictures", "number of PEs",
+                  "efficiency", [Series(name, means["P"], means[name], half_widths=means[f"{name}, +-"])
+                                 for name in PLAIN], "x")]
     return Page({"scene": scene.name, "size": side, "pes": rows["P"].tolist(), "offset": 16 % side, "seed": 1,
                  "views": len(view_tables)},
                 [f"Number of PEs up to which the efficiency is at least 50 %: {'; '.join(texts)}; upper bound for all mappings that give "
@@ -70,31 +89,18 @@ def scale(lab, scenes):
                  f"The most expensive pixel costs {largest:.1f} times the mean, so no mapping that gives each pixel to one PE has a speed-up of "
                  f"more than {side * side / largest:.0f}. With a PE for each pixel every mapping has this speed-up, at an efficiency of "
                  f"{1 / largest:.3f}."],
-                comparisons_of(rows, side, side * side / largest),
+                [*(Comparison(f"efficiency on {half['P']:.0f} PEs, {name}", "", None, half[name]) for name in PLAIN),
+                 Comparison("upper bound of the speed-up", "", None, side * side / largest,
+                            "cycles of all pixels / cycles of the most expensive pixel")],
                 [claim_of_2d(rows["P"][between], view_tables, ensemble)] if not scenes else [],
                 [Table("scale-half", "Number of PEs up to which the efficiency is at least 50 %", halves),
                  Table("scale", "Efficiency for each number of PEs", rows),
                  Table("scale-views", "Efficiency for each number of PEs, mean of the ensemble", means, on_page=False)],
-                plots_of(rows, means, len(view_tables)),
+                plots,
                 [f"At {side} x {side} pixels, p = 16 has an efficiency of at least 50 % up to {halves.iloc[1, 1]} PEs. No mapping that gives each "
                  f"pixel to one PE has it beyond {halves.iloc[0, 1]} PEs."],
                 placeholders={"ensemble": ensemble.description, "fewest": rows["P"].min(), "most": rows["P"].max(), "close": f"{100 * KEEPS_UP:.0f}"},
                 compared_with=papers.SPA)
-
-
-def half_of(name, rows):
-    """Returns a row: the mapping, the largest P up to which its efficiency is at least 50 % (0: none), and its speed-up for this P."""
-    efficient = rows[(rows[name] >= HALF_EFFICIENCY).cummin()]
-    pes, efficiency = efficient[["P", name]].iloc[-1] if len(efficient) else (0, 0.0)
-    return {"mapping": name, "50 % or more up to P": int(pes), "speed-up there": efficiency * pes}
-
-
-def means_of(view_tables, families):
-    table = {"P": view_tables[0]["P"], "upper bound": np.mean([v["upper bound"] for v in view_tables], axis=0)}
-    for name in PLAIN:
-        of_name = estimates([v[name] for v in view_tables], families)
-        table[name], table[f"{name}, +-"] = [e.mean for e in of_name], [e.half for e in of_name]
-    return pd.DataFrame(table)
 
 
 def finding_of_2d(between):
@@ -121,25 +127,3 @@ def claim_of_2d(between, view_tables, ensemble):
     return judged("beyond-a-side", None, ensemble.description,
                   f"For {len(between)} numbers of PEs above the number of columns, the best cyclic mapping is {', '.join(dict.fromkeys(best))}. Its "
                   f"efficiency / that of 2-D is lowest for {between.iloc[worst]} PEs: {estimate(ratios[worst], ensemble.families).text(2)}.")
-
-
-def comparisons_of(rows, side, most):
-    row = rows[rows["P"] * 2 > side].iloc[0]
-    return [Comparison(f"efficiency on {row['P']:.0f} PEs, {name}", "", None, row[name]) for name in PLAIN] + [
-        Comparison("upper bound of the speed-up", "", None, most, "cycles of all pixels / cycles of the most expensive pixel")]
-
-
-def plots_of(rows, means, views):
-    def lines(names, times=1):
-        return [Series(name, rows["P"], rows[name] * times) for name in names]
-
-    both = [name + fold for name in (FIXED, ADAPTED, "column split") for fold in ("", ", block fold")]
-    return [Plot("scale", "Efficiency against the number of PEs, cyclic fold", "number of PEs", "efficiency",
-                 lines(["upper bound", *PLAIN]), "x"),
-            Plot("scale-folds", "Efficiency against the number of PEs, both folds", "number of PEs", "efficiency", lines(both),
-                 "x"),
-            Plot("scale-speedup", "Speed-up against the number of PEs, cyclic fold", "number of PEs", "speed-up",
-                 lines(["upper bound", *PLAIN], rows["P"]), "xy"),
-            Plot("scale-views", f"Efficiency against the number of PEs, mean of {views} pictures", "number of PEs",
-                 "efficiency", [Series(name, means["P"], means[name], half_widths=means[f"{name}, +-"])
-                                for name in PLAIN], "x")]

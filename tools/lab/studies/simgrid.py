@@ -61,13 +61,13 @@ def rows_of(lab, scene, size, links, inject):
                        packet_words=papers.RAY_WORDS)
     rows, before = [], (0, 0)
     for name, changes in EFFECTS.items():
-        messages, theirs = simulate_by_simgrid(run.result, changes)
-        ours = run.result.simulate(**changes)
+        messages, theirs = simulate_by_simgrid(run["result"], changes)
+        ours = run["result"].simulate(**changes)
         rows.append({"torus": "4 x 4 x 4" if links == "torus3d" else "8 x 8", "inject": inject, "machine": name,
                      "messages": messages, "raya (ms)": ours, "SimGrid (ms)": theirs,
                      "difference (%)": 100 * (ours / theirs - 1), "raya, the effect (ms)": ours - before[0],
-                     "SimGrid, the effect (ms)": theirs - before[1], "overlapped": run.overlapped_ms,
-                     "stepwise": run.stepwise_ms})
+                     "SimGrid, the effect (ms)": theirs - before[1], "overlapped": run["overlapped (ms)"],
+                     "stepwise": run["stepwise (ms)"]})
         before = ours, theirs
     return rows
 
@@ -84,8 +84,19 @@ def simgrid(lab, scenes):
     bounds = [f"{row['torus']} torus, rays made by: {row['inject']}. The complete machine takes {row['raya (ms)']:.1f} ms in raya's simulation; "
               f"the bounds are {row['overlapped']:.1f} ms overlapped and {row['stepwise']:.1f} ms stepwise."
               for _, row in complete.iterrows()]
+    worst = rows.loc[rows["difference (%)"].abs().idxmax()]
+    largest, where = abs(worst["difference (%)"]), f"{worst['torus']} torus, rays made by: {worst['inject']}, {worst['machine']}"
+    agreement = (f"On all {len(rows)} machines the two times differ by at most {largest:.2g} % ({where}); the limit is {MAX_DIFFERENCE} %."
+                 if largest <= MAX_DIFFERENCE else
+                 f"On {len(rows)} machines the two times differ by up to {largest:.2f} % ({where}), more than the limit of {MAX_DIFFERENCE} %.")
+    effects = rows[rows["machine"].str.startswith("+")]
+    ours, theirs = effects["raya, the effect (ms)"], effects["SimGrid, the effect (ms)"]
+    i = ours.idxmax()
+    findings = [agreement, f"The largest effect after computing is \"{effects['machine'][i][2:]}\" ({effects['torus'][i]} torus, rays made "
+                f"by: {effects['inject'][i]}). It adds {ours[i]:.2f} ms in raya's simulation and {theirs[i]:.2f} ms in SimGrid's. For each effect "
+                f"the two simulations differ by at most {(ours - theirs).abs().max():.3f} ms."]
     return Page({"scene": scene.name, "size": size, "nodes": "4x4x4", "buffer": BUFFER, "goal": MAX_DIFFERENCE},
-                findings_of(rows) + bounds,
+                findings + bounds,
                 [Comparison(f"{row['torus']} torus, rays made by: {row['inject']}, complete machine, raya / SimGrid", "", None,
                             row["raya (ms)"] / row["SimGrid (ms)"], "modelled, asynchronous")
                  for _, row in complete.iterrows()],
@@ -95,18 +106,3 @@ def simgrid(lab, scenes):
                             series)],
                 news=[f"The times of the asynchronous torus by raya and by SimGrid differ by at most {rows['difference (%)'].abs().max():.2g} %."],
                 clock="modelled for T805 transputers from counted cycles of 40 ns; both simulators use the same rates.")
-
-
-def findings_of(rows):
-    """Returns sentences on the difference between the two simulators, and on the effect that adds most time to computing."""
-    worst = rows.loc[rows["difference (%)"].abs().idxmax()]
-    largest, where = abs(worst["difference (%)"]), f"{worst['torus']} torus, rays made by: {worst['inject']}, {worst['machine']}"
-    agreement = (f"On all {len(rows)} machines the two times differ by at most {largest:.2g} % ({where}); the limit is {MAX_DIFFERENCE} %."
-                 if largest <= MAX_DIFFERENCE else
-                 f"On {len(rows)} machines the two times differ by up to {largest:.2f} % ({where}), more than the limit of {MAX_DIFFERENCE} %.")
-    effects = rows[rows["machine"].str.startswith("+")]
-    ours, theirs = effects["raya, the effect (ms)"], effects["SimGrid, the effect (ms)"]
-    i = ours.idxmax()
-    return [agreement, f"The largest effect after computing is \"{effects['machine'][i][2:]}\" ({effects['torus'][i]} torus, rays made "
-            f"by: {effects['inject'][i]}). It adds {ours[i]:.2f} ms in raya's simulation and {theirs[i]:.2f} ms in SimGrid's. For each effect "
-            f"the two simulations differ by at most {(ours - theirs).abs().max():.3f} ms."]

@@ -30,8 +30,7 @@ COLUMNS = {"p = 0": lambda pes: 0 * pes, "p = 16": lambda pes: 0 * pes + OFFSET,
 
 def speedups(image, pes, fold="cyclic"):
     """Returns {name of an offset: speed-ups on each number of PEs in `pes`}."""
-    return {name: raya.speedups(image, pes, offsets(pes) % image.shape[1], fold)
-            for name, offsets in COLUMNS.items()}
+    return {name: raya.speedups(image, pes, offsets(pes) % image.shape[1], fold) for name, offsets in COLUMNS.items()}
 
 
 def tabulate_speedups(image):
@@ -64,30 +63,16 @@ def fig9(lab, scenes):
     tables = [tabulate_speedups(costs.trace) for costs in ensemble.pictures]
     means = pd.DataFrame({"P": rows["P"]})
     for name in COLUMNS:
-        of_name = estimates([table[f"{name}, cyclic fold"] for table, _ in tables], ensemble.families)
-        means[name], means[f"{name}, +-"] = [e.mean for e in of_name], [e.half for e in of_name]
+        means[name], means[f"{name}, +-"] = estimates([table[f"{name}, cyclic fold"] for table, _ in tables], ensemble.families)
     in_paper = papers.is_papers(scene.name, size)
     large_side = len(grids) // 2 * 2
     grid_ratios, half_side_speedups = zip(*((g[large_side] / g[large_side // 2], g[large_side // 2]) for _, g in tables))
-    sides = pd.DataFrame([row for image in sizes for row in rows_of_size(image)])
-    return Page({"scene": scene.name, "size": size, "pes": size, "offset": OFFSET % size, "pictures": len(tables)},
-                findings_of(rows, sides, in_paper),
-                with_paper(in_paper, comparisons_of(rows, grids, means.iloc[-1], grid_ratios, half_side_speedups, large_side, ensemble.families))
-                + (comparisons_of_machines(lab, scene, size) if in_paper else []),
-                claims_of(lab, tables, ensemble) if size == 256 and not scenes else [], tables_of(rows, grids, means, sides),
-                plots_of(rows, grids, means, in_paper),
-                placeholders={"ensemble": ensemble.description}, compared_with=papers.SPA)
-
-
-def rows_of_size(image):
-    side = image.shape[1]
-    pes = 2 ** np.arange(int(np.log2(side)) + 1)
-    for i, p in enumerate(pes):
-        one = {name: values[i] for name, values in speedups(image, pes).items()}
-        yield {"side (pixels)": side, "P": p, **one, "its efficiency": one["p = round(sqrt(P))"] / p}
-
-
-def tables_of(rows, grids, means, sides):
+    sides = []  # for each image size a row for each power of two of PEs
+    for image in sizes:
+        powers = 2 ** np.arange(int(np.log2(image.shape[1])) + 1)
+        sides.append(pd.DataFrame({"side (pixels)": image.shape[1], "P": powers, **speedups(image, powers)}))
+    sides = pd.concat(sides, ignore_index=True)
+    sides["its efficiency"] = sides["p = round(sqrt(P))"] / sides["P"]
     p = rows["P"]
     square = p.isin([a * a for a in grids])
     some = rows[(p > 1) & (square | (p & (p - 1) == 0) | (p % 100 == 0))]
@@ -95,11 +80,18 @@ def tables_of(rows, grids, means, sides):
                             "p = 0": some["p = 0, cyclic fold"], "p = 16": some["p = 16, cyclic fold"],
                             "p = sqrt(P)": some["p = round(sqrt(P)), cyclic fold"]})
     order = ["P"] + [f"{name}, {fold} fold" for name in COLUMNS for fold in ("cyclic", "block")]
-    return [Table("fig9-squares", "Speed-up of the picture on square numbers and powers of two of PEs, cyclic fold",
-                  squares),
-            Table("fig9-views", "Speed-up, mean of the ensemble", means, on_page=False),
-            Table("fig9", "Speed-up of the picture for each number of PEs", rows[order], on_page=False),
-            Table("fig9-sizes", "Speed-up of the scene at each image size, on 1 PE up to one for each column, cyclic fold", sides)]
+    shown = [Table("fig9-squares", "Speed-up of the picture on square numbers and powers of two of PEs, cyclic fold",
+                   squares),
+             Table("fig9-views", "Speed-up, mean of the ensemble", means, on_page=False),
+             Table("fig9", "Speed-up of the picture for each number of PEs", rows[order], on_page=False),
+             Table("fig9-sizes", "Speed-up of the scene at each image size, on 1 PE up to one for each column, cyclic fold", sides)]
+    return Page({"scene": scene.name, "size": size, "pes": size, "offset": OFFSET % size, "pictures": len(tables)},
+                findings_of(rows, sides, in_paper),
+                with_paper(in_paper, comparisons_of(rows, grids, means.iloc[-1], grid_ratios, half_side_speedups, large_side, ensemble.families))
+                + (comparisons_of_machines(lab, scene, size) if in_paper else []),
+                claims_of(lab, tables, ensemble) if size == 256 and not scenes else [], shown,
+                plots_of(rows, grids, means, in_paper),
+                placeholders={"ensemble": ensemble.description}, compared_with=papers.SPA)
 
 
 def comparisons_of(rows, grids, mean, grid_ratios, half_side_speedups, large_side, families):

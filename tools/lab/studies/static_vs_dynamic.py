@@ -25,16 +25,15 @@ Are static strategies inadequate from 128 PEs on, and static plus dynamic ones n
   90 % and 50 %, static-vs-dynamic-classes.csv the classes, static-vs-dynamic-factors.csv the numbers of cases, static-vs-dynamic-root.csv LINKS-1.
 """
 import math
+from itertools import product
 
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Series, Table, above, below, counted, estimate, every, judged, papers, study
-from raya.lab.families import WIDE_FAMILIES
-from raya.lab.laboratory import MACHINES
-from raya.lab.mappings import squarest_grid
+from raya.lab import Page, Plot, Series, Table, above, counted, estimate, every, first_from, judged, papers, study
+from raya.lab.laboratory import MACHINES, WIDE_FAMILIES
 from raya.lab.spa import CLOCK, FACTOR, FACTORS
-from raya.lab.statistics import tail_where
+from raya.lab.studies.scale import squarest_grid
 from raya.lab.voxels import powers_of_two
 
 NAME, MIN_PES, MAX_PES = "static-vs-dynamic", 128, 16_384
@@ -52,10 +51,9 @@ def request_cycles(factor):
 
 def static_mappings(size, pes):
     tile = math.gcd(size, 8)
-    grid = "grid:{}x{}".format(*squarest_grid(pes))
     return {"column split": {"mapping": "column"}, "cyclic, p = 16": {"offset": 16 % size},
             SQUARE_ROOT: {"offset": round(pes**0.5) % size}, "blocks of scan lines": {"mapping": "blocks"},
-            "tiles 8 x 8": {"mapping": f"tiles:{tile}x{tile}"}, "grid": {"mapping": grid},
+            "tiles 8 x 8": {"mapping": f"tiles:{tile}x{tile}"}, "grid": {"mapping": squarest_grid(pes)},
             "random": {"mapping": "random:1"}}
 
 
@@ -73,39 +71,24 @@ def outcomes_of(label, image, sizes, overhead):
     """Returns a table with a row for each strategy and number of PEs. label: name of the scene; overhead: budget cycles of a request."""
     size, total, rows = len(image), int(image.sum()), []
     for pes in sizes:
-        bound = raya.lower_bound(image, pes)
-
-        def add(name, kind, pays, makespan, requests):
-            rows.append({"scene": label, "strategy": name, "P": pes, "makespan (cycles)": makespan,
-                         "efficiency": total / (pes * makespan), "makespan / lower bound": makespan / bound,
-                         "requests": requests, "kind": kind, "pays": pays, "bound": total / (pes * bound)})
-
-        mappings = static_mappings(size, pes)
-        for name, options in mappings.items():
-            add(name, "static", False, int(raya.loads(image, pes=pes, **options).max()), 0)
+        bound, mappings = raya.lower_bound(image, pes), static_mappings(size, pes)
+        outcomes = [(name, "static", False, int(raya.loads(image, pes=pes, **options).max()), 0) for name, options in mappings.items()]
         for name, kind, pays, plan in plans(overhead):
-            start = mappings["grid"] if kind == "hybrid" else {"mapping": "column"}
-            run = raya.schedule(image, plan, pes=pes, **start)
-            add(name, kind, pays, run["makespan"], run["requests"])
+            run = raya.schedule(image, plan, pes=pes, **mappings["grid" if kind == "hybrid" else "column split"])
+            outcomes.append((name, kind, pays, run["makespan"], run["requests"]))
+        rows += [{"scene": label, "strategy": name, "P": pes, "makespan (cycles)": makespan, "efficiency": total / (pes * makespan),
+                  "makespan / lower bound": makespan / bound, "requests": requests, "kind": kind, "pays": pays, "bound": total / (pes * bound)}
+                 for name, kind, pays, makespan, requests in outcomes]
     return pd.DataFrame(rows).sort_values("strategy", key=lambda names: pd.factorize(names)[0], kind="stable",
                                           ignore_index=True)
 
 
-def makespans(image, overhead):
-    """Returns (makespans of the best static strategy, of the best dynamic or hybrid strategy with requests), arrays over CLASS_PES."""
-    static, dynamic = [], []
-    for pes in CLASS_PES:
-        mappings = static_mappings(len(image), pes)
-        static.append(min(int(raya.loads(image, pes=pes, **options).max()) for options in mappings.values()))
-        start = {"dynamic": {"mapping": "column"}, "hybrid": mappings["grid"]}
-        dynamic.append(min(raya.schedule(image, plan, pes=pes, **start[kind])["makespan"] for _, kind, pays, plan in plans(overhead) if pays))
-    return np.array(static), np.array(dynamic)
-
-
-def first_from(holds):
-    """Returns the first P of CLASS_PES from which on `holds`, a boolean for each P, is true; infinity if it is false for the last P."""
-    tail = tail_where(pd.Series(CLASS_PES), pd.Series(holds))
-    return tail.iloc[0] if len(tail) else np.inf
+def makespans(image, overhead, pes):
+    """Returns (makespan of the best static strategy, of the best dynamic or hybrid strategy with requests)."""
+    mappings = static_mappings(len(image), pes)
+    start = {"dynamic": mappings["column split"], "hybrid": mappings["grid"]}
+    return (min(int(raya.loads(image, pes=pes, **options).max()) for options in mappings.values()),
+            min(raya.schedule(image, plan, pes=pes, **start[kind])["makespan"] for _, kind, pays, plan in plans(overhead) if pays))
 
 
 def class_rows(ensemble):
@@ -115,9 +98,9 @@ def class_rows(ensemble):
         images = [costs.trace for name, costs in zip(ensemble.families, ensemble.pictures) if name == family]
         first_below_90, first_faster = [], []
         for image in images:
-            static, dynamic = makespans(image, request_cycles(FACTOR))
-            first_below_90.append(first_from(image.sum() / (np.array(CLASS_PES) * static) < 0.9))
-            first_faster.append(first_from(dynamic * NEAR_OPTIMAL < static))
+            static, dynamic = np.array([makespans(image, request_cycles(FACTOR), pes) for pes in CLASS_PES]).T
+            first_below_90.append(first_from(CLASS_PES, image.sum() / (np.array(CLASS_PES) * static) < 0.9, np.inf))
+            first_faster.append(first_from(CLASS_PES, dynamic * NEAR_OPTIMAL < static, np.inf))
         row = {"class": family, "pictures": len(images)}
         for what, values in zip(CLASS_LIMITS, (first_below_90, first_faster)):
             low, median, high = (str(int(pes)) if pes < np.inf else "never" for pes in np.quantile(values, [0.1, 0.5, 0.9], method="inverted_cdf"))
@@ -141,21 +124,11 @@ def finding_of_classes(rows):
 def root_rows(images):
     """Returns a table of dynamic distribution: efficiency if requests are free, and if a root answers one at a time, as in LINKS-1."""
     rows = []
-    for name, image in images.items():
-        for pes in ROOT_PES:
-            for chunk in ROOT_CHUNKS:
-                free, serial = (raya.schedule(image, f"dynamic:{chunk},0,{cycles}", pes=pes) for cycles in (0, request_cycles(FACTOR)))
-                rows.append({"scene": name, "P": pes, "pixels a request": chunk, "requests": serial["requests"],
-                             "efficiency, free requests": free["speedup"] / pes, "efficiency, one at a time": serial["speedup"] / pes})
+    for (name, image), pes, chunk in product(images.items(), ROOT_PES, ROOT_CHUNKS):
+        free, serial = (raya.schedule(image, f"dynamic:{chunk},0,{cycles}", pes=pes) for cycles in (0, request_cycles(FACTOR)))
+        rows.append({"scene": name, "P": pes, "pixels a request": chunk, "requests": serial["requests"],
+                     "efficiency, free requests": free["speedup"] / pes, "efficiency, one at a time": serial["speedup"] / pes})
     return pd.DataFrame(rows)
-
-
-def news_of_root(rows):
-    rows = rows[(rows["scene"] == rows["scene"].iloc[0]) & (rows["P"] == ROOT_PES[1])]
-    first, best = rows.iloc[0], rows.loc[rows["efficiency, one at a time"].idxmax()]
-    return (f"If a root answers one request at a time, as in LINKS-1, {ROOT_PES[1]} PEs have an efficiency of "
-            f"{100 * first['efficiency, one at a time']:.0f} % with one pixel a request and of {100 * best['efficiency, one at a time']:.0f} % with "
-            f"{best['pixels a request']} pixels a request ({first['scene']}).")
 
 
 def best_of(rows, kind):
@@ -202,15 +175,24 @@ def static_vs_dynamic(lab, scenes):
         plots += plots_of(rows, percent, number)
     outcomes = pd.concat(tables_by_scene, ignore_index=True)
     limits = outcomes.groupby(["scene", "strategy"], sort=False).apply(
-        lambda one: pd.Series({f"P, under {100 * limit:.0f} %": first_below(one, limit) or "never"
+        lambda one: pd.Series({f"P, under {100 * limit:.0f} %": next(iter(one["P"][one["efficiency"] < limit]), "never")
                                for limit in (0.9, 0.5)})).reset_index()
     shown = outcomes.drop(columns=["kind", "pays", "bound"])
+    of_first_scene = of_root[of_root["scene"] == outcomes["scene"][0]]
+    at_256 = of_first_scene[of_first_scene["P"] == ROOT_PES[1]]
+    one_pixel, best = at_256.iloc[0], at_256.loc[at_256["efficiency, one at a time"].idxmax()]
+    counts = counts_of(tables_by_scene)
+    inadequate, cases = counts["no static one near the bound"], counts["cases"]
+    how = "holds" if inadequate == cases else "holds in part" if inadequate else "does not hold"
     plots.append(Plot(f"{NAME}-root", f"One request at a time, {outcomes['scene'][0]}", "pixels a request", "efficiency",
                       [Series(f"P = {pes}", group["pixels a request"], group["efficiency, one at a time"])
-                       for pes, group in of_root[of_root["scene"] == outcomes["scene"][0]].groupby("P")], "x"))
+                       for pes, group in of_first_scene.groupby("P")], "x"))
     return Page({"size": size, "pes": sizes, "factor": FACTOR, "request_cycles": request_cycles(FACTOR),
                  "random_seed": 1, "scenes": list(images)},
-                [finding_of(tables_by_scene, counts_of(tables_by_scene)), finding_of_classes(classes)],
+                [f"The statement that static strategies are inadequate from {outcomes['P'].min()} PEs on {how} here: in {inadequate} "
+                 f"of {cases} cases (a scene on one number of PEs) no static strategy is within 10 % of the lower bound. The best hybrid, "
+                 f"including the cost of requests, is within 10 % in {counts['hybrid near the bound']} cases. It is faster than every static "
+                 f"strategy in {counts['hybrid beats all static ones']} cases.", finding_of_classes(classes)],
                 claims=claims_of(of_claims) if of_claims else [],
                 tables=tables + [Table(f"{NAME}-limits", "The first P at which the efficiency is below 90 % and below "
                                        "50 %", limits),
@@ -219,16 +201,13 @@ def static_vs_dynamic(lab, scenes):
                                  Table(NAME, "Every strategy, scene and number of PEs", shown, on_page=False),
                                  Table(f"{NAME}-factors", "Numbers of cases (a scene on one number of PEs) for each factor of the clock",
                                        factors)],
-                plots=plots, news=[news_of_root(of_root)],
+                plots=plots,
+                news=[f"If a root answers one request at a time, as in LINKS-1, {ROOT_PES[1]} PEs have an efficiency of "
+                      f"{100 * one_pixel['efficiency, one at a time']:.0f} % with one pixel a request and of "
+                      f"{100 * best['efficiency, one at a time']:.0f} % with {best['pixels a request']} pixels a request ({one_pixel['scene']})."],
                 clock=CLOCK, compared_with=papers.DYNAMIC,
                 placeholders={"ensemble": of_claims.description if of_claims else "no ensemble", "classes": of_classes.description,
                               "claim_size": CLAIM_SIZE, "claim_pes": ", ".join(map(str, CLAIM_PES))})
-
-
-def first_below(rows, limit):
-    """Returns the smallest number of PEs at which the efficiency is below the limit; 0 if there is none."""
-    below = rows["P"][rows["efficiency"] < limit]
-    return below.iloc[0] if len(below) else 0
 
 
 CLAIM_SIZE, CLAIM_PES, CLAIM_VIEWS = 256, (128, 256, 1024, 4096), 36
@@ -259,19 +238,9 @@ def claims_of(ensemble):
                    f"p = 16. It takes at least {sent_requests.min()} requests for an image; a static mapping takes none.")]
 
 
-def finding_of(scenes, counts):
-    inadequate, cases = counts["no static one near the bound"], counts["cases"]
-    how = "holds" if inadequate == cases else "holds in part" if inadequate else "does not hold"
-    return (f"The statement that static strategies are inadequate from {scenes[0]['P'].min()} PEs on {how} here: in {inadequate} "
-            f"of {cases} cases (a scene on one number of PEs) no static strategy is within 10 % of the lower bound. The best hybrid, "
-            f"including the cost of requests, is within 10 % in {counts['hybrid near the bound']} cases. It is faster than every static "
-            f"strategy in {counts['hybrid beats all static ones']} cases.")
-
-
 def plots_of(rows, percent, number):
     kinds = rows.drop_duplicates("strategy").set_index("strategy")
     for label, what, names in (("static", "static mappings", kinds.index[kinds["kind"] == "static"]),
                                ("dynamic", "dynamic and hybrid distribution", kinds.index[kinds["pays"]])):
         yield Plot(f"{NAME}-{number}-{label}", f"Efficiency against the number of PEs, {rows['scene'][0]}: {what}", "PEs", "efficiency (%)",
-                   [Series(name, percent.columns, percent.loc[name]) for name in [*names, "upper bound"]],
-                   "x")
+                   [Series(name, percent.columns, percent.loc[name]) for name in [*names, "upper bound"]], "x")

@@ -21,7 +21,7 @@ import pandas as pd
 import raya
 from raya.lab import Comparison, Page, Picture, Table, first_scene, judged, papers, study, time_calls, with_paper
 from raya.lab.laboratory import SPA, format_for
-from raya.lab.spa import CLOCK, FACTOR, FACTORS, host_model, run_on_spa
+from raya.lab.spa import CLOCK, FACTOR, FACTORS, host_model, run_on_spa, time_of
 
 SAMPLING_S = 10  # seconds: no further run starts after the runs of a series took as long
 
@@ -32,67 +32,63 @@ def job_gain(one_ms, array_ms):
     return (one_ms + rest) / (array_ms + rest)
 
 
-def reference_seconds(scene, size):
-    raya.reference(scene, 32, SPA["bounces"], 1)  # warms up
-
-    def run():
-        start = time.perf_counter()
-        raya.reference(scene, size, SPA["bounces"], 1)
-        return time.perf_counter() - start
-    return time_calls(run, 3, SAMPLING_S, warm=False)
-
-
-def device_seconds(lab, scene, size, number_format):
-    options = dict(machine="grande", format=number_format, bounces=SPA["bounces"], size=size, pes=size, offset=16 % size,
-                   accel="none")
-    return time_calls(lambda: lab.render(scene, **options).device_s, 5, SAMPLING_S)
-
-
 @study("table2", one_scene=True, measures=True)
 def table2(lab, scenes):
     scene, size = first_scene(scenes), lab.size(256)
     array, one = run_on_spa(lab, scene, size, size, 16 % size), run_on_spa(lab, scene, size, 1, 0)
     device = lab.session.device["name"]
-    here = {"reference, 64 bits, 1 thread": reference_seconds(scene, size),
-            f"{device}, fp32": device_seconds(lab, scene, size, "fp32"),
-            f"{device}, {SPA['format']}": device_seconds(lab, scene, size, SPA["format"])}
+    options = dict(machine="grande", bounces=SPA["bounces"], size=size, pes=size, offset=16 % size, accel="none")
+
+    def reference_s():
+        start = time.perf_counter()
+        raya.reference(scene, size, SPA["bounces"], 1)
+        return time.perf_counter() - start
+
+    raya.reference(scene, 32, SPA["bounces"], 1)  # warms up
+    here = {"reference, 64 bits, 1 thread": time_calls(reference_s, 3, SAMPLING_S, warm=False),
+            **{f"{device}, {form}": time_calls(lambda form=form: lab.render(scene, format=form, **options).device_s, 5, SAMPLING_S)
+               for form in ("fp32", SPA["format"])}}
     (reference, fp32, spa22), in_paper = here.values(), papers.is_papers(scene.name, size)
     speedup = array.report["load"]["trace"]["speedup"]
     balance = job_gain(papers.ONE_PE_COMPUTE_MS, papers.ONE_PE_COMPUTE_MS / speedup)
-    factors = pd.DataFrame({"factor": FACTORS, "1 PE: compute (ms)": [one.time(f)["compute"] for f in FACTORS],
-                            "all PEs: compute (ms)": [array.time(f)["compute"] for f in FACTORS]})
+    factors = pd.DataFrame({"factor": FACTORS, "1 PE: compute (ms)": [time_of(one, f)["compute"] for f in FACTORS],
+                            "all PEs: compute (ms)": [time_of(array, f)["compute"] for f in FACTORS]})
     factors["speed-up of the whole job"] = job_gain(factors.iloc[:, 1], factors.iloc[:, 2])
-    host = host_rows(array)
+    setup, rotation, rate = host_model()
+    words = array.report["communication"]["broadcast_words"]
+    transfer = setup[0] + 1e3 * words / rate[1], setup[1] + 1e3 * words / rate[0]
+    host = pd.DataFrame([("set-up of a call", "ms", *setup), ("rotation of 768 words", "ms", *rotation), ("rate of the host", "words/s", *rate),
+                         (f"objects of our scene, {words} words", "ms", *transfer)], columns=["what", "unit", "least", "largest"])
+    gflops, megabytes = SPA["pes"] * 2 / SPA["cycle_ns"], SPA["pes"] * SPA["pe_memory_bytes"] / 2**20
+    gains = factors["speed-up of the whole job"]
+    gain = job_gain(time_of(one)["compute"], time_of(array)["compute"])
+    ratio = 1e3 * reference.minimum / time_of(array)["compute"]
+    slower = f"{ratio:.3g} times slower than" if ratio >= 1 else f"{1 / ratio:.3g} times faster than"
+    findings = [f"{size} PEs compute {speedup:.1f} times faster than one. The whole job, display included, is {gain:.1f} times faster "
+                f"with the clock's factor, {gains.iloc[0]:.1f} to {gains.iloc[-1]:.1f} times with factors of 1 to 8.",
+                f"The host model gives {host['least'].iloc[-1]:.2f} .. {host['largest'].iloc[-1]:.2f} ms for the transfer of our scene. The paper "
+                "prints 2 ms for its scene, but not the scene's number of words.",
+                f"A pixel of our scene takes {time_of(one, 1)['compute'] / 100e-6 / size**2:.0f} cycles of the instruction budget. A pixel of Kohata & "
+                "Ito's takes 9,888 cycles of 100 ns [D: 64,800 ms / 65,536 pixels], or about 1,520 budget cycles by the clock's factor.",
+                f"Measured on this machine, warm: one thread in 64 bits takes {1e3 * reference.minimum:.0f} ms. The device's kernels take "
+                f"{1e3 * fp32.minimum:.1f} ms in fp32 and {1e3 * spa22.minimum:.1f} ms in the SPA's format, whose slowest of "
+                f"{spa22.runs} runs took {100 * (spa22.maximum / spa22.minimum - 1):.0f} % longer than the fastest one. One thread is {slower} "
+                "the SPA by its modelled computing time."]
     return Page({"scene": scene.name, "size": size, "pes": [size, 1], "offset": 16 % size,
                  "format": format_for(scene), "factor": FACTOR, "device": device},
-                findings_of(size, speedup, array, one, factors, host, reference, fp32, spa22),
-                with_paper(in_paper, comparisons_of(size, array.time(), one.time(), speedup, balance,
+                findings,
+                with_paper(in_paper, comparisons_of(size, time_of(array), time_of(one), speedup, balance,
                                                     1e3 * reference.minimum)),
-                [claim_of_totals()] if in_paper and not scenes else [],
+                [judged("totals-of-table-1", None, "", f"The modelled machine has {gflops:.2f} GFLOPS (each PE: two operations in a cycle of "
+                        f"{SPA['cycle_ns']:g} ns), {megabytes:g} MB.")] if in_paper and not scenes else [],
                 [Table("table2", "Times of one image", rows_of(size, array, one, here, in_paper)),
                  Table("table2-factors", "Computing times, and speed-up of the whole job, for each factor of the clock", factors),
                  Table("table2-host", "Host model: range of each figure, from the rounding of the printed 2, 12 and 140 ms", host)],
                 pictures=[Picture("table2-picture", f"{scene.name} at {size} x {size}, rendered by the PEs",
                                   "glass and mirror spheres in the middle of the image, above a checkered plane"
                                   if scene.name == "centre" else "the scene of the command line",
-                                  array.result.png)],
+                                  array.png)],
                 clock=CLOCK, compared_with=papers.SPA)
-
-
-def claim_of_totals():
-    gflops, megabytes = SPA["pes"] * 2 / SPA["cycle_ns"], SPA["pes"] * SPA["pe_memory_bytes"] / 2**20
-    return judged("totals-of-table-1", None, "",
-                  f"The modelled machine has {gflops:.2f} GFLOPS (each PE: two operations in a cycle of {SPA['cycle_ns']:g} ns), {megabytes:g} MB.")
-
-
-def host_rows(array):
-    model, words = host_model(), array.report["communication"]["broadcast_words"]
-    (low, high), (slow, fast) = model["setup_ms"], model["words_per_s"]
-    rows = [("set-up of a call", "ms", *model["setup_ms"]), ("rotation of 768 words", "ms", *model["rotation_ms"]),
-            ("rate of the host", "words/s", *model["words_per_s"]),
-            (f"objects of our scene, {words} words", "ms", low + 1e3 * words / fast,
-             high + 1e3 * words / slow)]
-    return pd.DataFrame(rows, columns=["what", "unit", "least", "largest"])
 
 
 def rows_of(size, array, one, here, in_paper):
@@ -104,7 +100,7 @@ def rows_of(size, array, one, here, in_paper):
                           ("SPA, 1 PE", papers.OBJECTS_MS, papers.ONE_PE_COMPUTE_MS, papers.IMAGE_MS,
                            papers.DISPLAY_MS)):
             rows.append((f"Kohata & Ito: {name}", "printed", *ms, sum(ms)))
-    for name, t in ((f"SPA, {size} PEs", array.time()), ("SPA, 1 PE", one.time())):
+    for name, t in ((f"SPA, {size} PEs", time_of(array)), ("SPA, 1 PE", time_of(one))):
         rows.append((name, "modelled", t["objects"], t["compute"], t["image"], t["display"], t["total"]))
     for name, times in here.items():
         for which in ("minimum", "median", "maximum"):
@@ -134,21 +130,3 @@ def comparisons_of(size, array, one, speedup, balance, reference):
              "one processor, 64 bits; ours: the reference on one thread of this machine, measured"),
             ("workstation, and this machine", "ms", papers.WORKSTATION_MS, reference, "one processor, 64 bits; ours: the same measurement")]
     return [Comparison(*row) for row in rows]
-
-
-def findings_of(size, speedup, array, one, factors, host, reference, fp32, spa22):
-    gains = factors["speed-up of the whole job"]
-    gain = job_gain(one.time()["compute"], array.time()["compute"])
-    ratio = 1e3 * reference.minimum / array.time()["compute"]
-    slower = f"{ratio:.3g} times slower than" if ratio >= 1 else f"{1 / ratio:.3g} times faster than"
-    objects = host.iloc[-1]
-    return [f"{size} PEs compute {speedup:.1f} times faster than one. The whole job, display included, is {gain:.1f} times faster "
-            f"with the clock's factor, {gains.iloc[0]:.1f} to {gains.iloc[-1]:.1f} times with factors of 1 to 8.",
-            f"The host model gives {objects['least']:.2f} .. {objects['largest']:.2f} ms for the transfer of our scene. The paper "
-            "prints 2 ms for its scene, but not the scene's number of words.",
-            f"A pixel of our scene takes {one.time(1)['compute'] / 100e-6 / size**2:.0f} cycles of the instruction budget. A pixel of Kohata & Ito's "
-            "takes 9,888 cycles of 100 ns [D: 64,800 ms / 65,536 pixels], or about 1,520 budget cycles by the clock's factor.",
-            f"Measured on this machine, warm: one thread in 64 bits takes {1e3 * reference.minimum:.0f} ms. The device's kernels take "
-            f"{1e3 * fp32.minimum:.1f} ms in fp32 and {1e3 * spa22.minimum:.1f} ms in the SPA's format, whose slowest of "
-            f"{spa22.runs} runs took {100 * (spa22.maximum / spa22.minimum - 1):.0f} % longer than the fastest one. One thread is {slower} "
-            "the SPA by its modelled computing time."]

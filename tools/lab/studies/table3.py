@@ -20,7 +20,6 @@ from raya.lab.spa import CLOCK, FACTOR, FACTORS, smoothing_runs
 from raya.lab.studies.cluster import matched_times, series_of_matched
 
 
-
 def at_factor(runs, factor):
     """Returns the figures that the conclusions use, for one factor of the clock model."""
     rows, near = runs.rows(factor), runs.times(factor)[:17]
@@ -42,18 +41,6 @@ def table3(lab, scenes):
         ["p", "rotations", "communication (ms)", "filter (ms)", "ray tracing (ms)", "total (ms)"], axis=1)
     offsets = times[["offset", "rotations", "ring_ms", "smooth_ms", "trace_ms", "total_ms"]].set_axis(
         shown.columns, axis=1)
-    return Page({"scene": runs.scene.name, "size": runs.size, "pes": runs.size, "format": format_for(runs.scene),
-                 "factor": FACTOR},
-                findings_of(runs, rows, near, factors), with_paper(in_paper, comparisons_of(rows)),
-                claims_of(matched, rows, near) if in_paper and not scenes else [],
-                [Table("table3", "Ray tracing and filter, for each rendered offset", shown),
-                 Table("table3-factors", "The conclusions for each factor of the clock", factors),
-                 Table("table3-offsets", "Ray tracing and filter, for every offset", offsets, on_page=False)],
-                [plot_of(runs, False, in_paper), plot_of(runs, True, in_paper, matched)],
-                clock=CLOCK, compared_with=papers.SPA)
-
-
-def comparisons_of(rows):
     made = "the clock is derived from the printed time"
     figures = [("ray tracing", "trace", (papers.TRACE_0_MS, None, papers.TRACE_16_MS), ("", "", "")),
                ("filtering", "filtering", (papers.FILTER_0_MS, None, papers.FILTER_16_MS), (made, "", made)),
@@ -61,13 +48,20 @@ def comparisons_of(rows):
     comparisons = [Comparison(f"p = {row['p']:.0f}: {what}", "ms", printed[i], row[column], remarks[i])
                    for i, row in rows.iterrows() for what, column, printed, remarks in figures]
     first, last = rows.iloc[0], rows.iloc[-1]
-    return comparisons + [
-        Comparison("filter's arithmetic", "ms", papers.FILTER_ARITHMETIC_MS, first["filter"],
-                   "the clock's factor is derived from it", derived=True),
-        Comparison("set-up of an exchange", "ms", None, SPA["setup_ms"],
-                   "from Table 4: 2 - 2 x 0.3125 ms; part of filtering"),
-        Comparison("total at p = 0 / at p = 16", "", papers.FILTERED_0_MS / papers.FILTERED_16_MS,
-                   first["filtered"] / last["filtered"], "depends little on the clock", derived=True)]
+    comparisons += [
+        Comparison("filter's arithmetic", "ms", papers.FILTER_ARITHMETIC_MS, first["filter"], "the clock's factor is derived from it", derived=True),
+        Comparison("set-up of an exchange", "ms", None, SPA["setup_ms"], "from Table 4: 2 - 2 x 0.3125 ms; part of filtering"),
+        Comparison("total at p = 0 / at p = 16", "", papers.FILTERED_0_MS / papers.FILTERED_16_MS, first["filtered"] / last["filtered"],
+                   "depends little on the clock", derived=True)]
+    return Page({"scene": runs.scene.name, "size": runs.size, "pes": runs.size, "format": format_for(runs.scene),
+                 "factor": FACTOR},
+                findings_of(runs, rows, near, factors), with_paper(in_paper, comparisons),
+                claims_of(matched, rows, near) if in_paper and not scenes else [],
+                [Table("table3", "Ray tracing and filter, for each rendered offset", shown),
+                 Table("table3-factors", "The conclusions for each factor of the clock", factors),
+                 Table("table3-offsets", "Ray tracing and filter, for every offset", offsets, on_page=False)],
+                [plot_of(runs, False, in_paper), plot_of(runs, True, in_paper, matched)],
+                clock=CLOCK, compared_with=papers.SPA)
 
 
 def claims_of(matched, rows, near):
@@ -103,12 +97,11 @@ def findings_of(runs, rows, near, factors):
 
 
 def plot_of(runs, with_tracing, in_paper, matched=()):
-    series = [series_of_matched(f"{len(matched)} scenes matched to the paper's u(0) and 64,800 ms", matched, ["total_ms"])] if len(matched) > 1 else []
+    series = series_of_matched(f"{len(matched)} scenes matched to the paper's u(0) and 64,800 ms", matched, ["total_ms"])
     for factor in (1, FACTOR, 8):
         t = runs.times(factor)[:17]
         y = t["total_ms"] if with_tracing else t["ring_ms"] + t["smooth_ms"]
-        label = f"{runs.scene.name}, " + (f"clock's factor {factor:.3g}")
-        series.append(Series(label, t["offset"], y))
+        series.append(Series(f"{runs.scene.name}, clock's factor {factor:.3g}", t["offset"], y))
     name, title, printed = (
         ("table3-total", "Ray tracing and filter", [papers.FILTERED_0_MS, papers.FILTERED_16_MS]) if with_tracing else
         ("table3-filter", "Filtering", [papers.FILTER_0_MS, papers.FILTER_16_MS]))

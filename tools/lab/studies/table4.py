@@ -35,42 +35,41 @@ def table4(lab, scenes):
         ["p", "rotations", "communication (ms)", "comparison (ms)", "supersampling (ms)", "first pass (ms)",
          "total (ms)"], axis=1)
     findings = findings_of_readings(first, last) if in_paper else []
-    return Page({"scene": runs.scene.name, "size": runs.size, "pes": runs.size, "format": format_for(runs.scene),
-                 "recomputed_share": runs.recomputed, "factor": FACTOR},
-                findings + findings_of(runs, first, last),
-                with_paper(in_paper, comparisons_of(rows, runs.recomputed)), claims_of(lab, runs, rows, filtered) if in_paper and not scenes else [],
-                [Table("table4", "Supersampling, for each rendered offset", shown),
-                 Table("table4-offsets", "Supersampling, for every offset", offsets, on_page=False)], [plot_of(runs, in_paper, matched_times(lab, "supersample") if in_paper and not scenes else [])],
-                clock=CLOCK, compared_with=papers.SPA)
-
-
-def comparisons_of(rows, share):
     comparisons = []
-    for row, exchange, computation in ((rows.iloc[0], papers.EXCHANGE_0_MS, papers.SUPERSAMPLE_0_MS),
-                                       (rows.iloc[-1], papers.EXCHANGE_16_MS, papers.SUPERSAMPLE_16_MS)):
+    for row, exchange, computation in ((first, papers.EXCHANGE_0_MS, papers.SUPERSAMPLE_0_MS), (last, papers.EXCHANGE_16_MS, papers.SUPERSAMPLE_16_MS)):
         comparisons += [Comparison(f"p = {row['p']:.0f}: {what}", "ms", paper, row[column], remark)
                         for what, paper, column, remark in (
                        ("communication", exchange, "communication", "the clock is derived from the printed time"),
                        ("phase alone", computation, "alone", "computation: comparisons and new rays"),
                        ("with first pass", computation, "with_first", "computation: first pass, comparisons and new rays"))]
-    first, last = rows.iloc[0], rows.iloc[-1]
-    return comparisons + [
-        Comparison("phase alone, p = 0 / p = 16", "", PRINTED_RATIO, first["alone"] / last["alone"],
-                   "the clock's factor cancels", derived=True),
-        Comparison("with first pass, p = 0 / p = 16", "", PRINTED_RATIO,
-                   first["with_first"] / last["with_first"], "the clock's factor cancels", derived=True),
-        Comparison("pixels recomputed", "%", 50 * (papers.RECOMPUTED_MIN + papers.RECOMPUTED_MAX),
-                   100 * share, "the paper's: 16 .. 18 % by the first reading of Table 4", derived=True)]
+    comparisons += [*(Comparison(f"{what}, p = 0 / p = 16", "", PRINTED_RATIO, first[column] / last[column], "the clock's factor cancels", derived=True)
+                      for what, column in (("phase alone", "alone"), ("with first pass", "with_first"))),
+                    Comparison("pixels recomputed", "%", 50 * (papers.RECOMPUTED_MIN + papers.RECOMPUTED_MAX), 100 * runs.recomputed,
+                               "the paper's: 16 .. 18 % by the first reading of Table 4", derived=True)]
+    return Page({"scene": runs.scene.name, "size": runs.size, "pes": runs.size, "format": format_for(runs.scene),
+                 "recomputed_share": runs.recomputed, "factor": FACTOR},
+                findings + findings_of(runs, first, last),
+                with_paper(in_paper, comparisons), claims_of(lab, runs, rows, filtered) if in_paper and not scenes else [],
+                [Table("table4", "Supersampling, for each rendered offset", shown),
+                 Table("table4-offsets", "Supersampling, for every offset", offsets, on_page=False)],
+                [plot_of(runs, in_paper, matched_times(lab, "supersample") if in_paper and not scenes else [])],
+                clock=CLOCK, compared_with=papers.SPA)
 
 
 def claims_of(lab, runs, rows, filtered):
     ensemble = lab.ensemble([], papers.SIZE, "supersample")
-    saved = ensemble.map(lambda costs: gain_of(offset_times(costs, papers.SIZE, "supersample", 1)))
+
+    def saved_ms(costs):
+        times = offset_times(costs, papers.SIZE, "supersample", 1)
+        total = times["smooth_ms"] + times["supersample_ms"] + times["ring_ms"]
+        return total[0] - total[16]
+
+    saved = ensemble.map(saved_ms)
     same = all(a.report["communication"][key] == b.report["communication"][key]
                for a, b in zip(filtered, runs.runs.values()) for key in ("rotations", "rotation_words"))
     counted_text = ", ".join(f"{r} for p = {p}" for r, p in zip(rows["rotations"], rows["p"]))
     how = "the rotations and words equal" if same else "the rotations or words differ from"
-    ratio = rows["compare"].iloc[0] / filtered[0].time()["filter"]
+    ratio = rows["compare"].iloc[0] / filtered[0].report["modelled_ms"]["filter"]
     return [judged("comparison-communicates", None, "", f"Rotations counted: {counted_text}; {how} those of the filter for the same scene."),
             judged("comparison-like-filter", None, "",
                    f"The instruction budget of a comparison is {ratio:.2f} times that of the filter: 121 cycles a pixel against 42. Our colours may "
@@ -79,12 +78,6 @@ def claims_of(lab, runs, rows, filtered):
             judged("gain-exceeds-communication", above(saved, 0, ensemble.families, 1), ensemble.description,
                    f"p = 16 saves {estimate(saved, ensemble.families).text(1)} ms more computing than it adds communication. The total falls in "
                    f"{(saved > 0).sum()} of {len(saved)} pictures.")]
-
-
-def gain_of(times):
-    """Returns how many milliseconds of comparison, supersampling and communication p = 16 saves compared with p = 0."""
-    total = times["smooth_ms"] + times["supersample_ms"] + times["ring_ms"]
-    return total[0] - total[16]
 
 
 def mean_factor(*times):
@@ -123,9 +116,8 @@ def plot_of(runs, in_paper, matched):
     near = runs.times()[:17]
     alone = near["smooth_ms"] + near["supersample_ms"]
     series = [Series(f"{runs.scene.name}, phase alone", near["offset"], alone),
-              Series(f"{runs.scene.name}, with the first pass", near["offset"], alone + near["trace_ms"])]
-    if len(matched) > 1:
-        series += [series_of_matched(f"{len(matched)} matched scenes, phase alone", matched, ["smooth_ms", "supersample_ms"])]
+              Series(f"{runs.scene.name}, with the first pass", near["offset"], alone + near["trace_ms"]),
+              *series_of_matched(f"{len(matched)} matched scenes, phase alone", matched, ["smooth_ms", "supersample_ms"])]
     if in_paper:
         series.append(Series("Kohata & Ito", [0, 16], [papers.SUPERSAMPLE_0_MS, papers.SUPERSAMPLE_16_MS], "paper"))
     return Plot("table4", "Computation of supersampling against the offset", "offset p (pixels)",

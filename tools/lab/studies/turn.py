@@ -51,8 +51,16 @@ def turn(lab, scenes):
         settings.append({"scene": scene.name, "size": size, "pes": size, "format": format_for(scene), "fold": "cyclic",
                          "start_seeds": f"1..{starts}"})
         findings += findings_of(scene.name, own, rows, root)
-        tables += tables_of(number, scene.name, own, rows, root)
-        plots.append(plot_of(number, scene.name, own, root))
+        choice, stem = choices_of(own, root), "turn" if number == 1 else f"turn-{number}"
+        first, half = choice["best p of frame 1"], choice["best p of odd frames"]
+        offsets = {"p = 0": 0, f"p = {root}, root of P": root, f"p = {first}, best of frame 1": first, f"p = {half}, best of odd frames": half}
+        frames = pd.DataFrame({"frame": range(1, FRAMES + 1), "turned by (degrees)": DEGREES, **{f"u, {name}": own[:, p] for name, p in offsets.items()},
+                               "best p of the frame": own.argmin(1), "u, best p of the frame": own.min(1)})
+        tables += [Table(stem, f"u of every frame of {scene.name}, in the turn that starts from the scene's view", frames),
+                   Table(f"{stem}-starts", f"Mean u of the even frames of {scene.name}, in turns that start from random views", rows)]
+        plots.append(Plot(f"turn-{number}", f"Load imbalance u while the camera turns round {scene.name}", "turned by (degrees)", "u",
+                          [*(Series("p = 0, column split" if p == 0 else name, DEGREES, own[:, p]) for name, p in offsets.items()),
+                           Series("each frame's best p", DEGREES, own.min(1), "points")], "y"))
     return Page({"scenes": settings, "frames": FRAMES, "step_degrees": DEGREES[1], "lowest_view_degrees": 5,
                  "highest_view_degrees": 75}, findings, tables=tables, plots=plots)
 
@@ -67,26 +75,3 @@ def findings_of(scene, u, rows, root):
             f"difference of {estimate(first - half).text()}) and {estimate(at_root).text()} at p = {root} (a difference of "
             f"{estimate(at_root - half).text()}). With the best offset of each single frame it is "
             f"{estimate(rows[rows.columns[-1]]).text()}."]
-
-
-def columns_of(u, root):
-    choice = choices_of(u, root)
-    first, half = choice["best p of frame 1"], choice["best p of odd frames"]
-    return {"p = 0": 0, f"p = {root}, root of P": root, f"p = {first}, best of frame 1": first,
-            f"p = {half}, best of odd frames": half}
-
-
-def tables_of(number, scene, u, rows, root):
-    stem = "turn" if number == 1 else f"turn-{number}"
-    frames = pd.DataFrame({"frame": range(1, FRAMES + 1), "turned by (degrees)": DEGREES,
-                           **{f"u, {name}": u[:, p] for name, p in columns_of(u, root).items()},
-                           "best p of the frame": u.argmin(1), "u, best p of the frame": u.min(1)})
-    return [Table(stem, f"u of every frame of {scene}, in the turn that starts from the scene's view", frames),
-            Table(f"{stem}-starts", f"Mean u of the even frames of {scene}, in turns that start from random views", rows)]
-
-
-def plot_of(number, scene, u, root):
-    lines = [Series("p = 0, column split" if p == 0 else name, DEGREES, u[:, p])
-             for name, p in columns_of(u, root).items()]
-    return Plot(f"turn-{number}", f"Load imbalance u while the camera turns round {scene}", "turned by (degrees)", "u",
-                lines + [Series("each frame's best p", DEGREES, u.min(1), "points")], "y")
