@@ -88,6 +88,7 @@ def read_manifest(path):
     try:
         manifest = json.loads(Path(path).read_bytes())
         members = [manifest[name] for name in ("study", "version", "packages", "devices")]
+        # a missing member of these raises KeyError or TypeError
         _ = [manifest["settings"][name] for name in SETTINGS], [(one["name"], one["sha256"]) for name in ("inputs", "outputs") for one in manifest[name]]
         if all(map(isinstance, members, (str, str, dict, list))):
             return manifest
