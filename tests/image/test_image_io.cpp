@@ -183,9 +183,6 @@ TEST_CASE("write_image: refuses a file that it cannot write, and leaves no parti
     check_image_name(folder / "new.png", kImageExtensions);
     CHECK_THROWS_WITH(write_image(folder / "missing/a.exr", special_image()), Contains("does not exist"));
     CHECK_THROWS_WITH(write_image(folder / "full.png", special_image()), Contains("No space left on device"));
-    Image wide{1'000'001, 1, {}};  // libjpeg's limit is 65,500
-    wide.rgb.resize(3'000'003);
-    CHECK_THROWS_WITH(write_image(folder / "wide.jpg", wide), Contains("wide.jpg") && Contains(".png"));
     CHECK(folder.entries() == 1);
 }
 
