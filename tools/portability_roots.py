@@ -10,7 +10,7 @@ DEBIAN_ROOT = ROOT / "tools" / "debian_root"
 FOLDER = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "raya" / "roots"
 PACKAGES = "cd /raya && tools/setup --gpu --package && apt-get install -qq -y --no-install-recommends git mesa-opencl-icd"
 SYSROOT_PACKAGES = "base-files,pocl-opencl-icd,libopenimageio-dev,libassimp-dev,ocl-icd-opencl-dev,opencl-clhpp-headers,libfmt-dev,libcli11-dev," \
-                   "nlohmann-json3-dev,zlib1g-dev,libxxhash-dev,libimath-dev,libc6-dev,libmpfr-dev,catch2"
+                   "nlohmann-json3-dev,zlib1g-dev,libxxhash-dev,,libc6-dev,libmpfr-dev,catch2"
 # With --variant=extract no program of the packages runs, so that the Debian of another architecture needs no emulator.
 SYSROOT = """cd /raya && tools/setup && apt-get install -qq -y --no-install-recommends git g++-{compiler} qemu-user mmdebstrap
 [[ -e /sysroots/{arch} ]] || {{

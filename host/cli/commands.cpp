@@ -119,15 +119,14 @@ int flush_stdout(Ranks& ranks, int code) {
     return code == kExitOk ? kExitUserError : code;
 }
 
-// Refuses several ranks for all commands except render and ping, because the other commands would run once in
-// every process.
+// Refuses several ranks for all commands except render, because the others would run once in every process.
 void refuse_many_ranks(CLI::App& program, const Ranks& ranks) {
     if (!ranks.has_several()) return;
     for (CLI::App* command : program.get_subcommands({}))
-        if (const std::string name = command->get_name(); name != "render" && name != "ping")
+        if (const std::string name = command->get_name(); name != "render")
             command->preparse_callback([name](std::size_t) {
                 throw UserError(
-                    fmt::format("{} runs in one process: only render and ping support several ranks; start it "
+                    fmt::format("{} runs in one process: only render supports several ranks; start it "
                                 "without mpirun",
                                 name));
             });
@@ -168,10 +167,6 @@ int print_schema(const std::string& kind) {
         schema = schema_of<VerifyReport>("raya verify --report",
                                          "All checks of all devices, with details of failures (docs/verify.md). `raya "
                                          "page` shows the report as a web page.");
-    if (kind == "ping")
-        schema = schema_of<PingReport>("raya ping",
-                                       "Message times between MPI ranks, measured with the transport that renders use "
-                                       "(docs/clusters.md). `raya ping` under mpirun prints the report to stdout.");
     if (kind == "tuned")
         schema = schema_of<TunedFile>(
             "raya/tuned-DEVICE.json",
@@ -208,7 +203,6 @@ std::shared_ptr<CLI::App> make_program(Ranks& ranks, const std::string& build) {
     add_study_command(program);
     add_page_command(program);
     add_verify_command(program);
-    add_ping_command(program, ranks);
     add_verbosity_options(program, ranks);
     // Runs before the command's callback. Only rank 0 checks files, because only rank 0 writes them.
     program.parse_complete_callback([&program, &ranks] {
@@ -241,21 +235,6 @@ int run_program(int argc, char** argv, const std::string& build) {
     } catch (const RankFailure& failure) {
         return fail_at_start(failure.what(), failure.code);
     }
-}
-
-void add_ping_command(CLI::App& program, Ranks& ranks) {
-    CLI::App* command = program.add_subcommand("ping",
-                                               "Under mpirun: measure messages of 1 B to 4 MB between ranks and print "
-                                               "their times, latency alpha and time per byte beta as JSON");
-    add_examples(*command, {{"mpirun -n 2 raya ping", "Measure between two ranks of this machine"},
-                            {"mpirun -n 2 --host one,other raya ping >network.json",
-                             "Measure between two machines; raya study ranks --network takes alpha and beta"}});
-    command->callback([&ranks] {
-        if (!ranks.has_several())
-            throw UserError("ping needs two ranks or more and there is one; start it as mpirun -n 2 raya ping");
-        const PingReport report = ping(ranks);
-        if (ranks.is_first()) fmt::print("{}\n", to_json(report).dump(2));
-    });
 }
 
 }  // namespace raya

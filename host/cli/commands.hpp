@@ -34,6 +34,5 @@ void add_tune_command(CLI::App& program);
 void add_study_command(CLI::App& program);
 void add_page_command(CLI::App& program);
 void add_verify_command(CLI::App& program);
-void add_ping_command(CLI::App& program, Ranks& ranks);
 
 }  // namespace raya

@@ -29,7 +29,6 @@ const Entries kEnvironment = {
     {"RAYA_BUILD_OPTIONS", "added to every kernel's build options, and listed in reports"},
     {"RAYA_TUNED", "off: use the defaults, not the values that raya tune stored"},
     {"RAYA_PYTHON", "the Python that runs studies; default: /usr/bin/python3"},
-    {"RAYA_MPIRUN", "the command with which study ranks starts ranks; default: mpirun --bind-to none"},
     {"RAYA_MESH_TIMEOUT", "seconds that reading a mesh may take; default: 120"},
     {"RAYA_RANK_TIMEOUT", "seconds that a rank waits for other ranks; default: 600"},
     {"XDG_CACHE_HOME", "raya tune stores its values in raya/ in this folder; default: ~/.cache"}};

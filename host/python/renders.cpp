@@ -120,15 +120,6 @@ double simulated_ms(const Result& r, const py::kwargs& changes) {
     return simulate(r->torus_settings->torus, history_of(*r), machine).finish_ms;
 }
 
-std::size_t write_replay(const Result& r, const std::string& platform, const std::string& replay,
-                         const py::kwargs& changes) {
-    const AsyncMachine machine = async_machine(changes);
-    const raya_torus& torus = r->torus_settings->torus;
-    write_whole_file(platform, simgrid_platform(torus, machine));
-    write_whole_file(replay, simgrid_replay(torus, history_of(*r), machine));
-    return history_of(*r).messages.size();
-}
-
 py::array steps_array(const py::object& self, std::vector<std::uint64_t> Render::*member, std::size_t values_per_node) {
     const Result r = self.cast<Result>();
     const auto nodes = static_cast<py::ssize_t>(torus_of(*r, "supersteps").load.per_pe.size());
@@ -179,10 +170,7 @@ void add_torus_results(py::module_& module, ResultClass& result) {
              "the processor), message_cycles and word_cycles (processor cycles per message and per word), one_way and "
              "both_ways (rate of a link in bytes/s if one direction or both directions transfer; 0: transfers take no "
              "time), buffer (number of rays, and of returns, that an output thread holds). Raises ValueError unless "
-             "rendered with async_=True.")
-        .def("write_replay", write_replay, py::arg("platform"), py::arg("replay"),
-             "Writes the machine to the file `platform` and the history of messages to the file `replay`, for SimGrid "
-             "(docs/architecture.md). Takes the keyword arguments of simulate(). Returns the number of messages.");
+             "rendered with async_=True.");
 }
 
 const RingResult& ring_of(const Render& r, const char* property) {

@@ -79,14 +79,4 @@ struct AsyncResult {
 /// 0, and std::runtime_error on a deadlock, which is impossible with `entry_slots` >= 2.
 AsyncResult simulate(const raya_torus& torus, const History& history, const AsyncMachine& machine = {});
 
-/// Returns SimGrid's platform file (XML). The file has a host for each node; its name is the node's number, and it
-/// executes one operation per cycle. For each link of the torus the file has three SimGrid links: one per direction,
-/// and a "wire" for the bandwidth that both directions share. Routes are only between neighbours, because routing is
-/// store-and-forward. SimGrid's torus (<cluster topology="TORUS">) is not suitable: a message would occupy all links of
-/// its route at once, and the two directions would not share bandwidth.
-std::string simgrid_platform(const raya_torus& torus, const AsyncMachine& machine);
-
-/// Returns the replay file in the format that tools/simgrid/replay.cpp documents.
-std::string simgrid_replay(const raya_torus& torus, const History& history, const AsyncMachine& machine);
-
 }  // namespace raya

@@ -41,18 +41,6 @@ TEST_CASE("study: a study of raya or of the user writes figures, tables, JSON an
     }
 }
 
-// raya looks for the SimGrid program in its own folder, so a copy of raya in another folder does not find it.
-TEST_CASE("study simgrid: without SimGrid the error names the package, and study all skips this study", "[cli]") {
-    const ScratchFolder outputs, copy_folder;
-    const RunOptions copy_options{.program = copy_folder / "raya"};
-    fs::copy_file(RAYA_PROGRAM, copy_options.program);
-    fs::create_directory_symlink(fs::path(RAYA_PROGRAM).parent_path() / "python", copy_folder / "python");
-    check_refused(outputs, study_arguments("simgrid", outputs), 2,
-                  {"study simgrid", "tools/setup --studies", "libsimgrid-dev"}, copy_options);
-    check_refused(outputs, study_arguments("all", outputs, {outputs / "missing.nff"}), 2,
-                  {"study simgrid is skipped", "missing.nff"}, copy_options);
-}
-
 TEST_CASE("study: reports a failure of the device, and refuses a folder that it cannot write", "[cli]") {
     const ScratchFolder outputs, read_only;
     check_refused(outputs, study_arguments("fig8", outputs, {"--size", "17"}), 3, {"CL_OUT_OF_RESOURCES"},

@@ -37,7 +37,7 @@ class FakeLaboratory:
     """A laboratory whose ensembles have given cost images: parts, as {part: cost images}, or else `traces` for each part. asked: (size, antialias,
     part, families) of each ensemble that a study asked for."""
 
-    network, seed, views = None, 1, COUNT
+    seed, views = 1, COUNT
 
     def __init__(self, traces, parts=None):
         self._ensembles, self.asked = {part: ensemble_of(images) for part, images in (parts or {0: traces, 1: traces, 2: traces}).items()}, []

@@ -13,7 +13,7 @@ raya = pytest.importorskip("raya", reason="the module is not built; configure wi
 from raya.lab import Page, Plot, Series, Table, document, plots, worker  # noqa: E402
 from raya.lab.document import write_page  # noqa: E402
 
-OPTIONS = SimpleNamespace(size=None, network=None, views=None, seed=1, device=None, no_tuned=True, verbosity=0, shard=None, merge=[], version="")
+OPTIONS = SimpleNamespace(size=None, views=None, seed=1, device=None, no_tuned=True, verbosity=0, shard=None, merge=[], version="")
 STUDY = '''"""Damaged rows
 
 What becomes of them?

@@ -6,7 +6,6 @@ from raya.lab.options import settings_of
 def test_options_are_read_in_any_order():
     options = settings_of(["fig8", "--size", "64", "a.nff", "-o", "out", "b.nff"])
     assert (options.study, options.scenes, options.output, options.size, options.seed, options.verbosity) == ("fig8", ["a.nff", "b.nff"], "out", 64, 1, 0)
-    assert settings_of(["ranks", "-o", "out", "--network", "30,0.8", "-qq"]).network == pytest.approx((30e-6, 0.8e-9))
     assert settings_of(["fig8", "-o", "out", "--shard", "2/3"]).shard == (2, 3)
     assert settings_of(["--missing", "s1", "s2"]).missing == ["s1", "s2"]
 
@@ -18,7 +17,6 @@ def test_options_are_read_in_any_order():
     (["fig8", "-o"], "--output expected one argument"),
     (["--check", "m.json", "--strict"], "--check excludes --strict"),
     (["fig8", "--merge", "s1", "--shard", "1/2", "-o", "out"], "--merge excludes --shard"),
-    (["fig8", "-o", "out", "--network", "1,2"], "--network applies to study ranks only"),
     (["fig77", "-o", "out"], r"no study fig77 \(did you mean fig7\?\)"),
 ])
 def test_wrong_options_are_refused(arguments, reason):

@@ -263,11 +263,11 @@ def change_header(**members):
 
 FOREIGN = [
     {"command": {"study": "evil.py", "scenes": [], "device": "", "no_tuned": False}}, {"study": "evil.py"}, {"output": "stolen"},
-    {"settings": {"size": 64, "views": 20, "seed": 1, "network": None, "strict": False, "output": "stolen"}}, {"settings": []}, {"shards": 10**12},
+    {"settings": {"size": 64, "views": 20, "seed": 1, "strict": False, "output": "stolen"}}, {"settings": []}, {"shards": 10**12},
     {"shard": 0}, {"shard": "2"}, {"study": ["x"]}, {"version": 7}, {"inputs": [7]}, {"inputs": [{"name": "x"}]}, {"inputs": "x"}, {"results": ["../x"]},
     {"results": ["/etc/passwd"]}, {"results": [7]}, {"results": {"x": 1}}, {"results": ["0" * 64 + ".result"]},
-    {"settings": {"size": None, "views": None, "seed": "1 --output=stolen", "network": None, "strict": False}},
-    {"settings": {"size": None, "views": None, "seed": 1, "network": [1], "strict": False}}]
+    {"settings": {"size": None, "views": None, "seed": "1 --output=stolen", "strict": False}},
+    {"settings": {"size": [1], "views": None, "seed": 1, "strict": False}}]
 
 
 @pytest.mark.parametrize("members", FOREIGN, ids=str)

@@ -5,7 +5,7 @@ import pytest
 import raya
 from raya.lab.worker import Worker
 
-OPTIONS = SimpleNamespace(verbosity=0, no_tuned=True, size=32, network=None, views=None, seed=1, device=None, shard=None, merge=[], version="")
+OPTIONS = SimpleNamespace(verbosity=0, no_tuned=True, size=32, views=None, seed=1, device=None, shard=None, merge=[], version="")
 STUDY = '''"""Title
 
 Question?

@@ -27,7 +27,7 @@ namespace {
 using namespace raya;
 
 struct KnownFailure {
-    // Part of the name of the platform, and pattern (name_matches()) of "DEVICE, driver VERSION", with --il followed by
+    // Part of the name of the platform, and pattern (id_matches()) of "DEVICE, driver VERSION", with --il followed by
     // ", SPIR-V"; empty: any.
     std::string platform, device;
     cl_uint wrong = 0;     // the wrong result of each work-item
@@ -120,7 +120,7 @@ std::string text_of(const Defect& defect) {
 // Returns true if the failure is known for this device.
 bool occurs_on(const KnownFailure& known, const DeviceInfo& device) {
     return !known.reason.empty() && device.platform.find(known.platform) != std::string::npos &&
-           name_matches(device.name + ", driver " + device.driver + (uses_il() ? ", SPIR-V" : ""), known.device);
+           id_matches(device.name + ", driver " + device.driver + (uses_il() ? ", SPIR-V" : ""), known.device);
 }
 
 /// Prints the output line for a defect of `device`, the device of `session`; returns true if the result is right or an

@@ -26,7 +26,7 @@ RARE = {
     "verify.json: devices[].pci_address": "GPUs",
 }
 # These members need MPI.
-MPI_MEMBERS = ("ping.json: ", "render.json: measured.ranks")
+MPI_MEMBERS = "render.json: measured.ranks"
 # (kernel file, text, faulty replacement): a mutant, for which a check of verify must fail.
 FAULT = ("shared/mapping.h", "if (m.kind == RAYA_ROWS) return row % m.pes;", "if (m.kind == RAYA_ROWS) return (row + 1) % m.pes;")
 
@@ -99,7 +99,6 @@ class Reports:
             launcher = [self.mpirun, "-n", "2"]
             render(spheres, *ring, launcher=launcher)
             render(spheres, *torus, "--profile", launcher=launcher)
-            self.add_report("ping", "ping", self.run(*launcher, self.raya, "ping", stdout=subprocess.PIPE))
 
     def make_other_reports(self):
         scene = SCENES / "spheres.nff"

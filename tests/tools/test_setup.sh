@@ -58,8 +58,8 @@ expect 0
 release bookworm
 run_setup
 expect 0
-run_setup --bare-root --gpu --studies
-expect 1 "neither root nor sudo" "$line debootstrap clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools cvise libsimgrid-dev"
+run_setup --bare-root --gpu
+expect 1 "neither root nor sudo" "$line debootstrap clang-15 llvm-15 libclc-15 intel-opencl-icd llvm-spirv-15 spirv-tools cvise"
 
 # Two packages are missing, one of them removed but not purged: neither root nor sudo; sudo that refuses this user; sudo; apt-get that fails.
 mock_program dpkg-query "printf '%s installed\n' ${all[*]} | { while read -r p s; do [[ \$p == cmake || \$p == catch2 ]] || echo \$p \$s; done; }

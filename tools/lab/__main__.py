@@ -35,7 +35,10 @@ if __name__ == "__main__":
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, terminate)
     try:
-        sys.exit(main(sys.argv[1:]))
+        try:
+            sys.exit(main(sys.argv[1:]))
+        finally:
+            sys.stdout.flush()  # at exit, an error would be a traceback
     except Terminated as signalled:
         print("raya: interrupted", file=sys.stderr)
         signal.signal(signalled.args[0], signal.SIG_DFL)

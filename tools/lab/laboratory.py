@@ -99,13 +99,12 @@ def format_for(scene):
 class Laboratory:
     """Renders scenes. `store` (Store) keeps cost images by scene and settings, so that the studies of one run share them.
 
-    size: pixels per side; None: each study's default. views: pictures per ensemble. seed: seed of the first picture. network: (seconds per message,
-    seconds per byte) or None. options: `device`, and options of raya.render() for every render.
+    size: pixels per side; None: each study's default. views: pictures per ensemble. seed: seed of the first picture. options: `device`, and options of raya.render() for every render.
     devices: descriptions of the devices that computed the results used so far.
     """
 
-    def __init__(self, store, size=None, network=None, views=None, seed=1, **options):
-        self.store, self._size, self.network, self._options = store, size, network, options
+    def __init__(self, store, size=None, views=None, seed=1, **options):
+        self.store, self._size, self._options = store, size, options
         self.views, self.seed, self.devices = views or VIEWS, seed, set()
 
     @cached_property

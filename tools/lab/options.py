@@ -56,17 +56,6 @@ def shard(value):
     return (number, count) if 1 <= number <= count else refuse(value, "must be I/N with I 1..N, such as 2/4")
 
 
-def network(value):
-    """Returns (seconds per message, seconds per byte)."""
-    try:
-        alpha, beta = map(float, value.split(","))
-    except ValueError:
-        alpha = beta = -1
-    if not (0 <= alpha <= 1e9 and 0 <= beta <= 1e9):
-        refuse(value, "must be two numbers, 0..10^9: microseconds per message, nanoseconds per byte")
-    return 1e-6 * alpha, 1e-9 * beta
-
-
 def parser():
     command = Parser("raya study", "raya study [STUDY|all|FILE.py] [SCENE...] -o DIR [OPTIONS]", HEADER, formatter_class=Formatter, allow_abbrev=False,
                      add_help=False, epilog="Studies:\n" + "".join(f"  {name:9} {summary}\n" for name, summary in STUDIES.items()))
@@ -97,8 +86,6 @@ def parser():
     add(image, "--seed", type=whole_number(1, 90_000), metavar="S",
         help="seed S of the first picture of a family, 1..90000; the next pictures have the seeds S + 1, ...; default: 1")
     machine = command.add_argument_group("Machine and device")
-    add(machine, "--network", type=network, metavar="ALPHA,BETA",
-        help="for study ranks: add a network with a latency ALPHA in microseconds per message and a time BETA in nanoseconds per byte, such as 30,0.8")
     add(machine, "--device", metavar="NAME",
         help="OpenCL device: its number, type (gpu, cpu), or part of its name or version, as raya devices lists them; default: RAYA_DEVICE, else the first "
         "GPU, else the first CPU")
@@ -118,7 +105,7 @@ def check(options, error):
     """Calls error(reason) for options that contradict each other."""
     given = {name for name, value in vars(options).items() if value not in (None, False, [], 0, "")}
     for name in REPEATING:
-        for other in ("shard", "size", "views", "seed", "network", "strict", "no_tuned", *REPEATING[REPEATING.index(name) + 1:]):
+        for other in ("shard", "size", "views", "seed", "strict", "no_tuned", *REPEATING[REPEATING.index(name) + 1:]):
             if {name, other} <= given:
                 error(f"--{name} excludes --{other.replace('_', '-')}")
     repeats = options.missing or options.check  # a manifest contains the study and its settings
@@ -139,8 +126,6 @@ def check(options, error):
     for scene in options.scenes:
         if scene in names and not Path(scene).exists():
             error(f"{scene} is a study, not a scene; run one study at a time, or all studies with raya study all")
-    if options.network and options.study not in ("ranks", "all"):
-        error(f"--network applies to study ranks only, not to study {options.study}; leave it out")
 
 
 def check_output_folder(options):

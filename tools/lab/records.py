@@ -14,7 +14,7 @@ import raya
 from raya.lab.store import read_regular_file, read_value, write_atomically
 
 MANIFEST, SHARD = "manifest.json", "shard.json"
-SETTINGS = "size", "views", "seed", "network", "strict"  # options that change results
+SETTINGS = "size", "views", "seed", "strict"  # options that change results
 MODULES = "numpy", "scipy", "pandas", "matplotlib", "Jinja2"
 # Debian packages of OpenCL drivers, their compilers, and the loader.
 DEBIAN = "*-opencl-icd", "ocl-icd-libopencl1", "libpocl2", "libllvm[0-9]*", "libclang-cpp[0-9]*", "libc6", "python3"
@@ -104,8 +104,7 @@ def read_manifest(path):
 
 def setting_arguments(settings):
     """Returns the arguments of `raya study` with these settings: --NAME=VALUE, and --strict."""
-    network = settings["network"] and f"{settings['network'][0] * 1e6:g},{settings['network'][1] * 1e9:g}"
-    values = {"size": settings["size"], "network": network or None, "views": settings["views"], "seed": settings["seed"]}
+    values = {"size": settings["size"], "views": settings["views"], "seed": settings["seed"]}
     return [f"--{name}={value}" for name, value in values.items() if value is not None and (name, value) != ("seed", 1)] + (
         ["--strict"] if settings["strict"] else [])
 

@@ -30,22 +30,15 @@ def repeating_options(options, recorded, source):
 
 
 def selected_studies(options):
-    """Returns (studies to run, a sentence for each study that `all` skips, which it also prints). Raises ValueError if the named study cannot run on this
-    machine, and for several scenes of a study of one."""
+    """Returns the studies to run. Raises ValueError for several scenes of a study of one."""
     if options.study.endswith(".py"):
         chosen = [study_of_file(options.study)]
     else:
         chosen = [study for name, study in studies().items() if options.study in ("all", name)]
-    missing = {study.name: why for study in chosen for why in [study.missing()] if why}
-    if missing and options.study != "all":
-        raise ValueError(f"study {options.study}: {missing[options.study]}")
-    skip_notes = [f"study {name} is skipped: {why}" for name, why in missing.items()]
-    for line in skip_notes:
-        print(f"raya: {line}", file=sys.stderr)
     if len(chosen) == 1 and chosen[0].one_scene and len(options.scenes) > 1:
         raise ValueError(f"study {chosen[0].name} takes one scene, {len(options.scenes)} were given: run it for each, "
                          "into a folder of its own")
-    return [study for study in chosen if study.name not in missing], skip_notes
+    return chosen
 
 
 def command_of(study, options):
@@ -106,12 +99,11 @@ def print_missing(options):
     return EXIT_DIFFERENT if problems else 0
 
 
-def check_manifest(options, recorded, chosen, skip_notes, scenes):
+def check_manifest(options, recorded, chosen, scenes):
     """Runs the study of a manifest again and prints the differences. Returns the exit code."""
     with tempfile.TemporaryDirectory(prefix="raya-check-") as temporary:
         folder = Path(options.output or temporary)
-        code = run_all(SimpleNamespace(**{**vars(options), "output": str(folder), "verbosity": min(-1, options.verbosity)}), chosen, skip_notes,
-                       scenes)
+        code = run_all(SimpleNamespace(**{**vars(options), "output": str(folder), "verbosity": min(-1, options.verbosity)}), chosen, scenes)
         if not (folder / records.MANIFEST).exists():
             return code
         lines, counts = records.compare(recorded, records.read_manifest(folder / records.MANIFEST))
@@ -123,10 +115,10 @@ def check_manifest(options, recorded, chosen, skip_notes, scenes):
     return EXIT_DIFFERENT if counts["different"] else code
 
 
-def run_all(options, chosen, skip_notes, scenes):
-    """Runs the chosen studies and writes their results. Appends a sentence to skip_notes for each study that fails on the device.
-    Returns the exit code."""
+def run_all(options, chosen, scenes):
+    """Runs the chosen studies and writes their results. Returns the exit code."""
     folder, worker, pages, drawings, files, code = Path(options.output), Worker(), [], {}, {}, 0  # files: {name: are its contents repeatable?}
+    skip_notes = []  # sentences on studies that failed on the device
     created_folders = make_folder(folder)
     (folder / records.MANIFEST).unlink(missing_ok=True)  # a manifest describes the files of one complete run
     with tempfile.TemporaryDirectory(prefix="raya-lab-") as cache:
@@ -178,16 +170,16 @@ def run(options):
     if recorded:
         options = repeating_options(options, recorded, source)
     else:  # of a record, the hash of the study's file is compared first, because the selection runs that file
-        chosen, skip_notes = selected_studies(options)
+        chosen = selected_studies(options)
     try:
         scenes = [raya.load(file, strict=options.strict).renamed(file) for file in options.scenes]
     except ValueError as error:
         raise ValueError(f"{error}; remedy: name the study and its scenes: raya study {options.study} SCENE..." if recorded else error) from None
     if recorded:
         records.check_inputs(records.inputs_of(options.study, scenes), recorded["inputs"], source)
-        chosen, skip_notes = selected_studies(options)
+        chosen = selected_studies(options)
     if options.check:
-        return check_manifest(options, recorded, chosen, skip_notes, scenes)
+        return check_manifest(options, recorded, chosen, scenes)
     if options.shard:
         return run_shard(options, chosen, scenes)
-    return run_all(options, chosen, skip_notes, scenes)
+    return run_all(options, chosen, scenes)

@@ -27,7 +27,6 @@ class Study:
     run: Callable  # (laboratory, scenes) -> Page; scenes: those on the command line, or an empty list
     prose: str  # a line with the title, a paragraph with the question, a list with the method
     one_scene: bool = False  # the study takes only one scene of the command line
-    missing: Callable = lambda: ""  # returns a message with a remedy if the study cannot run on this machine, else ""
     prepare: Callable = None  # (laboratory, scenes): requests the cost images of the study's ensembles; shards compute these; None: no shards
     measures: bool = False  # the study's results contain measured times
     file: str = ""  # of a user's study
@@ -85,7 +84,7 @@ def run_study(study, scenes, folder, options):
     if laboratory is None:
         tuning_options = {"no_tuned": True} if options.no_tuned else {}
         store = Store(folder, options.merge, options.version, options.shard)
-        laboratory = Laboratory(store, options.size, options.network, options.views, options.seed, device=options.device, **tuning_options)
+        laboratory = Laboratory(store, options.size, options.views, options.seed, device=options.device, **tuning_options)
     laboratory.devices.clear()
     try:
         if options.shard:

@@ -3,7 +3,7 @@
 From how many objects on is a grid or a BVH faster than testing all objects, which of the two is faster, and how does time grow with the
 number of objects?
 
-- Source: none of the papers. The study measures this computer. The scenes balls are SPD's (Haines 1987); Embree 3 (Wald et al. 2014) is timed too.
+- Source: none of the papers. The study measures this computer. The scenes balls are SPD's (Haines 1987); `tools/peers` compares with Embree.
 - Renderer: raya's machine `grande` (the SPA's ring without its memory limit) in fp32, {size} x {size} pixels, each PE with a tile of {tile} x {tile},
   {bounces} bounces; `--accel` none, grid (default number of voxels) or bvh. The study fails if two of these methods give different images.
 - Scenes: {scenes}
@@ -18,8 +18,6 @@ number of objects?
   there is only one ratio: if it is not 1).
 - Growth: the exponent e in time per ray = c n^e, and in tests per ray = c n^e, for n objects: a least-squares fit of the logarithms for each seed
   over the scenes of {min_fitted} or more objects.
-- Embree traces the same rays (tools/embree) on all cores, one by one or in packets of sixteen, whichever is faster. Its time is that of the loop over
-  the pixels, with three renders in each turn. A ratio is computed only if the numbers of rays differ by at most one in a thousand.
 - Output: accel.csv has a row for each group of scenes and method, accel-scenes.csv one for each scene and method (words have 32 bits),
   accel-growth.csv the exponents. Columns +- are half widths of 95 % intervals.
 """
@@ -31,12 +29,10 @@ import pandas as pd
 import raya
 from raya.lab import Page, Plot, Table, estimate, first_from, fitted_exponent, mean_seconds, series_by, study
 from raya.lab.laboratory import rays_of, tests_of
-from raya.lab.programs import output_of, sibling_program
 
-NONE, GRID, BVH, EMBREE = "none", "grid", "bvh", "Embree"
-BOUNCES, ROUNDS, MAX_RENDER_S, SAMPLING_S, PEER_SAMPLES, SEEDS = 4, 5, 30, 10, 3, 5
+NONE, GRID, BVH = "none", "grid", "bvh"
+BOUNCES, ROUNDS, MAX_RENDER_S, SAMPLING_S, SEEDS = 4, 5, 30, 10, 5
 MIN_FITTED_OBJECTS = 100  # minimum number of objects of a scene that the fit uses
-RAYS_TOLERANCE = 1e-3  # maximum relative difference of the numbers of rays of two methods whose times form a ratio
 USER_SCENES = "named"
 # {member of a row: column of the table}; a row has the figures of one scene and one method.
 EACH = {**{name: name for name in ("scene", "seed", "objects", "method", "rays", "tests", "steps")}, "best": "best (ms)",
@@ -67,30 +63,10 @@ def raya_method(lab, scene, size, name):
                   steps=e["steps"], scene_words=first.job_words - words, accel_words=words, build=1e3 * first.accel_s)
 
 
-def run_embree(program, nff, size):
-    """Runs tools/embree. Returns ({method: (number of rays, render seconds)}, seconds of building Embree's BVH)."""
-    command = [program, "/dev/stdin", f"{size}x{size}", str(BOUNCES), str(PEER_SAMPLES)]
-    methods, build = {}, math.nan
-    for line in output_of(command, "embree_peer", input=nff).splitlines():
-        name, *numbers = line.split()
-        if name == "build":
-            build = float(numbers[0])
-        elif name != "mean":
-            methods[name] = int(numbers[0]), [float(number) for number in numbers[1:]]
-    return methods, build
-
-
-def embree_method(program, scene, size):
-    methods, build = run_embree(program, scene.nff, size)
-    fastest = min(methods, key=lambda method: min(methods[method][1]))
-    return Method(EMBREE, lambda: run_embree(program, scene.nff, size)[0][fastest][1], rays=methods[fastest][0], build=1e3 * build,
-                  **dict.fromkeys(("tests", "steps", "scene_words", "accel_words"), math.nan))
-
-
 def measure(lab, size, scenes):
     """Measures all methods on all scenes. Returns (table with a row for each scene and method, names of the scenes that are not rendered without an
-    accelerator, error messages of Embree)."""
-    rows, skipped, failures, test_s = [], [], [], 1e-9  # test_s: seconds per object test; a low estimate until the first measurement
+    accelerator)."""
+    rows, skipped, test_s = [], [], 1e-9  # test_s: seconds per object test; a low estimate until the first measurement
     for series, group, seed, make in scenes:
         scene = make()
         methods = [raya_method(lab, scene, size, name) for name in (GRID, BVH)]
@@ -103,11 +79,6 @@ def measure(lab, size, scenes):
             if method.hash != methods[0].hash or method.figures["rays"] != methods[0].figures["rays"]:
                 raise raya.DeviceError(f"{group}: --accel {method.name} and {methods[0].name} give different images, {method.hash} and "
                                        f"{methods[0].hash}: an error of the device or its compiler; run `raya verify`")
-        if program := sibling_program("embree_peer"):
-            try:
-                methods.append(embree_method(program, scene, size))
-            except ValueError as error:
-                failures.append(f"{group}: {error}")
         for turn in range(ROUNDS):
             for method in methods:
                 if turn == 0 or sum(method.seconds) < SAMPLING_S:
@@ -120,21 +91,14 @@ def measure(lab, size, scenes):
             rows.append({"series": series, "scene": group, "seed": seed, "objects": scene.objects, "method": method.name,
                          **method.figures, "best": 1e3 * min(method.seconds), "median": 1e3 * np.median(method.seconds),
                          "samples": len(method.seconds), "turns": method.turns})
-    return pd.DataFrame(rows), skipped, failures
-
-
-def pairs(rows, method, other):
-    """Returns a row for each scene rendered with both methods. Column `same`: true if the numbers of rays differ by at most RAYS_TOLERANCE."""
-    both = rows[rows["method"] == method].merge(rows[rows["method"] == other], on=["series", "scene", "seed", "objects"],
-                                          suffixes=("", " of other"))
-    rays = both[["rays", "rays of other"]]
-    return both.assign(same=rays.max(axis=1) - rays.min(axis=1) <= RAYS_TOLERANCE * rays.min(axis=1))
+    return pd.DataFrame(rows), skipped
 
 
 def ratios(rows, method, other):
-    """Returns {group, objects, times: Estimate of the ratio of two methods' times} for each group; uses the scenes whose pair is `same`."""
+    """Returns {group, objects, times: Estimate of the ratio of two methods' times} for each group; uses the scenes rendered with both."""
     found = []
-    for group, scene_pairs in pairs(rows, method, other).query("same").groupby("scene", sort=False):
+    both = rows[rows["method"] == method].merge(rows[rows["method"] == other], on=["series", "scene", "seed", "objects"], suffixes=("", " of other"))
+    for group, scene_pairs in both.groupby("scene", sort=False):
         times = scene_pairs["best"] / scene_pairs["best of other"]
         if len(scene_pairs) == 1:
             times = [x / y for x, y in zip(scene_pairs["turns"].iloc[0], scene_pairs["turns of other"].iloc[0])]
@@ -155,12 +119,11 @@ def ratios_text(ratio_list):
 def accel(lab, scenes):
     size = lab.size(256)
     measured_scenes = [(USER_SCENES, s.name, 0, lambda s=s: s) for s in scenes] if scenes else OWN_SCENES
-    runs, skipped, failures = measure(lab, size, measured_scenes)
+    runs, skipped = measure(lab, size, measured_scenes)
     rows, growth = rows_of(runs), growth_of(runs)
     series = [(name, one) for name, one in runs.groupby("series", sort=False)]
     findings = [*(finding_of_threshold(one, name) for name, one in series), finding_of_faster(runs, GRID, BVH)]
     findings += [f"Not rendered without an accelerator: {', '.join(skipped)}."] if skipped else []
-    findings += findings_of_embree(runs, failures)
     each = runs[list(EACH)].fillna(0).astype(
         {name: int for name in ("tests", "steps", "scene_words", "accel_words")}).rename(columns=EACH)
     tables = [Table("accel", "Each number of objects and method", rows.drop(columns=["series"])),
@@ -171,7 +134,7 @@ def accel(lab, scenes):
     def plot(name, title, label, series_rows, lines, column):
         return Plot(name, title, "objects", label, series_by(series_rows, lines, "objects", column, style=style), "xy")
 
-    counted = rows[rows["method"] != EMBREE].assign(line=lambda r: r["series"] + ", " + r["method"])
+    counted = rows.assign(line=lambda r: r["series"] + ", " + r["method"])
     plots = [plot(f"accel-{series}", f"Time against the number of objects: {series}", "shortest time of a render (ms)", series_rows,
                   "method", "best (ms)") for series, series_rows in rows.groupby("series", sort=False)] + [
          plot("accel-tests", "Tests per ray against the number of objects", "tests per ray", counted, "line", "tests a ray"),
@@ -239,21 +202,7 @@ def finding_of_threshold(runs, series):
 def finding_of_faster(runs, method, other):
     """Returns a sentence that counts the groups in which `other` is faster and those in which it is slower than `method`."""
     ratio_list = ratios(runs, method, other)
-    if not ratio_list:
-        return f"No ratio of {method} to {other}: the two never traced the same number of rays in a scene."
     faster, slower = (sum(holds) for holds in zip(*((e.low_or_mean > 1, e.high_or_mean < 1) for e in (ratio["times"] for ratio in ratio_list))))
     rest = len(ratio_list) - faster - slower
     return (f"{other} is faster than {method} in {faster} of {len(ratio_list)} groups of scenes and slower in {slower}"
             f"{f'; in {rest} the difference is not significant' if rest else ''}. Time of {method} / time of {other}: {ratios_text(ratio_list)}.")
-
-
-def findings_of_embree(runs, failures):
-    if not sibling_program("embree_peer"):
-        return ["Embree was not measured: there is no program embree_peer next to raya. `tools/peers --setup` installs Embree; CMake's target "
-                "embree_peer builds the program."]
-    findings = [finding_of_faster(runs, EMBREE, BVH)] if (runs["method"] == EMBREE).any() else []
-    others = pairs(runs, EMBREE, BVH).query("not same")
-    if len(others):
-        names = ", ".join(f"{o['scene']} (seed {o['seed']})" if o["seed"] else o["scene"] for _, o in others.iterrows())
-        findings.append(f"No ratio for Embree in {names}: its number of rays differs from raya's by more than one in a thousand.")
-    return findings + ([f"Embree was not measured in {'; '.join(failures)}."] if failures else [])
