@@ -198,7 +198,8 @@ TEST_CASE("file options: every option that names a file declares its use; no com
                 fs::create_symlink(fs::path(folder / "link"), folder / "link2");
                 if (exists) write_whole_file(folder / "file", "content");
                 if (exists) fs::create_hard_link(folder / "file", folder / "hard");
-                if (!exists && name == "hard") continue;
+                // An output replaces a link to nothing.
+                if (!exists && (name == "hard" || name.starts_with("link"))) continue;
                 check(use, FileUse::kWritten, {folder / "file", folder / name});
                 check(use, FileUse::kWritten, {folder / name, folder / "file"});
                 if (use == FileUse::kRead) check(use, FileUse::kWrittenFolder, {folder / name, folder.path()});
