@@ -183,7 +183,7 @@ class OutputTest {
 };
 
 TEST_CASE("every output of every command is whole or unchanged: full disk, failing writes, bad folders, signals",
-          "[cli]") {
+          "[cli][outputs]") {
     const ScratchFolder inputs, others, locked;
     REQUIRE(run_raya({"render", scene_file("centre"), "--size", "16", "--lanes", "4", "-o", inputs / "y.ppm",
                       "--report", inputs / "report.json"})
