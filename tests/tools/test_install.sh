@@ -88,11 +88,11 @@ run_installed raya info t.obj
 expect 2 "t.obj: cannot read meshes: there is no file '$prefix/lib/raya/raya_import'"
 mv "$scratch/raya_import" "$prefix/lib/raya"
 
-# Without the image module, raya refuses to write a PNG, with a remedy, and still writes PPM.
+# Without the image module, raya refuses to write OpenEXR, with a remedy, and still writes PPM.
 rm "$prefix/lib/raya/raya_pictures.so"
 run_installed raya render "$prefix/share/raya/scenes/centre.nff" -o centre.exr
 expect 2 "there is no file '$prefix/lib/raya/raya_pictures.so"
-expect 2 "name a .ppm file instead"
+expect 2 "name a .pfm file instead"
 run_installed raya render "$prefix/share/raya/scenes/centre.nff" -o centre.ppm
 expect 0 "(474a384374e81c5144a0e5405232a750)"
 echo "an installation: as expected"
