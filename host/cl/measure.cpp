@@ -26,31 +26,13 @@ std::uint64_t copied_bytes(const DeviceInfo& device) {
     return std::min({kMaxBytes, device.max_allocation_bytes, device.global_memory_bytes / 16});
 }
 
-// The two buffers of a copy, whose pages are written before the first one.
-class CopyRate {
-  public:
-    CopyRate(Session& session, std::uint64_t bytes)
-        : session_(session),
-          bytes_(bytes),
-          source_(session.buffer<std::uint8_t>("peak, from", bytes)),
-          target_(session.buffer<std::uint8_t>("peak, to", bytes)) {
-        session.fill("peak", source_, 1);  // pages that were never written may not be allocated yet
-        session.fill("peak", target_, 2);
-    }
-
-    double bytes_per_s() {
-        session_.clear_profile();
-        for (int i = 0; i < kSamples; ++i) session_.copy("peak", source_, 0, target_, 0, bytes_);
-        const std::uint64_t min_ns = session_.profile().summary().front().min_ns;
-        // 2e9: a copy reads and writes each byte, and a second has 1e9 ns.
-        return min_ns > 0 ? 2e9 * static_cast<double>(bytes_) / static_cast<double>(min_ns) : 0;
-    }
-
-  private:
-    Session& session_;
-    std::uint64_t bytes_;
-    Buffer<std::uint8_t> source_, target_;
-};
+double copy_bytes_per_s(Session& session, const Buffer<std::uint8_t>& source, Buffer<std::uint8_t>& target) {
+    session.clear_profile();
+    for (int i = 0; i < kSamples; ++i) session.copy("peak", source, 0, target, 0, source.size());
+    const std::uint64_t min_ns = session.profile().summary().front().min_ns;
+    // 2e9: a copy reads and writes each byte, and a second has 1e9 ns.
+    return min_ns > 0 ? 2e9 * static_cast<double>(source.size()) / static_cast<double>(min_ns) : 0;
+}
 
 }  // namespace
 
@@ -99,7 +81,10 @@ DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std
     const std::uint32_t default_lanes = raya::default_lanes(session.device());
     if (!format.is_fp32() || lanes != default_lanes) default_rates.emplace(session, NumberFormat{}, default_lanes);
     highest.copy_bytes = copied_bytes(session.device());
-    CopyRate copies(session, highest.copy_bytes);
+    Buffer<std::uint8_t> source = session.buffer<std::uint8_t>("peak, from", highest.copy_bytes),
+                         target = session.buffer<std::uint8_t>("peak, to", highest.copy_bytes);
+    session.fill("peak", source, 1);  // pages that were never written may not be allocated yet
+    session.fill("peak", target, 2);
     double lowest_fp32_per_s = std::numeric_limits<double>::infinity();
     const auto raise = [](double& to, double rate) { to = std::max(to, rate); };
     for (int i = 0; i < kMeasurements; ++i) {
@@ -110,7 +95,7 @@ DevicePeak device_peak(const cl::Device& device, const NumberFormat& format, std
         raise(highest.multiply_per_s, multiply_per_s);
         raise(highest.divide_per_s, rates.measure(kDivide, kSamples));
         raise(highest.sqrt_per_s, rates.measure(kSquareRoot, kSamples));
-        raise(highest.copy_bytes_per_s, copies.bytes_per_s());
+        raise(highest.copy_bytes_per_s, copy_bytes_per_s(session, source, target));
     }
     highest.scatter = highest.fp32_per_s > 0 ? 1 - lowest_fp32_per_s / highest.fp32_per_s : 0;
     return highest;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 
-#include "host/base/whole_file.hpp"
 #include "host/cl/device.hpp"
 #include "host/error.hpp"
 #include "host/image/image_io.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "host/base/interruption.hpp"
 #include "host/base/log.hpp"
