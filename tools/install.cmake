@@ -5,7 +5,6 @@ set(doc ${CMAKE_INSTALL_DATADIR}/doc/raya)
 
 install(TARGETS raya RUNTIME)
 # lib/raya, without a multiarch folder: the folder in which host/base/module.cpp searches for modules and raya_import.
-set(modules raya_pictures raya_import)
 if(TARGET raya_mpi)
     list(APPEND modules raya_mpi)
 endif()

@@ -1,4 +1,5 @@
-# For tests in a minimal Debian: make_bare_root BUILD makes one in the folder "$bare" (tools/debian_root); in_root COMMAND... runs a command in it.
+# For tests in a minimal Debian: make_bare_root BUILD [RELEASE] makes one in the folder "$bare" (tools/debian_root), by default of this system's release;
+# in_root COMMAND... runs a command in it.
 # Exit code 77: not root, no debootstrap or no network. BUILD/debs caches packages for the next run.
 # shellcheck shell=bash
 fail() { echo "FAILED line ${BASH_LINENO[0]}: $1"; exit 1; }
@@ -14,6 +15,6 @@ make_bare_root() {
     chmod 755 "$scratch"
     trap 'rm -rf --one-file-system "$scratch"' EXIT
     bare=$scratch/root
-    "$debian_root" make "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$bare" "$1/debs" || exit
+    "$debian_root" make "${2:-$(. /etc/os-release && echo "$VERSION_CODENAME")}" "$bare" "$1/debs" || exit
     cp -n "$1"/debs/*.deb "$bare/var/cache/apt/archives/"
 }
