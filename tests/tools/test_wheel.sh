@@ -10,9 +10,11 @@ root=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
 source "$root/tests/tools/bare_root.sh"
 make_bare_root "$build" "$2"
 mkdir -p "$build/wheels" "$scratch/build"
+certificates=/root/certificates.crt  # this system's, which may know a proxy
 "$debian_root" make "$2" "$scratch/builder" "$build/debs"
 cp -n "$build"/debs/*.deb "$scratch/builder/var/cache/apt/archives/"
-"$debian_root" run --project "$root" "$scratch/build" "$scratch/builder" /raya/tools/package --wheel >"$scratch/log" 2>&1 || fail "$(<"$scratch/log")"
+for folder in "$bare" "$scratch/builder"; do cp /etc/ssl/certs/ca-certificates.crt "$folder$certificates"; done
+"$debian_root" run --project "$root" "$scratch/build" "$scratch/builder" env PIP_CERT="$certificates" /raya/tools/package --wheel >"$scratch/log" 2>&1 || fail "$(<"$scratch/log")"
 cp -n "$scratch"/builder/var/cache/apt/archives/*.deb "$build/debs/" 2>/dev/null || true
 wheel=$(echo "$scratch"/build/raya-*-manylinux_*.whl)
 (($(stat -c %s "$wheel") < 40000000)) || fail "$wheel has 40 MB or more"
@@ -20,7 +22,7 @@ wheel=$(echo "$scratch"/build/raya-*-manylinux_*.whl)
 in_root apt-get install -qq -y --no-install-recommends pocl-opencl-icd python3 python3-venv >"$scratch/log" 2>&1 || fail "$(<"$scratch/log")"
 keep_packages "$build"
 cp "$wheel" "$root/scenes/centre.nff" "$bare/root"
-in_root sh -c 'cd /root && python3 -m venv venv && venv/bin/pip install -q raya-*.whl' >"$scratch/log" 2>&1 || fail "$(<"$scratch/log")"
+in_root sh -c "cd /root && python3 -m venv venv && venv/bin/pip install -q --cert $certificates raya-*.whl" >"$scratch/log" 2>&1 || fail "$(<"$scratch/log")"
 output=$(in_root /root/venv/bin/raya render /root/centre.nff -o /root/c.png) || fail "render: $output"
 [[ $output == *"(474a384374e81c5144a0e5405232a750)"* ]] || fail "wrong image: $output"
 output=$(in_root /root/venv/bin/python3 -c 'import raya; print(raya.render("/root/centre.nff").hash)') || fail "import raya"
