@@ -129,7 +129,7 @@ HitRegion HitRegions::sphere(std::size_t at) const {
         (24 * unit_ + 1.5 * stretch_) * (max_distance(region.centre) + radius) + 4 * std::sqrt(smallest_);
     region.outer_radius = radius + slack;
     region.inner_radius = std::max(0.0, radius - slack);
-    region.box = Box(region.centre, region.centre);
+    region.box = {region.centre, region.centre};
     widen(region.box, region.outer_radius);
     return region;
 }

@@ -28,11 +28,11 @@ double traversal_error(const Box& box, double reach) {
 // so that the traversal finds points on the border of a region inside the box.
 Box box_around(const HitRegions& regions) {
     Box box;
-    if (regions.size() == 0) return Box(Vec3(-0.5), Vec3(0.5));
-    if (!regions.all_bounded()) return Box(Vec3(-4 * regions.far()), Vec3(4 * regions.far()));
+    if (regions.size() == 0) return {Vec3(-0.5), Vec3(0.5)};
+    if (!regions.all_bounded()) return {Vec3(-4 * regions.far()), Vec3(4 * regions.far())};
     for (std::size_t i = 0; i < regions.size(); ++i) box.extend(regions.region(i).box);
     const Vec3 margin(2 * traversal_error(box, regions.reach()));
-    return Box(box.min - margin, box.max + margin);
+    return {box.min - margin, box.max + margin};
 }
 
 // Returns a grid whose outer planes enclose the box although the kernels round the positions of the planes.
@@ -83,8 +83,8 @@ class Voxels {
                 static_cast<std::uint32_t>(last_plane - planes.begin() - 1)};
     }
     Box enlarged_voxel(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
-        return Box(Vec3(planes_[0][i] - slack_, planes_[1][j] - slack_, planes_[2][k] - slack_),
-                   Vec3(planes_[0][i + 1] + slack_, planes_[1][j + 1] + slack_, planes_[2][k + 1] + slack_));
+        return {Vec3(planes_[0][i] - slack_, planes_[1][j] - slack_, planes_[2][k] - slack_),
+                Vec3(planes_[0][i + 1] + slack_, planes_[1][j + 1] + slack_, planes_[2][k + 1] + slack_)};
     }
 
     raya_grid grid_;

@@ -1,7 +1,6 @@
 #include "host/model/budget.hpp"
 
 #include <algorithm>
-#include <ranges>
 
 namespace raya {
 namespace {
@@ -190,7 +189,12 @@ constexpr std::array<Budget, RAYA_EVENTS> kBudgets = {{
     {.event = RAYA_RESUMED, .moves = 3 + 3 + 2 + 2, .branches = 2},
 }};
 
-static_assert(std::ranges::equal(kBudgets, std::views::iota(0, int{RAYA_EVENTS}), {}, &Budget::event));
+constexpr bool are_in_order_of_events() {
+    for (std::size_t i = 0; i < kBudgets.size(); ++i)
+        if (kBudgets[i].event != static_cast<int>(i)) return false;
+    return true;
+}
+static_assert(are_in_order_of_events());
 
 }  // namespace
 

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <ranges>
 
 #include "host/model/budget.hpp"
 #include "host/model/t805.hpp"
@@ -261,8 +260,9 @@ const Machine& machine_named(std::string_view name) {
     const auto& all = machines();
     const auto found = std::ranges::find(all, name, &Machine::name);
     if (found != all.end()) return *found;
-    throw UserError(fmt::format("--machine {}: no such machine; available: {}", name,
-                                fmt::join(all | std::views::transform(&Machine::name), ", ")));
+    std::vector<std::string> names;
+    for (const Machine& machine : all) names.push_back(machine.name);
+    throw UserError(fmt::format("--machine {}: no such machine; available: {}", name, fmt::join(names, ", ")));
 }
 
 std::array<std::uint32_t, RAYA_EVENTS> cycles_of_events() {

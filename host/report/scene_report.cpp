@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ranges>
 
 #include "host/model/number_format.hpp"
 #include "host/report/table.hpp"
@@ -74,9 +73,11 @@ std::string vector_text(const Vec3& v) { return fmt::format("{:.6g},{:.6g},{:.6g
 std::string lights_text(const Scene& scene) {
     constexpr std::size_t kShown = 4;
     std::vector<std::string> lights;
-    for (const Light& light : scene.lights | std::views::take(kShown))
+    for (std::size_t i = 0; i < std::min(kShown, scene.lights.size()); ++i) {
+        const Light& light = scene.lights[i];
         lights.push_back(
             fmt::format("at {} of {}", vector_text(light.position), vector_text(light_colour(scene, light))));
+    }
     std::string text = lights.empty() ? "none; only ambient light"
                                       : fmt::format("{}: {}", scene.lights.size(), fmt::join(lights, "; "));
     if (scene.lights.size() > kShown) text += fmt::format("; and {} more", scene.lights.size() - kShown);

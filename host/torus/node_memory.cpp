@@ -109,8 +109,12 @@ std::uint32_t longest_queue(std::uint64_t words, std::uint32_t links, std::uint6
     const auto fits = [&](std::uint64_t queue) {
         return node_bytes(words, buffers_for(static_cast<std::uint32_t>(queue)), links) <= memory;
     };
-    const auto longer = std::views::iota(std::uint64_t{min_queue} + 1, std::uint64_t{max_queue} + 1);
-    return static_cast<std::uint32_t>(*std::ranges::partition_point(longer, fits) - 1);
+    std::uint64_t longest = min_queue, too_long = std::uint64_t{max_queue} + 1;
+    while (too_long - longest > 1) {
+        const std::uint64_t middle = (longest + too_long) / 2;
+        (fits(middle) ? longest : too_long) = middle;
+    }
+    return static_cast<std::uint32_t>(longest);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ std::size_t check_hits(KernelRunner& runner, SplitMix& random, const Scene& scen
         const Vec3 point = hit.point();
         const auto i = std::lower_bound(numbers.begin(), numbers.end(), hit.object) - numbers.begin();
         const bool in_region =
-            !regions.all_bounded() || regions.region(static_cast<std::size_t>(i)).touches(Box(point, point));
+            !regions.all_bounded() || regions.region(static_cast<std::size_t>(i)).touches({point, point});
         if (in_region && is_listed_near(p, point, error, hit.object)) continue;
         CAPTURE(scene.name, format_name(format), p.grid.divisions, hit.object, hit.ray.origin, hit.ray.direction, hit.t,
                 point);

@@ -54,9 +54,9 @@ TEST_CASE("the bounding box contains spheres of either sign of radius and polygo
     scene.planes.push_back({{0, 0, 1}, 7, 0});
     CHECK(scene_box(scene).is_empty());
     scene.spheres.push_back({{1, 2, 3}, -2, 0});
-    CHECK(scene_box(scene) == Box({-1, 0, 1}, {3, 4, 5}));
+    CHECK(scene_box(scene) == Box{{-1, 0, 1}, {3, 4, 5}});
     scene.polygons.push_back({{{0, 0, 0}, {9, 0, 0}, {0, -4, 0}}, {}, 0});
-    CHECK(scene_box(scene) == Box({-1, -4, 0}, {9, 4, 5}));
+    CHECK(scene_box(scene) == Box{{-1, -4, 0}, {9, 4, 5}});
 }
 
 }  // namespace

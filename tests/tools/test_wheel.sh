@@ -16,7 +16,7 @@ cp -n "$build"/debs/*.deb "$scratch/builder/var/cache/apt/archives/"
 for folder in "$bare" "$scratch/builder"; do cp /etc/ssl/certs/ca-certificates.crt "$folder$certificates"; done
 "$debian_root" run --project "$root" "$scratch/build" "$scratch/builder" env PIP_CERT="$certificates" /raya/tools/package --wheel >"$scratch/log" 2>&1 || fail "$(<"$scratch/log")"
 cp -n "$scratch"/builder/var/cache/apt/archives/*.deb "$build/debs/" 2>/dev/null || true
-wheel=$(echo "$scratch"/build/raya-*-manylinux_*.whl)
+wheel=$(echo "$scratch"/build/raya-*.whl)
 (($(stat -c %s "$wheel") < 40000000)) || fail "$wheel has 40 MB or more"
 
 in_root apt-get install -qq -y --no-install-recommends pocl-opencl-icd python3 python3-venv >"$scratch/log" 2>&1 || fail "$(<"$scratch/log")"
