@@ -19,7 +19,9 @@ cp -n "$scratch"/builder/var/cache/apt/archives/*.deb "$build/debs/" 2>/dev/null
 wheel=$(echo "$scratch"/build/raya-*.whl)
 (($(stat -c %s "$wheel") < 40000000)) || fail "$wheel has 40 MB or more"
 
-in_root apt-get install -qq -y --no-install-recommends pocl-opencl-icd python3 python3-venv >"$scratch/log" 2>&1 || fail "$(<"$scratch/log")"
+packages=(pocl-opencl-icd python3 python3-venv)
+[[ $wheel == *manylinux* ]] || packages+=(ocl-icd-libopencl1)  # see tools/package
+in_root apt-get install -qq -y --no-install-recommends "${packages[@]}" >"$scratch/log" 2>&1 || fail "$(<"$scratch/log")"
 keep_packages "$build"
 cp "$wheel" "$root/scenes/centre.nff" "$bare/root"
 in_root sh -c "cd /root && python3 -m venv venv && venv/bin/pip install -q --cert $certificates raya-*.whl" >"$scratch/log" 2>&1 || fail "$(<"$scratch/log")"
