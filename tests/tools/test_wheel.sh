@@ -20,7 +20,6 @@ wheel=$(echo "$scratch"/build/raya-*.whl)
 (($(stat -c %s "$wheel") < 40000000)) || fail "$wheel has 40 MB or more"
 
 packages=(pocl-opencl-icd python3 python3-venv)
-[[ $wheel == *manylinux* ]] || packages+=(ocl-icd-libopencl1)  # see tools/package
 in_root apt-get install -qq -y --no-install-recommends "${packages[@]}" >"$scratch/log" 2>&1 || fail "$(<"$scratch/log")"
 keep_packages "$build"
 cp "$wheel" "$root/scenes/centre.nff" "$bare/root"
