@@ -169,7 +169,9 @@ class AsyncSimulation {
         n.task = tasks.front();
         tasks.pop_front();
         n.sent_count = kNone;
-        n.remaining_ns = machine_.cycle_ns * static_cast<double>(history_.tasks[n.task].cycles);
+        const HistoryTask& task = history_.tasks[n.task];
+        const double factor = task.cause == HistoryTask::kNoCause ? machine_.primary_factor : 1;
+        n.remaining_ns = factor * machine_.cycle_ns * static_cast<double>(task.cycles);
         result_.nodes[node].compute_ms += n.remaining_ns * kMsPerNs;
         run_processor(node);
     }

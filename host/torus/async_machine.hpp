@@ -43,6 +43,7 @@ namespace raya {
 /// Parameters of the machine.
 struct AsyncMachine {
     double cycle_ns = kT805CycleNs;                      // cycle time of a processor
+    double primary_factor = 1;                           // factor of the cycles in which a node makes primary rays
     std::uint32_t message_cycles = kT805MessageCycles;   // processor cycles per message at each end of a link
     std::uint32_t word_cycles = kT805MessageWordCycles;  // processor cycles per word at each end of a link
     double one_way = kT805OneWayBytesPerS;               // rate of a link in one direction, bytes/s; 0: infinite

@@ -1,6 +1,7 @@
 // The checks of faces, in binary PLY: normals, polygons, faults.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <random>
 
 #include "tests/mesh/mesh_files.hpp"
 
@@ -26,8 +27,28 @@ std::string ply(const std::vector<std::vector<float>>& vertices, const std::vect
     return bytes;
 }
 
-const std::vector<std::vector<float>> kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 const char* const kNormals = "property float nx\nproperty float ny\nproperty float nz\n";
+
+/// As ply(), with x as double, normals, either byte order and, for_assimp, an element that leaves the file to assimp.
+std::string other_ply(const std::vector<std::vector<float>>& vertices,
+                      const std::vector<std::vector<std::int32_t>>& faces, bool big_endian, bool for_assimp) {
+    std::string bytes = fmt::format(
+        "ply\nformat binary_{}_endian 1.0\nelement vertex {}\nproperty double x\nproperty float y\nproperty float "
+        "z\n{}element face {}\nproperty list uchar uint vertex_indices\n{}end_header\n",
+        big_endian ? "big" : "little", vertices.size(), kNormals, faces.size(),
+        for_assimp ? "element edge 1\nproperty uchar flags\n" : "");
+    for (const std::vector<float>& vertex : vertices) {
+        append(bytes, double{vertex[0]}, big_endian);
+        for (std::size_t i = 1; i < vertex.size(); ++i) append(bytes, vertex[i], big_endian);
+    }
+    for (const std::vector<std::int32_t>& face : faces) {
+        append(bytes, static_cast<std::uint8_t>(face.size()));
+        for (const std::int32_t corner : face) append(bytes, static_cast<std::uint32_t>(corner), big_endian);
+    }
+    return for_assimp ? bytes + '\1' : bytes;
+}
+
+const std::vector<std::vector<float>> kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 
 TEST_CASE("meshes: faces with equal normals are flat, others become patches with normals of length 1", "[mesh]") {
     const auto normals_of = [](std::vector<std::vector<float>> vertices) {
@@ -40,6 +61,33 @@ TEST_CASE("meshes: faces with equal normals are flat, others become patches with
     const ReadMesh zero = normals_of({{0, 0, 0, 0, 0, 0}, {1, 0, 0, 3, 0, 4}, {0, 1, 0, 0, 0, 1}});
     CHECK(zero.remarks == Remarks{"n.ply: face 1: face in which a normal is missing or 0, taken as flat"});
     CHECK(zero.scene.polygons[0].normals.empty());
+}
+
+TEST_CASE("meshes: raya's reader of binary PLY reads the same as assimp", "[mesh]") {
+    std::mt19937 random(20261130);
+    const auto number = [&] { return static_cast<float>(random() % 2000) / 1000 - 1; };
+    std::vector<std::vector<float>> vertices(50);
+    for (auto& vertex : vertices) vertex = {number(), number(), number(), number(), number(), 1};
+    std::vector<std::vector<std::int32_t>> faces(40);
+    for (auto& face : faces)
+        for (unsigned k = 0; k < 3; ++k) face.push_back(static_cast<std::int32_t>(random() % 50));
+    const auto polygons_of = [&](bool big_endian, bool for_assimp) {
+        return read_mesh("r.ply", other_ply(vertices, faces, big_endian, for_assimp)).scene.polygons;
+    };
+    const auto wanted = polygons_of(false, true);
+    REQUIRE(wanted.size() > 30);
+    for (const bool big_endian : {false, true}) {
+        const auto polygons = polygons_of(big_endian, false);
+        REQUIRE(polygons.size() == wanted.size());
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            CHECK(polygons[i].vertices == wanted[i].vertices);
+            CHECK(polygons[i].normals == wanted[i].normals);
+        }
+    }
+    const std::string bytes = other_ply(vertices, faces, false, false);
+    for (const std::size_t cut : {1, 100, 600})
+        CHECK_THROWS_WITH(read_mesh("r.ply", bytes.substr(0, bytes.size() - cut)),
+                          "r.ply: cannot read the mesh: PLY: numbers are missing; the file may be truncated");
 }
 
 TEST_CASE("meshes: polygons are cut into triangles", "[mesh]") {

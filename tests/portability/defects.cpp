@@ -89,6 +89,10 @@ const std::vector<Defect> kDefects = {
      22,
      {kPocl, "driver 7.1*SPIR-V", 0, true,
       "PoCL 7.1 crashes while it compiles the SPIR-V of a private variable to which nothing is written"}},
+    {"fall_through",
+     0,
+     0x01010101,
+     {kPocl, "driver 7.1", 0, true, "PoCL 7.1 aborts on a switch whose case has a loop and falls through to the next"}},
 };
 
 // Runs the kernel. Returns the first wrong result, or the correct one.

@@ -2,6 +2,8 @@
 // all cores.
 //
 //   embree_peer SCENE.nff WxH BOUNCES SAMPLES
+//   embree_peer SCENE.nff WxH BOUNCES SAMPLES tiles     prints only the least nanoseconds of each tile of 4 x 4 pixels, traced as `coherent` by one
+//                                                       thread, a line for each row of tiles
 //
 // Prints for each of three methods "METHOD RAYS SECONDS...", with the seconds of each render, and "mean METHOD R G B",
 // the image's mean colour; then "build SECONDS". `single` traces single rays; `sixteen` traces the ray trees of 4 x 4
@@ -10,6 +12,7 @@
 #include <embree3/rtcore.h>
 #include <pmmintrin.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -112,6 +115,23 @@ class Picture {
             });
         for (std::thread& thread : threads) thread.join();
         return rays;
+    }
+
+    void print_tiles(int samples) {
+        _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+        _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+        for (int row = 0; row < camera_.height; row += kSide<16>) {
+            for (int column = 0; column < camera_.width; column += kSide<16>) {
+                auto least = std::chrono::nanoseconds::max();
+                for (int i = 0; i < samples; ++i) {
+                    const auto start = std::chrono::steady_clock::now();
+                    trace_tile<16>(row, column, true);
+                    least = std::min<std::chrono::nanoseconds>(least, std::chrono::steady_clock::now() - start);
+                }
+                std::printf("%ld ", static_cast<long>(least.count()));
+            }
+            std::puts("");
+        }
     }
 
     /// Returns the mean colour of the pixels.
@@ -276,6 +296,10 @@ int run(char** arguments) {
     const Whitted whitted(scene, embree, std::atoi(arguments[2]));
     Picture picture(whitted, camera_of(scene.view, width, height));
     const int samples = std::atoi(arguments[3]);
+    if (arguments[4]) {
+        picture.print_tiles(samples);
+        return 0;
+    }
     measure<1>("single", picture, false, samples);
     measure<16>("sixteen", picture, false, samples);
     measure<16>("coherent", picture, true, samples);
@@ -287,8 +311,8 @@ int run(char** arguments) {
 }  // namespace raya
 
 int main(int argc, char** argv) {
-    if (argc != 5) {
-        std::fprintf(stderr, "usage: embree_peer SCENE.nff WxH BOUNCES SAMPLES\n");
+    if (argc != 5 && !(argc == 6 && argv[5] == std::string("tiles"))) {
+        std::fprintf(stderr, "usage: embree_peer SCENE.nff WxH BOUNCES SAMPLES [tiles]\n");
         return 2;
     }
     try {

@@ -18,11 +18,11 @@ if _MISSING:
 
 # Modules are imported when one of their names is used, because pandas, scipy and matplotlib take seconds to load: help and errors come at once.
 _NAMES = {"papers": "",
-          "claims": "Claim Judgement decide judged",
+          "claims": "CONTROLS Claim Judgement controlled decide judged",
           "laboratory": "Costs Ensemble Laboratory first_scene mean_seconds time_calls",
           "page": "Comparison Page Picture Plot Series Table format_value series_by with_paper",
-          "statistics": "COMPATIBLE NOT_REPRODUCED REPRODUCED UNTESTABLE Estimate Test above below bonferroni_confidence counted estimate estimates every "
-                        "first_from fitted_exponent next_value_within prediction_interval proportion range_text within",
+          "statistics": "COMPATIBLE NOT_REPRODUCED REPRODUCED Estimate Test above below bonferroni_confidence counted estimate estimates every first_from "
+                        "fitted_exponent lowest next_value_within prediction_interval proportion quantile_above range_text under within",
           "worker": "study"}
 _MODULES = {name: module for module, names in _NAMES.items() for name in names.split()}
 __all__ = ["papers", *_MODULES]

@@ -5,7 +5,7 @@ from typing import Optional
 
 import numpy as np
 from raya.lab import papers
-from raya.lab.statistics import LEVEL, POWER, UNTESTABLE, Test, verdicts
+from raya.lab.statistics import LEVEL, NOT_REPRODUCED, POWER, REPRODUCED, Test
 
 try:
     import tomllib
@@ -13,6 +13,8 @@ except ModuleNotFoundError:  # Python 3.10
     import tomli as tomllib
 
 KINDS = "test", "counted", "derived", "untestable"
+# Negative controls: mappings with which a rule on the cyclic mapping should not hold, as options of raya.loads().
+CONTROLS = {"random permutation": {"mapping": "random:1"}, "p = 5": {"offset": 5}}
 
 
 @dataclass(frozen=True)
@@ -27,6 +29,7 @@ class Claim:
     study: str  # name of the study that judges the claim
     kind: str  # one of KINDS
     rule: str
+    history: str = ""  # if the rule was changed after a result was known: when, and the verdict by the earlier rule
 
     def __post_init__(self):
         if self.kind not in KINDS:
@@ -47,12 +50,13 @@ CLAIMS = {key: Claim(key, getattr(papers, paper), study=study, **{"kind": "test"
 
 @dataclass
 class Judgement:
-    """A claim with our result. `test` is None for a derived or untestable claim."""
+    """A claim with our result. `test` is None for a derived or untestable claim. controls: the rule's tests of CONTROLS instead of the cyclic mapping."""
 
     claim: Claim
     ensemble: str = ""  # the pictures that the test uses
     reason: str = ""  # a sentence with our figures
     test: Optional[Test] = None
+    controls: dict = field(default_factory=dict)
     verdict: str = field(default="", init=False)
 
     @property
@@ -62,13 +66,29 @@ class Judgement:
             return ""
         return f"A deviation of {self.test.detectable:.2g} from the bound would be detected with a probability of {100 * POWER:.0f} %."
 
+    def passes(self, control):
+        """Returns whether a control fulfils the rule: "yes", "no", "undecided", or "n/a" for a rule that does not depend on the mapping."""
+        test = self.controls.get(control)
+        return {REPRODUCED: "yes", NOT_REPRODUCED: "no"}.get(test.verdict(), "undecided") if test else "n/a"
 
-def judged(key, test, ensemble="", reason=""):
+    @property
+    def qualification(self):
+        """Which controls also fulfil the rule of a reproduced claim; otherwise empty."""
+        passing = [control for control in self.controls if self.passes(control) == "yes"]
+        return f"does not discriminate: {' and '.join(passing)} also" if passing and self.verdict == REPRODUCED else ""
+
+
+def judged(key, test, ensemble="", reason="", controls=None):
     """Returns the judgement of a claim. test: None if the claim is derived or untestable."""
     claim = CLAIMS[key]
     if test is not None and claim.kind not in ("test", "counted"):
         raise ValueError(f"claim '{key}' is {claim.kind}: it takes no test")
-    return Judgement(claim, ensemble, reason, test)
+    return Judgement(claim, ensemble, reason, test, controls or {})
+
+
+def controlled(key, rule, tested, controls, ensemble, reason):
+    """Returns the judgement of a claim whose test is rule(values): `tested` has the values of the cyclic mapping, `controls` those of some CONTROLS."""
+    return judged(key, rule(tested), ensemble, reason, {name: rule(values) for name, values in controls.items()})
 
 
 def undecided_claims(study, judgements):
@@ -78,18 +98,21 @@ def undecided_claims(study, judgements):
             if claim.study == study and claim.kind in ("derived", "untestable") and claim.id not in known]
 
 
-def decide(judgements):
-    """Sets the verdicts of the judgements, with Holm's correction over all of their tests."""
-    found = verdicts({id(judgement): judgement.test for judgement in judgements if judgement.test is not None})
+TESTS = sum(claim.kind == "test" for claim in CLAIMS.values())
+
+
+def decide(judgements, tests=TESTS):
+    """Sets the verdicts of the judgements, with Bonferroni's correction for all tests of claims.toml: a verdict does not depend on which other studies
+    run."""
     for judgement in judgements:
-        judgement.verdict = found.get(id(judgement)) or (UNTESTABLE if judgement.claim.kind == "untestable" else judgement.claim.kind)
+        judgement.verdict = judgement.test.verdict(LEVEL / tests) if judgement.test else judgement.claim.kind
 
 
 def errors_sentence(judgements):
     """Returns a sentence on the expected number of wrong verdicts; empty without a statistical test."""
-    tests = [judgement for judgement in judgements if judgement.claim.kind == "test"]
+    tests = sum(judgement.claim.kind == "test" for judgement in judgements)
     if not tests:
         return ""
-    return (f"{len(tests)} of the claims are decided by statistical tests. With Holm's correction the probability that one or more verdicts "
-            f"\"reproduced\" or \"not reproduced\" of these tests are wrong is at most {100 * LEVEL:.0f} %. Without it, "
-            f"{LEVEL * len(tests):.1f} wrong verdicts would be expected if every tested quantity were exactly at the bound of its rule.")
+    return (f"{tests} of the claims are decided by statistical tests. The probability that one or more of the verdicts on the {TESTS} tested claims of "
+            f"claims.toml are wrong is at most {100 * LEVEL:.0f} % (Bonferroni, whichever studies run). Without the correction, {LEVEL * tests:.1f} "
+            "wrong verdicts would be expected here if every tested quantity were exactly at the bound of its rule.")

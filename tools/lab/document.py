@@ -12,10 +12,10 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup, escape
 from raya.lab import plots
-from raya.lab.claims import decide, errors_sentence, read_toml
+from raya.lab.claims import CONTROLS, errors_sentence, read_toml
 from raya.lab.laboratory import FAMILIES
 from raya.lab.page import format_value
-from raya.lab.statistics import COMPATIBLE, NOT_REPRODUCED, REPRODUCED, UNTESTABLE
+from raya.lab.statistics import COMPATIBLE, CONDITIONAL, NOT_REPRODUCED, PLATEAU, REPRODUCED, VERDICTS
 from raya.lab.store import write_atomically
 
 OPEN_ROWS, MAX_ROWS = 24, 400  # a table of at most OPEN_ROWS rows is unfolded; HTML shows at most MAX_ROWS rows
@@ -62,7 +62,7 @@ def record_of(judgement):
     test = judgement.test
     return {**dataclasses.asdict(judgement.claim), "ensemble": judgement.ensemble, "interval": test.interval if test else "",
             "p": test.p if test else math.nan, "detectable": test.detectable if test else math.nan, "verdict": judgement.verdict,
-            "reason": judgement.reason}
+            "random_passes": judgement.passes("random permutation"), "p5_passes": judgement.passes("p = 5"), "reason": judgement.reason}
 
 
 def ratio(comparison):
@@ -96,10 +96,11 @@ def title_of_comparisons(page):
 
 def cells_of_claims(pages):
     """Returns the table of claims, [row][column], the header first."""
-    return [["claim", "statement", "verdict", "rule", "interval", "ensemble", "result"]] + [
+    return [["claim", "statement", "verdict", *(f"{control} passes" for control in CONTROLS), "rule", "interval", "ensemble", "result"]] + [
         [f"{c.claim.id}: {c.claim.paper}, {c.claim.place}",
-         f"{c.claim.statement} {c.claim.original and '(' + c.claim.original + ')'}".rstrip(), c.verdict,
-         c.claim.rule, c.test.interval if c.test else "", c.ensemble, " ".join(filter(None, (c.reason, c.power)))]
+         f"{c.claim.statement} {c.claim.original and '(' + c.claim.original + ')'}".rstrip(),
+         c.verdict + (c.qualification and f"; {c.qualification}"), *map(c.passes, CONTROLS),
+         f"{c.claim.rule} {c.claim.history}".rstrip(), c.test.interval if c.test else "", c.ensemble, " ".join(filter(None, (c.reason, c.power)))]
         for page in pages for c in page.claims]
 
 
@@ -138,7 +139,7 @@ def verdict_sentences(pages):
     def sentence(counted_claims, source):
         count = Counter(judgement.verdict for judgement in counted_claims)
         return (f"Of {len(counted_claims)} claim{'' if len(counted_claims) == 1 else 's'} {source}: "
-                + ", ".join(f"{count[verdict]} {verdict}" for verdict in (REPRODUCED, COMPATIBLE, NOT_REPRODUCED, UNTESTABLE, "derived")) + ".")
+                + ", ".join(f"{count[verdict]} {verdict}" for verdict in (*VERDICTS, "derived")) + ".")
 
     papers = list(dict.fromkeys(judgement.claim.paper for judgement in claims))
     sentences = [sentence(claims, f"of {papers[0]}" if len(papers) == 1 else f"of {len(papers)} papers")]
@@ -155,11 +156,14 @@ def summary_of(pages):
     def reasons(verdict):
         return [f'{c.claim.paper}, {c.claim.place}: "{c.claim.statement}" {c.reason}' for c in of_verdict(verdict)]
 
-    return [("Claims that hold", [c.claim.statement for c in of_verdict(REPRODUCED)]),
-            ("Claims that do not hold", [c.claim.statement for c in of_verdict(NOT_REPRODUCED)]),
+    claims = [c for page in pages for c in page.claims]
+    return [("Claims that hold", [c.claim.statement + (c.qualification and f" The rule {c.qualification}.") for c in of_verdict(REPRODUCED)]),
             ("Results beyond the papers", [sentence for page in pages for sentence in page.news]),
-            ("Why claims do not hold", reasons(NOT_REPRODUCED)),
-            ("Compatible: the test has too little power", reasons(COMPATIBLE))]
+            ("Claims that do not hold", reasons(NOT_REPRODUCED)),
+            ("Conditional: the claim holds under some conditions and not under others", reasons(CONDITIONAL)),
+            ("Plateau: other values are as good as the claimed best one", reasons(PLATEAU)),
+            ("Compatible: the test has too little power", reasons(COMPATIBLE)),
+            ("Rules that were changed after a result was known", [f"{c.claim.id}: {c.claim.history}" for c in claims if c.claim.history])]
 
 
 def prose(text):
@@ -238,13 +242,11 @@ def write_page(folder, page):
 
 
 def write_document(folder, pages, drawings, skip_notes=()):
-    """Writes index.html. For several pages, also writes index.md, claims.md and claims.csv, and rewrites the pages' JSON and Markdown, because their
-    verdicts now take all claims into account. `skip_notes`: sentences on studies that did not run. Returns the names of the files of all pages."""
+    """Writes index.html; for several pages, also index.md, claims.md and claims.csv. `skip_notes`: sentences on studies that did not run. Returns
+    the names of the files of all pages."""
     judgements, values = [judgement for page in pages for judgement in page.claims], {"pages": pages, "skip_notes": skip_notes}
-    decide(judgements)
     files = {"index.html": environment().get_template("document.html.j2").render(drawings=drawings, **values)}
     if len(pages) > 1:
         files |= {name: markdown_of(f"{name}.j2", **values) for name in ("index.md", "claims.md")}
         files["claims.csv"] = csv_of(pd.DataFrame(map(record_of, judgements)))
-        write(folder, {name: content for page in pages for name, content in texts_of(page).items()})
     return write(folder, files)

@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 import raya
+from raya.lab.claims import CONTROLS
 
 MACHINES = {machine["name"]: machine for machine in raya.machines()}
 SPA = MACHINES["spa"]
@@ -90,6 +91,20 @@ class Ensemble:
         with ThreadPoolExecutor() as threads:  # the engine computes without Python's global lock
             return np.array(list(threads.map(measure, self.pictures)))
 
+    def control_u(self, pes, image_of=lambda costs: costs.trace):
+        """Returns {control: load imbalance u of each picture} of the negative controls (CONTROLS)."""
+        return dict(zip(CONTROLS, self.map(lambda costs: control_u(image_of(costs), pes)).T))
+
+
+def imbalance(loads):
+    """Returns the load imbalance u = (max load - mean load) / mean load."""
+    return loads.max() / loads.mean() - 1
+
+
+def control_u(image, pes):
+    """Returns the load imbalance u of a cost image with each of CONTROLS."""
+    return [imbalance(raya.loads(image, pes=pes, **options)) for options in CONTROLS.values()]
+
 
 def format_for(scene):
     """Returns the SPA's number format; fp32 if the scene does not fit the memory of a PE of the SPA."""
@@ -135,11 +150,11 @@ class Laboratory:
             self.devices.add(result.pop("device"))
         return result
 
-    def costs(self, scene, size, antialias="none"):
+    def costs(self, scene, size, antialias="none", accel="none"):
         """Returns the cost images (`Costs`) of a render of size x size pixels on PEs of the SPA, without their memory limit. Returns None in a
         shard."""
         options = dict(machine="grande", format=format_for(scene), bounces=SPA["bounces"], size=size, pes=size,
-                       offset=16 % size, accel="none", antialias=antialias)
+                       offset=16 % size, accel=accel, antialias=antialias)
 
         def compute():
             result = self.render(scene, cost=True, **options)

@@ -136,7 +136,7 @@ def run_all(options, chosen, scenes):
                     code = EXIT_DEVICE
                     continue
                 page.run = {"command": command_of(study, options), "version": f"raya {raya.__version__}", **page.run}
-                decide(page.claims)  # write_document() decides again, with the claims of all pages
+                decide(page.claims)
                 names, drawings[page.name] = write_page(folder, page)
                 files.update(dict.fromkeys(names, not study.measures))
                 pages.append(page)

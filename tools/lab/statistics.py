@@ -1,15 +1,16 @@
 """Confidence intervals, tests and verdicts, with numpy and scipy.
 
-claims.toml states the rule of each test, which was fixed before the result. Values are independent, one for each picture. `families`: the family of
+claims.toml states the rule of each test, and whether it was changed after a result. Values are independent, one for each picture. `families`: the family of
 each value. The families are strata: a mean is the mean of the families' means, and its interval contains only the variation within families.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import special, stats
 
-REPRODUCED, COMPATIBLE, NOT_REPRODUCED, UNTESTABLE = "reproduced", "compatible", "not reproduced", "untestable"
-LEVEL = 0.05  # probability of one or more wrong verdicts "reproduced" or "not reproduced" in a document, by Holm's correction
+REPRODUCED, PLATEAU, CONDITIONAL, COMPATIBLE, NOT_REPRODUCED, UNTESTABLE = VERDICTS = (
+    "reproduced", "plateau", "conditional", "compatible", "not reproduced", "untestable")
+LEVEL = 0.05  # probability of one or more wrong verdicts on all claims of claims.toml, by Bonferroni's correction
 POWER = 0.8  # probability with which a test detects its detectable deviation
 
 
@@ -56,19 +57,6 @@ def estimate(values, families=None, confidence=0.95):
     return Estimate(mean, half, len(values))
 
 
-def hierarchical(values, families, samples=2000, seed=1):
-    """Returns mean and 95 % interval of values in families that are themselves a sample of all families, unlike in estimate(). The standard error is
-    that of `samples` bootstrap samples: families drawn with replacement, and values within each drawn family. Degrees of freedom: families - 1.
-    Every family must have equally many values."""
-    strata = np.array([np.asarray(values, float)[np.asarray(families) == name] for name in dict.fromkeys(families)])  # [family, value]
-    count, each = strata.shape
-    random = np.random.default_rng(seed)
-    chosen = random.integers(count, size=(samples, count, 1))
-    error = strata[chosen, random.integers(each, size=(samples, count, each))].mean((1, 2)).std(ddof=1)
-    half = float(special.stdtrit(count - 1, 0.975) * error) if count > 1 else np.nan
-    return Estimate(float(strata.mean()), half, strata.size)
-
-
 def estimates(columns, families=None):
     """Returns (list of means, list of half widths) of the estimates of each column of an array [value, column]."""
     return tuple(map(list, zip(*((e.mean, e.half) for e in (estimate(column, families) for column in np.asarray(columns).T)))))
@@ -77,16 +65,29 @@ def estimates(columns, families=None):
 @dataclass(frozen=True)
 class Test:
     """Result of a test. p_for: p value of the data if the claim is false; small if the claim is reproduced. p_against: p value if the claim is
-    true. interval: the tested quantity as text. detectable: deviation from the rule's bound that the test detects with probability POWER."""
+    true. interval: the tested quantity as text. detectable: deviation from the rule's bound that the test detects with probability POWER. p_plateau:
+    p value if no alternative equals the claimed optimum; 1 for a claim of no optimum. cases: {condition: Test} of a claim that has a verdict under each
+    condition."""
 
     p_for: float
     p_against: float
     interval: str = ""
     detectable: float = np.nan
+    p_plateau: float = 1.0
+    cases: dict = None
 
-    # Two-sided p value.
-    p = property(lambda self: min(1.0, 2 * min(self.p_for, self.p_against)))
-    supports = property(lambda self: self.p_for < self.p_against)
+    @property
+    def p(self):
+        """p value, corrected for the number of verdicts that the test can have."""
+        return min(1.0, (2 if self.p_plateau == 1 else 3) * min(self.p_for, self.p_against, self.p_plateau))
+
+    def verdict(self, level=LEVEL):
+        """Returns the verdict. Under several conditions: that of all conditions; CONDITIONAL if two of them have different verdicts."""
+        if self.cases:
+            found = {case.verdict(level / len(self.cases)) for case in self.cases.values()}
+            return found.pop() if len(found) == 1 else CONDITIONAL if len(found - {COMPATIBLE}) > 1 else COMPATIBLE
+        return COMPATIBLE if self.p > level else min(
+            (self.p_for, REPRODUCED), (self.p_against, NOT_REPRODUCED), (self.p_plateau, PLATEAU))[1]
 
 
 def _one_sided(values, bound, families):
@@ -141,6 +142,31 @@ def every(tests):
     return Test(weakest.p_for, against, f"weakest: {weakest.interval}", weakest.detectable)
 
 
+def lowest(differences, margin, families=None):
+    """Tests the claim that every alternative has a higher mean than the claimed optimum. A plateau: one or more of them are equivalent, their means
+    differ from the optimum's by at most `margin`. differences: [picture, alternative], alternative - optimum."""
+    columns = np.asarray(differences, float).T
+    equal = min(within(column, -margin, margin, families).p_for for column in columns)
+    return replace(every(above(column, 0, families) for column in columns), p_plateau=min(1.0, len(columns) * equal))
+
+
+def under(cases):
+    """Tests a claim under each of several conditions, {condition: Test}."""
+    return replace(every(cases.values()), cases=cases, interval="; ".join(f"{name}: {test.interval}" for name, test in cases.items()))
+
+
+def quantile_above(values, bound, share):
+    """Tests the claim that the fraction `share` of all pictures is above the bound: one-sided tolerance limit of normal values."""
+    count, mean, error = len(values), np.mean(values), np.std(values, ddof=1) / np.sqrt(len(values))
+    if error == 0:
+        return counted(mean > bound)
+    distance, centre = (mean - bound) / error, stats.norm.ppf(share) * np.sqrt(count)
+    with np.errstate(invalid="ignore"):
+        p = float(stats.nct.sf(distance, count - 1, centre))
+    p = float(distance < centre) if np.isnan(p) else p  # far out scipy has no value
+    return Test(p, 1 - p, f"{mean:.3f}, deviation {error * np.sqrt(count):.3f}")
+
+
 def next_value_within(figure, values, tolerance, digits=3):
     """Tests the claim that one more picture's value differs from a paper's figure by at most the fraction `tolerance` (0..1) of the figure. `values`:
     those of our independent pictures. Uses Student's t distribution for one more value."""
@@ -157,16 +183,6 @@ def next_value_within(figure, values, tolerance, digits=3):
 def counted(holds):
     """Returns the result of a claim that counting decides: true or false, without a statistical test."""
     return Test(0.0 if holds else 1.0, 1.0 if holds else 0.0)
-
-
-def verdicts(tests):
-    """Returns {key: verdict} for {key: Test}, with Holm's correction over all tests: the probability that one or more of the verdicts "reproduced"
-    and "not reproduced" are wrong is at most LEVEL. S. Holm, Scandinavian Journal of Statistics 6, 1979."""
-    result, decided = {}, True
-    for done, (key, test) in enumerate(sorted(tests.items(), key=lambda item: item[1].p)):
-        decided = decided and test.p <= LEVEL / (len(tests) - done)
-        result[key] = COMPATIBLE if not decided else REPRODUCED if test.supports else NOT_REPRODUCED
-    return result
 
 
 def bonferroni_confidence(tests):

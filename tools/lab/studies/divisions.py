@@ -11,7 +11,7 @@ Into how many voxels should one machine divide space, for a given number of obje
 """
 import numpy as np
 import raya
-from raya.lab import Comparison, Page, Plot, Table, above, below, estimate, every, judged, next_value_within, papers, range_text, series_by, study
+from raya.lab import Comparison, Page, Plot, Table, above, below, estimate, every, judged, next_value_within, papers, range_text, series_by, study, under
 from raya.lab.laboratory import tests_of
 from raya.lab.voxels import near_cube, powers_of_two, run_cases, run_in_one_pe, sides_text, with_spheres
 
@@ -95,7 +95,7 @@ def finding_of_optimum(name, by_scene):
             f"{len(best)} scenes{more}.")
 
 
-RADII, VIEWS = (0.5, 1.0, 1.5, 2.0), 3  # layouts of the claims: radii relative to the even scene; random views of each
+RADII, VIEWS = (0.5, 1.0, 1.5, 2.0), 8  # layouts of the claims: radii relative to the even scene; random views of each
 TOLERANCE = 0.2  # of the claims tests-to-a-fifth and time-to-a-fifth
 
 
@@ -126,7 +126,7 @@ def claims_of(lab, size):
         return at(name, count, divisions) / at(name, count, by)
 
     def texts(by_count, digits=2):
-        return ", ".join(f"{estimate(values, radii).text(digits)} ({count})" for count, values in by_count.items())
+        return ", ".join(f"{estimate(values, radii if len(values) == len(radii) else None).text(digits)} ({count})" for count, values in by_count.items())
 
     def fall(name):
         return ratios(name, OBJECTS[-1], papers.FEW_DIVISIONS, papers.MANY_DIVISIONS)
@@ -134,7 +134,11 @@ def claims_of(lab, size):
     half, double = ({n: ratios("time", n, int(n * factor), n) for n in OBJECTS} for factor in (0.5, 2))
     excess = {n: at("tests", n, n) / layouts[n]["tests"].min(1) for n in OBJECTS}
     gain = {n: ratios("time", n, 1, n) for n in OBJECTS}
-    return [judged("time-falls-then-rises", every(above(values, 1, radii) for by in (half, double) for values in by.values()), about,
+    def of_radius(values, factor):
+        return values[np.array(radii) == factor]
+
+    by_radius = "; ".join(f"{texts({n: of_radius(values, factor) for n, values in excess.items()})} for radii x {factor:g}" for factor in RADII)
+    return [judged("time-falls-then-rises", under({f"{n} objects": every(above(by[n], 1, radii) for by in (half, double)) for n in OBJECTS}), about,
                    "Modelled time / time with divisions = objects (number of objects in brackets): "
                    f"{texts(half)} with half as many divisions, {texts(double)} with twice as many."),
             judged("more-objects-gain-more", every(above(gain[n] - gain[m], 0, radii) for m, n in zip(OBJECTS, OBJECTS[1:])), about,
@@ -144,5 +148,6 @@ def claims_of(lab, size):
             judged("time-to-a-fifth", next_value_within(papers.DIVISIONS_FALL, fall("time"), TOLERANCE, 1), about,
                    f"The modelled time falls by a factor of {estimate(fall('time'), radii).text(1)}, {range_text(fall('time'), 1)} for single "
                    "layouts."),
-            judged("tests-fewest-at-objects", every(below(values, DIFFERENCE_RATIO, radii) for values in excess.values()), about,
-                   f"Tests with divisions = objects / minimum of the tests: {texts(excess, 3)}.")]
+            judged("tests-fewest-at-objects", under({f"{n} objects, radii x {factor:g}": below(of_radius(values, factor), DIFFERENCE_RATIO, digits=2)
+                                                     for factor in RADII for n, values in excess.items()}), about,
+                   f"Tests with divisions = objects / minimum of the tests: {by_radius}.")]

@@ -17,9 +17,11 @@ Is the cyclic mapping good for every image, or only for the one that Kohata & It
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Comparison, Page, Plot, Series, Table, above, estimate, every, judged, papers, proportion, study, with_paper
+from raya.lab import (CONTROLS, Comparison, Page, Plot, Series, Table, above, controlled, estimate, every, judged, papers, proportion, quantile_above,
+                      study, under, with_paper)
+from raya.lab.laboratory import control_u
 
-FINER_VIEWS, WINDOWS, ITERATIONS = 108, 24, 1000  # numbers of pictures at twice the size and of Mandelbrot windows; maximum iterations of a point
+FINER_VIEWS, WINDOWS, ITERATIONS = 180, 24, 1000  # numbers of pictures at twice the size and of Mandelbrot windows; maximum iterations of a point
 ALIKE, STRONGLY, HIGH, SHARE = 0.8, 2, 0.8, 0.95  # bounds of neighbours-alike; columns-vary; cyclic-is-high; cyclic-is-high and gain-for-all
 
 
@@ -69,7 +71,8 @@ def images(lab, scenes):
     rows = rows_of(pictures, [scene.objects for scene in shown_scenes] * 2, pes, p)
     split_column, cyclic_column = "efficiency, p = 0", f"efficiency, p = {p}"
     ensemble, finer = ensembles_of(lab, scenes)
-    windows = np.array([raya.imbalances(mandelbrot(pes, lab.seed + i), pes, [0, p]) for i in range(WINDOWS)])  # [window, offset]
+    window_images = [mandelbrot(pes, lab.seed + i) for i in range(WINDOWS)]
+    windows = np.array([[*raya.imbalances(image, pes, [0, p]), *control_u(image, pes)] for image in window_images])  # [window, mapping]
     groups = {f"scenes at {side} x {side}": group for side, group in rows.groupby("side (pixels)", sort=False)}
     groups.update({f"ensemble at {len(one.pictures[0].trace)} x {len(one.pictures[0].trace)}": rows_of(one.pictures, 0, pes, p)
                    for one in (ensemble, finer)})
@@ -109,25 +112,40 @@ def images(lab, scenes):
 def claims_of(ensemble, finer, windows, pes, p):
     families, about = ensemble.families, ensemble.description
     u = [one.map(lambda costs: raya.imbalances(costs.trace, pes, [0, p])) for one in (ensemble, finer)]
+    by_size = [one.control_u(pes) for one in (ensemble, finer)]
+    controls = {name: [control[name] for control in by_size] for name in CONTROLS}  # {control: [u at each size]}
     gains = [of_size[:, 1] < of_size[:, 0] for of_size in u]
     efficiency = 1 / (1 + u[0])
     deviation = np.abs(efficiency - efficiency.mean(0))
     alike = ensemble.map(lambda costs: correlation(costs.trace))
-    high = efficiency[:, 1] >= HIGH
     worst = int(efficiency[:, 1].argmin())
-    return [judged("gain-for-all", every(proportion(one, SHARE) for one in gains),
+    of_family = {name: np.array(families) == name for name in dict.fromkeys(families)}
+    shares = ", ".join(f"{(efficiency[some, 1] >= HIGH).sum()} of {some.sum()} ({name})" for name, some in of_family.items())
+
+    def gain(by_size):
+        return every(proportion(one < of_size[:, 0], SHARE) for one, of_size in zip(by_size, u))
+
+    def varies_less(efficiency):
+        return above(deviation[:, 0] - STRONGLY * np.abs(efficiency - efficiency.mean()), 0, families)
+
+    def high(efficiency):
+        return under({name: quantile_above(efficiency[some], HIGH, SHARE) for name, some in of_family.items()})
+
+    control_efficiency = {name: 1 / (1 + by_size[0]) for name, by_size in controls.items()}
+    return [controlled("gain-for-all", gain, [of_size[:, 1] for of_size in u], controls,
                    f"{about}; {len(finer.pictures)} of them also at {2 * pes} x {2 * pes}",
                    f"u({p}) is lower than u(0) in {gains[0].sum()} of {len(gains[0])} pictures and, at twice the size, in {gains[1].sum()} of "
                    f"{len(gains[1])}."),
             judged("neighbours-alike", above(alike, ALIKE, families), about,
                    f"The mean correlation is {estimate(alike, families).text()}, the lowest one {alike.min():.2f}."),
-            judged("columns-vary", above(deviation[:, 0] - STRONGLY * deviation[:, 1], 0, families), about,
+            controlled("columns-vary", varies_less, efficiency[:, 1], control_efficiency, about,
                    f"The mean absolute deviation of the efficiency is {deviation[:, 0].mean():.3f} for the column split and "
                    f"{deviation[:, 1].mean():.3f} for the cyclic mapping."),
-            judged("cyclic-is-high", proportion(high, SHARE), about,
-                   f"{high.sum()} of {len(high)} pictures have an efficiency of {HIGH} or more; the lowest is {efficiency[worst, 1]:.3f}, "
+            controlled("cyclic-is-high", high, efficiency[:, 1], control_efficiency, about,
+                   f"Pictures with an efficiency of {HIGH} or more: {shares}; the lowest is {efficiency[worst, 1]:.3f}, "
                    f"{ensemble.pictures[worst].label}."),
-            judged("other-problems", above(windows[:, 0] - windows[:, 1], 0), f"{len(windows)} windows of the Mandelbrot set",
+            controlled("other-problems", lambda u: above(windows[:, 0] - u), windows[:, 1], dict(zip(CONTROLS, windows[:, 2:].T)),
+                   f"{len(windows)} windows of the Mandelbrot set",
                    f"The mean u falls by {estimate(windows[:, 0] - windows[:, 1]).text()} from p = 0 to {p}, to {estimate(windows[:, 1]).text()}.")]
 
 

@@ -14,10 +14,10 @@ Do all offsets greater than sqrt(P) = {reference} balance the load worse, as Koh
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import (Comparison, Page, Plot, Series, Table, above, bonferroni_confidence, estimate, estimates, every, judged,
-                      papers, study)
+from raya.lab import Comparison, Page, Plot, Series, Table, bonferroni_confidence, controlled, estimate, estimates, judged, lowest, papers, study
 from scipy.stats import rankdata, spearmanr
 
+EQUAL = 0.01  # best-is-n and beyond-is-worse: mean u that differ by at most this are equal, 1 % of the time if every PE had the mean load
 MAX_CORRELATION = -0.5  # the shortest vector "predicts" u if their rank correlation is at most this
 
 
@@ -71,7 +71,7 @@ def lattice(lab, scenes):
     return Page({"size": size, "pes": size, "reference": n, "pictures": len(u)},
                 findings_of(rows, u, families, n, longer, as_long, correlations, squares),
                 comparisons,
-                claims_of(u, ensemble, rows, n, beyond) if n * n == size and not scenes else [],
+                claims_of(u, ensemble, rows, n, beyond, ensemble.control_u(size)) if n * n == size and not scenes else [],
                 [Table("lattice-chosen", f"p = 0, p = {n}, offsets with shortest vectors as long or longer, and the best of all",
                        table), Table("lattice", "Shortest vector and u of each offset", rows, on_page=False)],
                 [*plots_of(rows, n, longer, as_long, len(u))],
@@ -80,7 +80,7 @@ def lattice(lab, scenes):
                 placeholders={"ensemble": ensemble.description, "length": f"{squares[n]**0.5:.2f}", "mirror": size - n}, compared_with=papers.SPA)
 
 
-def claims_of(u, ensemble, rows, n, beyond):
+def claims_of(u, ensemble, rows, n, beyond, control_u):
     families = ensemble.families
     beyond = [p for p in beyond if p < len(rows) - n]  # larger offsets are the mirror images of smaller ones than n
     confidence = bonferroni_confidence(len(beyond))
@@ -91,10 +91,12 @@ def claims_of(u, ensemble, rows, n, beyond):
     return [judged("blocks-shared", None, "",
                    f"Counted for n = {n}: with p = {n}, no n x n block has two pixels of one PE. This holds for {shared.sum()} offsets: "
                    f"{', '.join(map(str, rows['p'][shared]))}."),
-            judged("beyond-is-worse", every(above(u[:, p] - u[:, n], 0, families) for p in beyond), ensemble.description,
+            controlled("beyond-is-worse", lambda of: lowest(u[:, beyond] - of[:, None], EQUAL, families), u[:, n], control_u,
+                       ensemble.description,
                    f"Of the {len(beyond)} offsets from {n + 1} to {len(rows) - n - 1}, {worse} have a higher mean u than p = {n} and {better} a "
                    f"lower one, with 95 % "
-                   f"confidence in all differences together. The mean of u(p) - u({n}) over these offsets is {mean.text(4)}.")]
+                   f"confidence in all differences together. The mean of u(p) - u({n}) over these offsets is {mean.text(4)}; of "
+                       f"{sum(abs(d.mean) + d.half <= EQUAL for d in differences)} offsets, u differs from that of p = {n} by at most {EQUAL}.")]
 
 
 def findings_of(rows, u, families, n, longer, as_long, correlations, squares):

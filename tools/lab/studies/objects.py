@@ -31,16 +31,16 @@ Do random objects take longer than even ones, are straddling objects the reason,
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Series, Table, above, estimate, every, judged, papers, series_by, study
+from raya.lab import Page, Plot, Series, Table, above, estimate, every, judged, papers, series_by, study, under
 from raya.lab.voxels import CLOCK, even_scene, run_on_torus, with_spheres
 
 COUNTS, OTHER_WORDS, SIDES = (64, 192, 256, 512, 1024, 8320), (32, 48), 4  # numbers of objects; words of a ray packet; voxels along each axis
-RADII, VARIANTS, MAX_RADIUS = (0.5, 1, 2), 9, 0.45  # factors of the radii; variants of a scene; maximum of radius / voxel side
-CLOCKS = {"20 MHz": 50.0, "25 MHz": 40.0, "30 MHz": 1e3 / 30}  # {clock of the processors: ns per cycle}; links keep their rates
+RADII, VARIANTS, MAX_RADIUS = (0.5, 1, 2), 18, 0.45  # factors of the radii; variants of a scene; maximum of radius / voxel side
+ROOT_COSTS = (0, 0.25, 0.5, 1)  # of a primary ray, relative to the modelled one; 0: only its message takes time
 EVEN, RANDOM, WITHIN = "even", "random", "random, none across voxels"
 PAPER, RAYA = "Yoshitani & Yamazaki", "raya"
 PROTOCOLS = {PAPER: {"inject": "root", "packet_words": papers.RAY_WORDS, "returns": "rays"}, RAYA: {}}
-LINEAR_LIMIT, HALF = 1.25, 0.5  # not-linear: minimum of objects / time; front-voxels: minimum fraction of its logarithm
+SLOWER, LINEAR_LIMIT, HALF = 1.02, 1.25, 0.5  # random-is-slower: ratio of times; not-linear: objects / time; front-voxels: part of its logarithm
 TIMES = ("overlapped", "stepwise", "asynchronous")
 
 
@@ -94,7 +94,7 @@ def depth_of(lab, scene, size):
 
 @study("objects", one_scene=True)
 def objects(lab, scenes):
-    size, runs, depths, words, exact, clocks = lab.size(96), {}, [], [], {}, {}
+    size, runs, depths, words, exact, times = lab.size(96), {}, [], [], {}, {}
     seeds = range(lab.seed, lab.seed + VARIANTS)
     for count in COUNTS:
         scenes_by_kind = scenes_of(count, seeds)
@@ -103,9 +103,8 @@ def objects(lab, scenes):
         for protocol, options in PROTOCOLS.items():
             for kind, kind_scenes in scenes_by_kind.items():
                 runs[count, kind, protocol] = [render(lab, one, size, async_=True, **options) for one in kind_scenes]
-        times = {kind: np.array([[run["result"].simulate(cycle_ns=ns) for ns in CLOCKS.values()] for run in runs[count, kind, PAPER]])
-                 for kind in (EVEN, RANDOM)}  # [variant, clock]
-        clocks[count] = dict(zip(CLOCKS, (times[RANDOM] / times[EVEN]).T))
+        times |= {(count, kind): np.array([[run["result"].simulate(primary_factor=f) for f in ROOT_COSTS] for run in runs[count, kind, PAPER]]).T
+                 for kind in (EVEN, RANDOM, WITHIN)}  # [cost, variant]
         for kind in (EVEN, RANDOM):
             hits, firsts, voxels = zip(*(depth_of(lab, one, size) for one in scenes_by_kind[kind]))
             depths.append({"objects": count, "kind": kind, "hit (% of primary rays)": 100 * np.mean(hits),
@@ -123,7 +122,7 @@ def objects(lab, scenes):
         for time in TIMES}} for protocol in PROTOCOLS for kind in (RANDOM, WITHIN) for count in COUNTS])
     growth = [(kind, protocol, growth_of(runs[COUNTS[0], kind, protocol], runs[COUNTS[-1], kind, protocol]))
               for protocol in PROTOCOLS for kind in (EVEN, RANDOM)]
-    depths, words, sweep = pd.DataFrame(depths), pd.DataFrame(words), sweep_of(clocks)
+    depths, words, sweep = pd.DataFrame(depths), pd.DataFrame(words), sweep_of(times)
     spread = ratios[["objects", "kind", "protocol"]].copy()
     for time in TIMES:
         spread[time], spread[f"{time} +-"] = [e.mean for e in ratios[time]], [e.half for e in ratios[time]]
@@ -135,9 +134,9 @@ def objects(lab, scenes):
     return Page({"nodes": "4x4x4", "voxels": "4x4x4", "links": "torus2d", "size": size, "bounces": 0, "format": "fp32",
                  "words": papers.RAY_WORDS, "variants": VARIANTS, "seed": lab.seed, "objects": list(COUNTS)},
                 [*findings_of(runs, rows, ratios, depths, words),
-                 f"For all radii and clocks, time of random / time of even objects (asynchronous) is {low['random / even']:.2f} ({low['objects']} "
+                 f"For all radii and costs of a primary ray, time of random / time of even objects (asynchronous) is {low['random / even']:.2f} ({low['objects']} "
                  f"objects, {low['variants']}) to {high['random / even']:.2f} ({high['objects']} objects, {high['variants']}).", *more],
-                claims=claims_of(runs, ratios, growth, f"{VARIANTS} variants of each scene, seeds {seeds[0]}..{seeds[-1]}"),
+                claims=claims_of(times, ratios, growth, f"{VARIANTS} variants of each scene, seeds {seeds[0]}..{seeds[-1]}"),
                 tables=[Table("objects", "Time and work for each number of objects", rows),
                         Table("objects-ratios", "Time of random / time of even objects", spread),
                         Table("objects-growth", "Growth from the fewest to the most objects: objects / time as a product of four factors", factors),
@@ -148,12 +147,13 @@ def objects(lab, scenes):
                 clock=CLOCK, placeholders={"radii": ", ".join(map(str, RADII)), "largest": MAX_RADIUS})
 
 
-def sweep_of(clocks):
-    """Returns a table of time of random / time of even objects: for each factor of the radii at 25 MHz, and for each clock over all variants."""
+def sweep_of(times):
+    """Returns a table of time of random / time of even objects: for each factor of the radii, and over all variants for each of ROOT_COSTS."""
     rows = []
-    for count, by_clock in clocks.items():
-        ratio = by_clock["25 MHz"]  # [variant]
-        groups = {f"radii x {factor}": [value for i, value in enumerate(ratio) if RADII[i % len(RADII)] == factor] for factor in RADII} | by_clock
+    for count in COUNTS:
+        ratios = times[count, RANDOM] / times[count, EVEN]  # [cost, variant]
+        groups = {f"radii x {factor}": [value for i, value in enumerate(ratios[-1]) if RADII[i % len(RADII)] == factor] for factor in RADII}
+        groups |= {f"a primary ray costs {cost:g}": ratio for cost, ratio in zip(ROOT_COSTS, ratios)}
         rows += [{"objects": count, "variants": name, "random / even": estimate(values).mean, "+-": estimate(values).half}
                  for name, values in groups.items()]
     return pd.DataFrame(rows)
@@ -190,29 +190,38 @@ def texts_of(time_ratios, time):
     return ", ".join(f"{e.text(2)} ({count})" for e, count in zip(time_ratios[time], time_ratios["objects"]))
 
 
-def claims_of(runs, ratios, growth, about):
-    """Judges by asynchronous times whether random scenes are slower, because the paper's machine is asynchronous. The reason has the bounds, too."""
+def claims_of(times, ratios, growth, about):
+    """Judges by asynchronous times, because the paper's machine is asynchronous. times: {(objects, kind): [cost of ROOT_COSTS, variant]}."""
     random_ratios = select(ratios, RANDOM, PAPER)
-    times = {kind: np.array([[run["asynchronous (ms)"] for run in runs[count, kind, PAPER]] for count in COUNTS]) for kind in (EVEN, RANDOM, WITHIN)}
-    random_ratio, within_ratio = ((times[kind] / times[EVEN]).mean(0) for kind in (RANDOM, WITHIN))  # [variant]
-    slower = [above(random_ratio, 1), above(random_ratio - within_ratio)]
-    even, random = growth[0][2], growth[1][2]
-    linear = [above(rows["objects / time"], LINEAR_LIMIT) for rows in (even, random)]
-    log_fractions = [np.log(rows["fewer voxels a ray"]) / np.log(rows["objects / time"]) for rows in (even, random)]
-    log_excess = [np.log(rows["fewer voxels a ray"]) - HALF * np.log(rows["objects / time"]) for rows in (even, random)]
-    return [judged("random-is-slower", every(slower), about,
-                   f"Time of random / time of even objects, asynchronous: {estimate(random_ratio).text(2)} averaged over the numbers of objects, "
-                   f"{estimate(within_ratio).text(2)} if no random object straddles voxels. By number of objects (in brackets): "
-                   f"{texts_of(random_ratios, 'asynchronous')}; up to 256 objects the root's time hides the difference. "
-                   f"Bounds: overlapped {texts_of(random_ratios, 'overlapped')}; stepwise {texts_of(random_ratios, 'stepwise')}."),
-            judged("not-linear", every(linear), about,
-                   f"{even['objects'][0]:.0f} times as many objects take {estimate(even['time']).text(2)} times as long if they are even, and "
-                   f"{estimate(random['time']).text(2)} times as long if they are random (overlapped)."),
-            judged("front-voxels", every(above(rows) for rows in log_excess), about,
-                   f"Growth of objects / growth of time is {even['objects / time'].mean():.2f} for even and {random['objects / time'].mean():.2f} "
-                   f"for random objects. Its factor for rays that visit fewer voxels is {even['fewer voxels a ray'].mean():.2f} and "
-                   f"{random['fewer voxels a ray'].mean():.2f}, which is {100 * log_fractions[0].mean():.0f} % and "
-                   f"{100 * log_fractions[1].mean():.0f} % of the logarithm.")]
+    of_even = {kind: {count: times[count, kind] / times[count, EVEN] for count in COUNTS} for kind in (RANDOM, WITHIN)}  # {count: [cost, variant]}
+    slower = {f"{count} objects": every([above(of_even[RANDOM][count][-1], SLOWER), above((of_even[RANDOM][count] - of_even[WITHIN][count])[-1])])
+              for count in COUNTS}
+    growths = {(cost, kind): COUNTS[-1] / COUNTS[0] / (times[COUNTS[-1], kind][i] / times[COUNTS[0], kind][i])
+               for i, cost in enumerate(ROOT_COSTS) for kind in (EVEN, RANDOM)}  # objects / time
+    linear = {f"a primary ray costs {cost:g}": every(above(growths[cost, kind], LINEAR_LIMIT) for kind in (EVEN, RANDOM)) for cost in (0, 1)}
+    excess, shares = {}, []
+    for protocol in PROTOCOLS:
+        rows = [one for _, of_protocol, one in growth if of_protocol == protocol]
+        logs = [(np.log(one["fewer voxels a ray"]), np.log(one["objects / time"])) for one in rows]
+        excess[f"protocol of {protocol}"] = every(above(part - HALF * whole) for part, whole in logs)
+        shares.append(f"{' and '.join(f'{100 * np.mean(part / whole):.0f} %' for part, whole in logs)} under the protocol of {protocol} (growth "
+                      f"{' and '.join(format(one['objects / time'].mean(), '.1f') for one in rows)})")
+
+    def texts(kind, cost):
+        return ", ".join(f"{estimate(of_even[kind][count][ROOT_COSTS.index(cost)]).text(2)} ({count})" for count in COUNTS)
+
+    return [judged("random-is-slower", under(slower), about,
+                   f"Time of random / time of even objects, asynchronous, by number of objects (in brackets): {texts(RANDOM, 1)}; if no random object "
+                   f"straddles voxels: {texts(WITHIN, 1)}; if a primary ray costs the root half as much: {texts(RANDOM, 0.5)}, and nothing but its "
+                   f"message: {texts(RANDOM, 0)}. Bounds: overlapped {texts_of(random_ratios, 'overlapped')}; stepwise "
+                   f"{texts_of(random_ratios, 'stepwise')}."),
+            judged("not-linear", under(linear), about,
+                   f"Growth of objects / growth of time from {COUNTS[0]} to {COUNTS[-1]} objects, even and random: " + "; ".join(
+                       f"{estimate(growths[cost, EVEN]).text(1)} and {estimate(growths[cost, RANDOM]).text(1)} if a primary ray costs {cost:g}"
+                       for cost in ROOT_COSTS) + "."),
+            judged("front-voxels", under(excess), about,
+                   f"That rays visit fewer voxels is this part of the logarithm of growth of objects / growth of time, for even and random objects: "
+                   f"{'; '.join(shares)}.")]
 
 
 def findings_of(runs, rows, ratios, depths, words):

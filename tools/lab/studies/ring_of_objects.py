@@ -25,7 +25,7 @@ from itertools import product
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import Page, Plot, Series, Table, estimate, first_from, papers, proportion, series_by, study
+from raya.lab import Page, Plot, Series, Table, estimate, first_from, judged, papers, proportion, series_by, study
 from raya.lab.laboratory import FAMILIES, SPA, format_for, view_of
 from raya.lab.spa import CLOCK as RING_CLOCK
 from raya.lab.voxels import UNLIMITED_MEMORY, balls_scene, even_scene, near_cube, powers_of_two, run_on_torus
@@ -203,6 +203,8 @@ def ring_of_objects(lab, scenes):
     return Page({"size": size, "processors": ", ".join(map(str, PROCESSORS)), "views": len(FAMILIES) * VIEWS_EACH, "family_pes": FAMILY_PES,
                  "views_even": VIEWS_EVEN, "counts": ", ".join(map(str, COUNTS))},
                 answers + findings_of(rows, memory, estimated, evens_of, frames),
+                claims=[judged("objects-need-communication", None, "", f"With parts that rotate, {rows[rows['G'] > 1]['words'].min()} words or more pass "
+                               "over the ring; with the whole scene in every PE, none.")] if not scenes else [],
                 tables=[Table("ring-of-objects", "The ring with 1 to P parts", rows), Table("ring-of-objects-torus", "Ring, torus and hybrid", against),
                         Table("ring-of-objects-memory", "The best number of parts for a memory", memory),
                         Table("ring-of-objects-families", "Means and 95 % intervals over the families", shown),

@@ -17,12 +17,13 @@ How many times faster than one PE do P PEs compute an image?
 import numpy as np
 import pandas as pd
 import raya
-from raya.lab import (Comparison, Page, Plot, Series, Table, above, estimate, estimates, every, first_scene, judged, papers, study,
-                      with_paper, within)
+from raya.lab import (CONTROLS, Comparison, Page, Plot, Series, Table, above, controlled, estimate, estimates, every, first_scene, papers, study, with_paper,
+                      within)
 
 OFFSET = 16  # the paper's offset for 256 PEs
 HIGH = 0.8  # minimum efficiency by the rules of the claims proportional, few-processors and finer-images
-CLOSE = 0.1  # maximum relative difference by the rules of the claims like-2d, near-cap and near-pixel-machine
+CLOSE, SIMILAR = 0.1, 0.05  # maximum relative difference by the rules of the claims near-cap and near-pixel-machine; like-2d
+POWERS = [2**k for k in range(1, 9)]
 FINER_VIEWS = 18  # number of pictures in each of the ensembles at 512 x 512 and 1024 x 1024
 COLUMNS = {"p = 0": lambda pes: 0 * pes, "p = 16": lambda pes: 0 * pes + OFFSET,
            "p = round(sqrt(P))": lambda pes: np.rint(np.sqrt(pes)).astype(int)}
@@ -89,7 +90,7 @@ def fig9(lab, scenes):
                 findings_of(rows, sides, in_paper),
                 with_paper(in_paper, comparisons_of(rows, grids, means.iloc[-1], grid_ratios, half_side_speedups, large_side, ensemble.families))
                 + (comparisons_of_machines(lab, scene, size) if in_paper else []),
-                claims_of(lab, tables, ensemble) if size == 256 and not scenes else [], shown,
+                claims_of(lab, tables, ensemble, control_speedups(ensemble)) if size == 256 and not scenes else [], shown,
                 plots_of(rows, grids, means, in_paper),
                 placeholders={"ensemble": ensemble.description}, compared_with=papers.SPA)
 
@@ -120,7 +121,13 @@ def comparisons_of_machines(lab, scene, size):
             Comparison("machine pixel-machine: time on 1 node / on 64", "", papers.PIXEL_MACHINE_SPEEDUP, ratio("pixel-machine", 1, 8), remark)]
 
 
-def claims_of(lab, tables, ensemble):
+def control_speedups(ensemble):
+    """Returns {control: {P: speed-up of each picture}} for powers of two."""
+    u = {pes: ensemble.control_u(pes) for pes in POWERS}
+    return {name: {pes: pes / (1 + u[pes][name]) for pes in POWERS} for name in CONTROLS}
+
+
+def claims_of(lab, tables, ensemble, controls):
     """Judges the paper's claims on numbers of PEs (sections 3.3, 4.2 and 6), for images of 256 x 256 pixels."""
     families, about = ensemble.families, ensemble.description
 
@@ -131,32 +138,43 @@ def claims_of(lab, tables, ensemble):
         return estimate(values, families).text(digits)
 
     cyclic, block = speedups_on("p = 16"), speedups_on("p = 16", "block")
-    like_2d = cyclic[:, 255] / [g[16] for _, g in tables]
+    on_grid = np.array([g[16] for _, g in tables])
     pes = np.arange(2, 257)
     folds = np.stack([cyclic, block])[:, :, 1:] / pes  # [fold, picture, P - 2]
     efficiency = np.where(folds[0].mean(0) >= folds[1].mean(0), folds[0], folds[1])
-    worst, powers = int(efficiency.mean(0).argmin()), [2**k for k in range(1, 9)]
+    worst = int(efficiency.mean(0).argmin())
     low_count = (efficiency.mean(0) < HIGH).sum()
-    over_64, on_64 = cyclic[:, 255] / cyclic[:, 63], cyclic[:, 63]
-    on_16 = speedups_on("p = 0")[:, 15] / 16
+    tested = {pes: cyclic[:, pes - 1] for pes in POWERS}
+    on_16 = speedups_on("p = 0")[:, 15]
     ensembles = ensembles_of_sizes(lab)
     efficiencies_by_size = [one.map(lambda costs: 1 / (1 + raya.imbalances(costs.trace, costs.trace.shape[1], [round(costs.trace.shape[1]**0.5)])[0]))
                             for one in ensembles]
-    return [judged("like-2d", within(like_2d, 1 - CLOSE, 1 + CLOSE, families), about,
-                   f"Speed-up with p = 16 / speed-up of 16 x 16 PEs in two dimensions: {text(like_2d, 3)}. The mean speed-ups are "
-                   f"{text(cyclic[:, 255], 1)} and {text([g[16] for _, g in tables], 1)}."),
-            judged("proportional", every(above(efficiency[:, p - 2], HIGH, families) for p in powers), about,
-                   f"On powers of two the mean efficiency is at least {min(efficiency[:, p - 2].mean() for p in powers):.2f}. On other numbers of "
+    finer_controls = {name: [1 / (1 + u[name]) for u in map(lambda one: one.control_u(one.pictures[0].trace.shape[1]), ensembles)] for name in CONTROLS}
+
+    def rule(low, high, value_of):
+        return lambda speedups: within(value_of(speedups), low, high, families)
+
+    def proportional(speedups):
+        return every(above(speedups[pes] / pes, HIGH, families) for pes in POWERS)
+
+    def finer(efficiencies):
+        return every(above(values, HIGH, one.families) for values, one in zip(efficiencies, ensembles))
+
+    return [controlled("like-2d", rule(1 - SIMILAR, 1 + SIMILAR, lambda s: s[256] / on_grid), tested, controls, about,
+                       f"Speed-up with p = 16 / speed-up of 16 x 16 PEs in two dimensions: {text(tested[256] / on_grid, 3)}. The mean speed-ups are "
+                       f"{text(tested[256], 1)} and {text(on_grid, 1)}."),
+            controlled("proportional", proportional, {pes: pes * efficiency[:, pes - 2] for pes in POWERS}, controls, about,
+                   f"On powers of two the mean efficiency is at least {min(efficiency[:, p - 2].mean() for p in POWERS):.2f}. On other numbers of "
                    f"PEs the speed-up rises in steps, as PEs own whole columns: the mean efficiency is below {HIGH} for {low_count} of 255 numbers "
                    f"of PEs; the lowest is {text(efficiency[:, worst])} at P = {pes[worst]}, where no mapping of whole columns exceeds "
                    f"{256 / (pes[worst] * -(-256 // pes[worst])):.2f}."),
-            judged("near-cap", within(over_64, papers.CAP_RATIO * (1 - CLOSE), papers.CAP_RATIO * (1 + CLOSE), families), about,
-                   f"Speed-up of the SPA on 256 PEs / on 64 PEs: {text(over_64)}."),
-            judged("near-pixel-machine", within(on_64, papers.PIXEL_MACHINE_SPEEDUP * (1 - CLOSE),
-                                                papers.PIXEL_MACHINE_SPEEDUP * (1 + CLOSE), families), about,
-                   f"Speed-up of the SPA on 64 PEs: {text(on_64)}."),
-            judged("few-processors", above(on_16, HIGH, families), about, f"Efficiency of the column split on 16 PEs: {text(on_16, 3)}."),
-            judged("finer-images", every(above(values, HIGH, one.families) for values, one in zip(efficiencies_by_size, ensembles)),
+            controlled("near-cap", rule(papers.CAP_RATIO * (1 - CLOSE), papers.CAP_RATIO * (1 + CLOSE), lambda s: s[256] / s[64]), tested, controls, about,
+                       f"Speed-up of the SPA on 256 PEs / on 64 PEs: {text(tested[256] / tested[64])}."),
+            controlled("near-pixel-machine", rule(papers.PIXEL_MACHINE_SPEEDUP * (1 - CLOSE), papers.PIXEL_MACHINE_SPEEDUP * (1 + CLOSE), lambda s: s[64]),
+                       tested, controls, about, f"Speed-up of the SPA on 64 PEs: {text(tested[64])}."),
+            controlled("few-processors", lambda s: above(s[16] / 16, HIGH, families), {16: on_16}, controls, about,
+                       f"Efficiency of the column split on 16 PEs: {text(on_16 / 16, 3)}."),
+            controlled("finer-images", finer, efficiencies_by_size, finer_controls,
                    f"{about}; {FINER_VIEWS} pictures each at 512 x 512 and 1024 x 1024",
                    "Efficiency at 256, 512 and 1024 pixels a side: "
                    + ", ".join(estimate(values, one.families).text(3) for values, one in zip(efficiencies_by_size, ensembles)) + ".")]
