@@ -260,7 +260,7 @@ def test_verdict_is_the_alternative_with_the_smallest_p():
 
 
 @pytest.mark.parametrize("ps, verdict", [((0.001, 0.001), "REPRODUCED"), ((0.001, 0.999), "CONDITIONAL"), ((0.001, 0.5), "COMPATIBLE"),
-                                         ((0.999, 0.999), "NOT_REPRODUCED"), ((0.02, 0.02), "COMPATIBLE")])
+                                         ((0.999, 0.999), "NOT_REPRODUCED"), ((0.999, 0.5), "NOT_REPRODUCED"), ((0.02, 0.02), "COMPATIBLE")])
 def test_claim_under_two_conditions(ps, verdict):
     """Each condition is tested at half the level, 0.025; 0.02 is one-sided."""
     assert s.under({str(i): s.Test(p, 1 - p) for i, p in enumerate(ps)}).verdict(0.05) == getattr(s, verdict)

@@ -58,6 +58,7 @@ class Judgement:
     test: Optional[Test] = None
     controls: dict = field(default_factory=dict)
     verdict: str = field(default="", init=False)
+    conditions: str = field(default="", init=False)  # the verdict under each condition
 
     @property
     def power(self):
@@ -106,6 +107,9 @@ def decide(judgements, tests=TESTS):
     run."""
     for judgement in judgements:
         judgement.verdict = judgement.test.verdict(LEVEL / tests) if judgement.test else judgement.claim.kind
+        by_case = judgement.test.case_verdicts(LEVEL / tests) if judgement.test else {}
+        judgement.conditions = "; ".join(f"{verdict}: {', '.join(name for name, one in by_case.items() if one == verdict)}"
+                                         for verdict in dict.fromkeys(by_case.values()))
 
 
 def errors_sentence(judgements):

@@ -62,7 +62,7 @@ def record_of(judgement):
     test = judgement.test
     return {**dataclasses.asdict(judgement.claim), "ensemble": judgement.ensemble, "interval": test.interval if test else "",
             "p": test.p if test else math.nan, "detectable": test.detectable if test else math.nan, "verdict": judgement.verdict,
-            "random_passes": judgement.passes("random permutation"), "p5_passes": judgement.passes("p = 5"), "reason": judgement.reason}
+            "random_passes": judgement.passes("random permutation"), "p5_passes": judgement.passes("p = 5"), "conditions": judgement.conditions, "reason": judgement.reason}
 
 
 def ratio(comparison):
@@ -99,7 +99,7 @@ def cells_of_claims(pages):
     return [["claim", "statement", "verdict", *(f"{control} passes" for control in CONTROLS), "rule", "interval", "ensemble", "result"]] + [
         [f"{c.claim.id}: {c.claim.paper}, {c.claim.place}",
          f"{c.claim.statement} {c.claim.original and '(' + c.claim.original + ')'}".rstrip(),
-         c.verdict + (c.qualification and f"; {c.qualification}"), *map(c.passes, CONTROLS),
+         c.verdict + "".join(f"; {text}" for text in (c.qualification, c.conditions) if text), *map(c.passes, CONTROLS),
          f"{c.claim.rule} {c.claim.history}".rstrip(), c.test.interval if c.test else "", c.ensemble, " ".join(filter(None, (c.reason, c.power)))]
         for page in pages for c in page.claims]
 
@@ -154,7 +154,7 @@ def summary_of(pages):
         return [c for page in pages for c in page.claims if c.verdict == verdict]
 
     def reasons(verdict):
-        return [f'{c.claim.paper}, {c.claim.place}: "{c.claim.statement}" {c.reason}' for c in of_verdict(verdict)]
+        return [f'{c.claim.paper}, {c.claim.place}: "{c.claim.statement}" {c.conditions and c.conditions.capitalize() + ". "}{c.reason}' for c in of_verdict(verdict)]
 
     claims = [c for page in pages for c in page.claims]
     return [("Claims that hold", [c.claim.statement + (c.qualification and f" The rule {c.qualification}.") for c in of_verdict(REPRODUCED)]),

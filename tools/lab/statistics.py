@@ -81,11 +81,15 @@ class Test:
         """p value, corrected for the number of verdicts that the test can have."""
         return min(1.0, (2 if self.p_plateau == 1 else 3) * min(self.p_for, self.p_against, self.p_plateau))
 
+    def case_verdicts(self, level=LEVEL):
+        """Returns {condition: verdict}."""
+        return {name: case.verdict(level / len(self.cases)) for name, case in (self.cases or {}).items()}
+
     def verdict(self, level=LEVEL):
-        """Returns the verdict. Under several conditions: that of all conditions; CONDITIONAL if two of them have different verdicts."""
+        """Returns the verdict. A claim under several conditions is CONDITIONAL if it is reproduced under some and not under others."""
         if self.cases:
-            found = {case.verdict(level / len(self.cases)) for case in self.cases.values()}
-            return found.pop() if len(found) == 1 else CONDITIONAL if len(found - {COMPATIBLE}) > 1 else COMPATIBLE
+            found = set(self.case_verdicts(level).values())
+            return next((one for one in (NOT_REPRODUCED, COMPATIBLE, REPRODUCED) if one in found)) if not found >= {REPRODUCED, NOT_REPRODUCED} else CONDITIONAL
         return COMPATIBLE if self.p > level else min(
             (self.p_for, REPRODUCED), (self.p_against, NOT_REPRODUCED), (self.p_plateau, PLATEAU))[1]
 

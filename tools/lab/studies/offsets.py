@@ -115,16 +115,15 @@ def predicted_u(spectra, pes, offsets, size):
     return np.round(expected_maximum(pes) * (spectra @ weights.T)**0.5, 12)
 
 
-def pattern_u(cost, pes):
-    """Returns {pattern: load imbalance u} of the patterns by others that are no cyclic mapping."""
-    y, x = np.indices(cost.shape)
-    root, pixels = round(pes**0.5), cost.size
+def pattern_owners(size, pes):
+    """Returns {pattern: the PE of each pixel} of the patterns by others that are no cyclic mapping."""
+    y, x = np.indices((size, size))
+    root, pixels = round(pes**0.5), size * size
     strips = min(16 * pes, pixels)
     bits = strips.bit_length() - 1
     strip = np.arange(pixels) * strips // pixels
     reversed_strip = sum((strip >> bit & 1) << bits - 1 - bit for bit in range(bits))
-    owners = {"offset and shift": (x + root * y + y // root) % pes, "bit reversal": (reversed_strip * pes // strips).reshape(cost.shape)}
-    return {name: imbalance(np.bincount(owner.ravel(), cost.ravel(), pes)) for name, owner in owners.items()}
+    return {"offset and shift": ((x + root * y + y // root) % pes).ravel(), "bit reversal": reversed_strip * pes // strips}
 
 
 def relative_time(u, offset, pes, costs, rate):
@@ -168,8 +167,8 @@ def measure(ensemble, spectra, pes, size):
     chosen = {name: np.broadcast_to(p, len(u)) for name, p in chosen.items()}
     values = {name: u[np.arange(len(u)), p] for name, p in chosen.items()}
     values["2-D grid"] = ensemble.map(lambda costs: imbalance(raya.loads(costs.trace, pes=pes, mapping=f"grid:{root}x{root}")))
-    others_u = [pattern_u(costs.trace, pes) for costs in ensemble.pictures]
-    values |= {name: np.array([u[name] for u in others_u]) for name in others_u[0]}
+    values |= {name: ensemble.map(lambda costs, owners=owners: imbalance(np.bincount(owners, costs.trace.ravel(), pes)))
+               for name, owners in pattern_owners(size, pes).items()}
     values["random"] = np.array([random_u(costs.trace, pes, seed) for seed, costs in enumerate(ensemble.pictures)])
     return values, chosen, u, own
 

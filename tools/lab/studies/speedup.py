@@ -24,7 +24,7 @@ OFFSET = 16  # the paper's offset for 256 PEs
 HIGH = 0.8  # minimum efficiency by the rules of the claims proportional, few-processors and finer-images
 CLOSE, SIMILAR = 0.1, 0.05  # maximum relative difference by the rules of the claims near-cap and near-pixel-machine; like-2d
 POWERS = [2**k for k in range(1, 9)]
-FINER_VIEWS = 18  # number of pictures in each of the ensembles at 512 x 512 and 1024 x 1024
+FINER_VIEWS = 54  # number of pictures in each of the ensembles at 512 x 512 and 1024 x 1024
 COLUMNS = {"p = 0": lambda pes: 0 * pes, "p = 16": lambda pes: 0 * pes + OFFSET,
            "p = round(sqrt(P))": lambda pes: np.rint(np.sqrt(pes)).astype(int)}
 
