@@ -60,6 +60,8 @@ std::uint32_t word_at(const std::string& bytes, std::size_t at) {
     return word;
 }
 
+constexpr const char* kTruncated = "PLY: numbers are missing; the file may be truncated";
+
 struct PlyProperty {
     std::string name, type, length_type;  // length_type: of a list, otherwise empty
 };
@@ -90,7 +92,7 @@ void check_numbers(std::istream& in, const PlyElement& element) {
         std::istringstream numbers(line);
         const auto next_number = [&] {
             std::string number;
-            if (!(numbers >> number)) throw Fault("PLY: numbers are missing; the file may be truncated");
+            if (!(numbers >> number)) throw Fault(kTruncated);
             return std::atof(number.c_str());
         };
         for (const PlyProperty& property : element.properties)
@@ -456,13 +458,17 @@ class BinaryPly {
         const std::size_t floats = has_normals ? 6 : 3, faces = header_.elements[1].count;
         output.document["meshes"].push_back(
             {{"name", ""}, {"surface", 0}, {"faces", faces}, {"has_normals", has_normals}});
-        const std::vector<std::uint32_t> corners = read_corners(vertex.count);
+        const std::vector<char> lists = read_lists(vertex.count);
         output.put(output.document);
-        for (std::size_t at = 0; at < corners.size();) {
-            const std::uint32_t size = corners[at++];
-            output.put(&size, 1);
-            for (const std::size_t end = at + size; at < end; ++at)
-                output.put(vectors.data() + floats * corners[at], floats);
+        std::vector<float> of_face;  // all bits of a face: its number of corners, then their vectors
+        for (auto next = lists.begin(); next != lists.end();) {
+            const auto size = static_cast<unsigned char>(*next++);
+            of_face.assign(1, std::bit_cast<float>(std::uint32_t{size}));
+            for (unsigned k = 0; k < size; ++k, next += 4) {
+                const auto corner = vectors.begin() + floats * value_at<std::uint32_t>(&*next);
+                of_face.insert(of_face.end(), corner, corner + floats);
+            }
+            output.put(of_face.data(), of_face.size());
         }
     }
 
@@ -486,8 +492,7 @@ class BinaryPly {
     }
 
     void read(char* bytes, std::size_t count) {
-        if (!in_.read(bytes, static_cast<std::streamsize>(count)))
-            throw Fault("PLY: numbers are missing; the file may be truncated");
+        if (!in_.read(bytes, static_cast<std::streamsize>(count))) throw Fault(kTruncated);
     }
 
     template <class Value>
@@ -533,22 +538,19 @@ class BinaryPly {
         return vectors;
     }
 
-    /// Returns the number of corners and the corners of each face.
-    std::vector<std::uint32_t> read_corners(std::uint64_t vertices) {
-        std::vector<std::uint32_t> corners;
-        std::vector<char> bytes;
+    /// Returns the bytes of the faces: number of corners, 8 bits, and corners, 32 bits each.
+    std::vector<char> read_lists(std::uint64_t vertices) {
+        std::vector<char> bytes(std::istreambuf_iterator<char>(in_), {});
+        std::size_t at = 0;
         for (std::uint64_t face = 1; face <= header_.elements[1].count; ++face) {
-            unsigned char size = 0;
-            read(reinterpret_cast<char*>(&size), 1);
-            bytes.resize(4u * size);
-            read(bytes.data(), bytes.size());
-            corners.push_back(size);
-            for (unsigned k = 0; k < size; ++k) {
-                corners.push_back(value_at<std::uint32_t>(bytes.data() + 4 * k));
-                check_corner(corners.back(), vertices, "", face);
-            }
+            const std::size_t size = at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0;
+            if (at + 1 + 4 * size > bytes.size()) throw Fault(kTruncated);
+            for (std::size_t k = 0; k < size; ++k)
+                check_corner(value_at<std::uint32_t>(&bytes[at + 1 + 4 * k]), vertices, "", face);
+            at += 1 + 4 * size;
         }
-        return corners;
+        bytes.resize(at);
+        return bytes;
     }
 
     std::istream& in_;

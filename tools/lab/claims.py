@@ -108,8 +108,8 @@ def decide(judgements, tests=TESTS):
     for judgement in judgements:
         judgement.verdict = judgement.test.verdict(LEVEL / tests) if judgement.test else judgement.claim.kind
         by_case = judgement.test.case_verdicts(LEVEL / tests) if judgement.test else {}
-        judgement.conditions = "; ".join(f"{verdict}: {', '.join(name for name, one in by_case.items() if one == verdict)}"
-                                         for verdict in dict.fromkeys(by_case.values()))
+        judgement.conditions = " ".join(f"{verdict.capitalize()}: {'; '.join(name for name, one in by_case.items() if one == verdict)}."
+                                        for verdict in dict.fromkeys(by_case.values()))
 
 
 def errors_sentence(judgements):

@@ -154,7 +154,7 @@ def summary_of(pages):
         return [c for page in pages for c in page.claims if c.verdict == verdict]
 
     def reasons(verdict):
-        return [f'{c.claim.paper}, {c.claim.place}: "{c.claim.statement}" {c.conditions and c.conditions.capitalize() + ". "}{c.reason}' for c in of_verdict(verdict)]
+        return [f'{c.claim.paper}, {c.claim.place}: "{c.claim.statement}" {c.conditions and c.conditions + " "}{c.reason}' for c in of_verdict(verdict)]
 
     claims = [c for page in pages for c in page.claims]
     return [("Claims that hold", [c.claim.statement + (c.qualification and f" The rule {c.qualification}.") for c in of_verdict(REPRODUCED)]),

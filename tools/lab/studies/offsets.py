@@ -18,7 +18,7 @@ Why does an offset p balance the load, and does the autocorrelation of a picture
 - Rotations each way: of the ring, to exchange neighbouring rows: min(p, P - p) + 1, for P <= W.
 - Time: computing with the largest load and one exchange of neighbours, 2 (min(p, P - p) + 1) rotations at a multiple of the SPA's link rate, relative to
   computing with equal loads. Modelled.
-- With a tree: four views of each of four scenes, u(sqrt(P)) without and with raya's BVH, whose tests and steps the costs then count.
+- With a tree: four views of each of four scenes, u without and with raya's BVH, whose tests and steps the costs then count.
 - The random mapping gives each pixel to a random PE, with equally many pixels for every PE (one permutation for each picture).
 - Intervals (+-): 95 %; the families are strata, so they hold for these families.
 - Output: offsets.csv has, for each number of PEs P, the mean u of each way to choose the offset. offsets-accuracy.csv compares predictions with
@@ -28,6 +28,7 @@ import numpy as np
 import pandas as pd
 import raya
 from raya.lab import Page, Plot, Series, Table, estimate, fitted_exponent, range_text, study
+from raya.lab.claims import CONTROLS
 from raya.lab.laboratory import SPA, WIDE_FAMILIES, imbalance, view_of
 from raya.lab.spa import FACTOR, spa_ms
 from scipy.stats import norm, spearmanr
@@ -134,15 +135,17 @@ def relative_time(u, offset, pes, costs, rate):
 
 
 def tree_rows(lab, size):
-    """Returns rows with the mean u of views of a scene at sqrt(P), without and with the BVH."""
+    """Returns rows with the mean u of views of a scene, without and with the BVH, and the difference at sqrt(P) within the same view."""
     rows = []
     for name, scene in {"balls-3": raya.generate.balls(3), "lattice-4": raya.generate.lattice(4), "gears-2": raya.generate.gears(2),
                         "random-2000": raya.generate.random(2000)}.items():
         make = view_of(scene.renamed(name))
-        u = {accel: np.array([imbalance(raya.loads(lab.costs(make(lab.seed + i), size, accel=accel).trace, offset=round(size**0.5)))
-                              for i in range(TREE_VIEWS)]) for accel in ("none", "bvh")}
-        rows.append({"scene": name, "objects": scene.objects, **{f"u, {accel}": values.mean() for accel, values in u.items()},
-                     **{f"+-, {accel}": estimate(values).half for accel, values in u.items()}})
+        views = {accel: [lab.costs(make(lab.seed + i), size, accel=accel).trace for i in range(TREE_VIEWS)] for accel in ("none", "bvh")}
+        u = {(accel, label): np.array([imbalance(raya.loads(cost, pes=size, **options)) for cost in costs]) for accel, costs in views.items()
+             for label, options in {"p = sqrt(P)": {"offset": round(size**0.5)}, "column split": {"offset": 0}, **CONTROLS}.items()}
+        with_tree = estimate(u["bvh", "p = sqrt(P)"] - u["none", "p = sqrt(P)"])
+        rows.append({"scene": name, "objects": scene.objects, **{f"u, {accel}, {label}": values.mean() for (accel, label), values in u.items()},
+                     "difference": with_tree.mean, "+-": with_tree.half})
     return rows
 
 
@@ -161,7 +164,7 @@ def measure(ensemble, spectra, pes, size):
     others = predicted_u(np.array([spectra[families != name].mean(0) for name in names]), pes, offsets, size)
     shortest = np.round([dual_lengths(pes, p, size).min() for p in offsets], 9)
     u = ensemble.map(lambda costs: raya.imbalances(costs.trace, pes, offsets))
-    chosen = {"column split (p = 0)": 0, "p = sqrt(P)": root % count, "p = sqrt(P) / k": root // sharing, "longest dual vector": shortest.argmax(),
+    chosen = {"column split (p = 0)": 0, "p = sqrt(P)": root % count, "p = 3/4 sqrt(P)": round(0.75 * root) % count, "p = sqrt(P) / k": root // sharing, "longest dual vector": shortest.argmax(),
               "golden ratio": round(count * GOLDEN), "diagonal": 1, "predicted, own": own.argmin(1),
               "predicted, others": [others[names.index(name)].argmin() for name in ensemble.families], "best of all offsets": u.argmin(1)}
     chosen = {name: np.broadcast_to(p, len(u)) for name, p in chosen.items()}
@@ -210,7 +213,7 @@ def offsets(lab, scenes):
             f"correlation over the offsets of a picture is {range_text(accuracy['median rank correlation'], 2)}."]
     return Page({"size": size, "pictures": len(families), "families": len(set(families))}, findings,
                 tables=[Table("offsets", "Mean u of each choice of the offset", rows),
-                        *([Table("offsets-tree", "u with p = sqrt(P), without and with a tree", tree_rows(lab, size))] if not scenes else []),
+                        *([Table("offsets-tree", "u without and with a tree", tree_rows(lab, size))] if not scenes else []),
                         Table("offsets-spectrum", "Fall of the power with the frequency", spectrum_rows(ensemble, spectra)),
                         Table("offsets-accuracy", "Predictions and measured u over all offsets of a picture", accuracy)],
                 plots=[Plot("offsets", f"Mean load imbalance minus that of p = sqrt(P), {shown['P'].iloc[0]} PEs", "mapping", "mean of u - u(sqrt(P))",
