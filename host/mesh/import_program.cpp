@@ -527,7 +527,6 @@ class BinaryPly {
         constexpr std::size_t kBatch = 4096;
         std::vector<char> batch(kBatch * stride);
         std::vector<float> vectors;
-        vectors.reserve(places.size() * vertex.count);
         for (std::size_t first = 0; first < vertex.count; first += kBatch) {
             const std::size_t count = std::min<std::size_t>(kBatch, vertex.count - first);
             read(batch.data(), count * stride);

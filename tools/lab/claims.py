@@ -76,7 +76,7 @@ class Judgement:
     def qualification(self):
         """Which controls also fulfil the rule of a reproduced claim; otherwise empty."""
         passing = [control for control in self.controls if self.passes(control) == "yes"]
-        return f"does not discriminate: {' and '.join(passing)} also" if passing and self.verdict == REPRODUCED else ""
+        return f"does not discriminate, {' and '.join(passing)} fulfil it, too" if passing and self.verdict == REPRODUCED else ""
 
 
 def judged(key, test, ensemble="", reason="", controls=None):

@@ -89,7 +89,9 @@ class Test:
         """Returns the verdict. A claim under several conditions is CONDITIONAL if it is reproduced under some and not under others."""
         if self.cases:
             found = set(self.case_verdicts(level).values())
-            return next((one for one in (NOT_REPRODUCED, COMPATIBLE, REPRODUCED) if one in found)) if not found >= {REPRODUCED, NOT_REPRODUCED} else CONDITIONAL
+            if found >= {REPRODUCED, NOT_REPRODUCED}:
+                return CONDITIONAL
+            return found.pop() if len(found) == 1 else NOT_REPRODUCED if NOT_REPRODUCED in found else COMPATIBLE
         return COMPATIBLE if self.p > level else min(
             (self.p_for, REPRODUCED), (self.p_against, NOT_REPRODUCED), (self.p_plateau, PLATEAU))[1]
 

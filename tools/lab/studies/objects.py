@@ -26,7 +26,7 @@ Do random objects take longer than even ones, are straddling objects the reason,
 - The depth of primary rays, the number of voxels that they visit, is counted in renders without lights. The growth of the overlapped time is
   analysed from the fewest to the most objects: growth of objects / growth of time is a product of four factors (table of growth).
 - Output: objects.csv (modelled times in ms and counts), objects-ratios.csv, objects-growth.csv, objects-primary.csv, objects-words.csv, and
-  objects-sweep.csv (random / even time by radius and processor clock). Columns +- are half widths of 95 % intervals.
+  objects-sweep.csv (random / even time by radius and by the root's cost of a primary ray). Columns +- are half widths of 95 % intervals.
 """
 import numpy as np
 import pandas as pd
