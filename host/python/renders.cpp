@@ -106,9 +106,9 @@ AsyncMachine async_machine(const py::kwargs& changes) {
             return name == parameter;
         };
         if (!sets("cycle_ns", machine.cycle_ns) && !sets("primary_factor", machine.primary_factor) &&
-            !sets("message_cycles", machine.message_cycles) &&
-            !sets("word_cycles", machine.word_cycles) && !sets("one_way", machine.one_way) &&
-            !sets("both_ways", machine.both_ways) && !sets("buffer", machine.buffer))
+            !sets("message_cycles", machine.message_cycles) && !sets("word_cycles", machine.word_cycles) &&
+            !sets("one_way", machine.one_way) && !sets("both_ways", machine.both_ways) &&
+            !sets("buffer", machine.buffer))
             throw py::type_error(fmt::format("unknown parameter of the machine: {}", name));
     }
     return machine;
@@ -167,7 +167,8 @@ void add_torus_results(py::module_& module, ResultClass& result) {
             "rendered with packets=True.")
         .def("simulate", simulated_ms,
              "Modelled ms that the torus takes without supersteps. Keyword arguments change the machine: cycle_ns (of "
-             "the processor), primary_factor (of the cycles for making primary rays), message_cycles and word_cycles (processor cycles per message and per word), one_way and "
+             "the processor), primary_factor (of the cycles for making primary rays), message_cycles and word_cycles "
+             "(processor cycles per message and per word), one_way and "
              "both_ways (rate of a link in bytes/s if one direction or both directions transfer; 0: transfers take no "
              "time), buffer (number of rays, and of returns, that an output thread holds). Raises ValueError unless "
              "rendered with async_=True.");

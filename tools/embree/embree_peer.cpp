@@ -2,8 +2,9 @@
 // all cores.
 //
 //   embree_peer SCENE.nff WxH BOUNCES SAMPLES
-//   embree_peer SCENE.nff WxH BOUNCES SAMPLES tiles     prints only the least nanoseconds of each tile of 4 x 4 pixels, traced as `coherent` by one
-//                                                       thread, a line for each row of tiles
+//   embree_peer SCENE.nff WxH BOUNCES SAMPLES tiles
+//       prints only the least nanoseconds of each tile of 4 x 4 pixels, traced as `coherent` by one thread, a line for
+//       each row of tiles
 //
 // Prints for each of three methods "METHOD RAYS SECONDS...", with the seconds of each render, and "mean METHOD R G B",
 // the image's mean colour; then "build SECONDS". `single` traces single rays; `sixteen` traces the ray trees of 4 x 4
