@@ -79,7 +79,10 @@ def spectrum_rows(ensemble, spectra):
 
 def hexagonal_gain(exponent, radius=200):
     """Returns by which fraction the standard deviation of the loads with a hexagonal dual lattice is below that with a square one of the same density,
-    if power = c f^-exponent with exponent > 2. Sums the points within the radius; the others are alike for both lattices."""
+    if power = c f^-exponent; nan if the exponent is at most 2, where the sum diverges. Sums the points within the radius; the others are alike for
+    both lattices."""
+    if exponent <= 2:
+        return np.nan
     i, j = np.meshgrid(*[np.arange(-2 * radius, 2 * radius + 1)] * 2)
     scale = (2 / 3**0.5)**0.5  # side of the hexagonal lattice's cells of area 1
 
