@@ -15,14 +15,14 @@ namespace raya {
 using Json = nlohmann::json;
 
 /// A fault of the file.
-struct Fault : std::runtime_error {
+struct MeshFault : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
 /// What the program writes. If raya has closed the pipe, SIGPIPE ends the program.
-class Output {
+class ImportOutput {
   public:
-    explicit Output(int descriptor) : file_(::fdopen(descriptor, "wb")) {
+    explicit ImportOutput(int descriptor) : file_(::fdopen(descriptor, "wb")) {
         if (file_ == nullptr || std::setvbuf(file_, nullptr, _IOFBF, 1 << 16) != 0) std::exit(EXIT_FAILURE);
     }
 
@@ -59,9 +59,9 @@ class Output {
 /// Refuses a corner that is no vertex. `face`: from 1.
 inline void check_corner(std::uint32_t corner, std::uint64_t vertices, const std::string& mesh, std::uint64_t face) {
     if (corner >= vertices)
-        throw Fault((mesh.empty() ? "" : "mesh '" + mesh + "', ") + "face " + std::to_string(face) +
-                    ": there is no vertex " + std::to_string(corner) + "; the mesh has " + std::to_string(vertices) +
-                    ", numbered from 0; the file may be damaged");
+        throw MeshFault((mesh.empty() ? "" : "mesh '" + mesh + "', ") + "face " + std::to_string(face) +
+                        ": there is no vertex " + std::to_string(corner) + "; the mesh has " +
+                        std::to_string(vertices) + ", numbered from 0; the file may be damaged");
 }
 
 }  // namespace raya

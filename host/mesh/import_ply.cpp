@@ -46,7 +46,7 @@ void check_numbers(std::istream& in, const PlyElement& element) {
         std::istringstream numbers(line);
         const auto next_number = [&] {
             std::string number;
-            if (!(numbers >> number)) throw Fault(kTruncated);
+            if (!(numbers >> number)) throw MeshFault(kTruncated);
             return std::atof(number.c_str());
         };
         for (const PlyProperty& property : element.properties)
@@ -60,14 +60,14 @@ PlyHeader read_ply_header(std::istream& in) {
     PlyHeader header;
     std::vector<PlyElement>& elements = header.elements;
     for (std::string line, word, next; word != "end_header"; next.clear()) {
-        if (!std::getline(in, line)) throw Fault("PLY: the header has no end_header");
+        if (!std::getline(in, line)) throw MeshFault("PLY: the header has no end_header");
         std::istringstream words(line);
         words >> word >> next;
         if (word == "format") header.format = next;
         if (word == "element") {
             elements.push_back({next, 0, {}});
-            if (!(words >> elements.back().count)) throw Fault("PLY: the header has an element without a number");
-            if (elements.back().count > UINT32_MAX) throw Fault("PLY: more elements than raya reads");
+            if (!(words >> elements.back().count)) throw MeshFault("PLY: the header has an element without a number");
+            if (elements.back().count > UINT32_MAX) throw MeshFault("PLY: more elements than raya reads");
         }
         if (word == "property" && !elements.empty()) {
             PlyProperty property{.name = {}, .type = next, .length_type = {}};
@@ -78,10 +78,10 @@ PlyHeader read_ply_header(std::istream& in) {
     }
     for (const PlyElement& element : elements) {
         if (element.name == "tristrips")
-            throw Fault("PLY: raya does not read triangle strips; store the faces instead");
+            throw MeshFault("PLY: raya does not read triangle strips; store the faces instead");
         for (const char* const axis : {"x", "y", "z"})
             if (element.name == "vertex" && !element.has(axis))
-                throw Fault(std::string("PLY: the vertices have no property ") + axis);
+                throw MeshFault(std::string("PLY: the vertices have no property ") + axis);
         if (header.format == "ascii") check_numbers(in, element);
     }
     return header;
@@ -108,7 +108,7 @@ class BinaryPly {
                });
     }
 
-    void put(Output& output) {
+    void put(ImportOutput& output) {
         const PlyElement& vertex = header_.elements[0];
         const bool has_normals = vertex.has("nx") && vertex.has("ny") && vertex.has("nz");
         if (vertex.has("red") || vertex.has("green") || vertex.has("blue")) output.ignore("colour of vertices");
@@ -150,7 +150,7 @@ class BinaryPly {
     }
 
     void read(char* bytes, std::size_t count) {
-        if (!in_.read(bytes, static_cast<std::streamsize>(count))) throw Fault(kTruncated);
+        if (!in_.read(bytes, static_cast<std::streamsize>(count))) throw MeshFault(kTruncated);
     }
 
     template <class Value>
@@ -179,7 +179,8 @@ class BinaryPly {
             if (places.size() == 3 && !has_normals) break;
             const std::size_t i = vertex.index_of(name);
             const std::string& type = vertex.properties[i].type;
-            if (!is_floating(type)) throw Fault(std::string("PLY: raya reads ") + name + " only as float or double");
+            if (!is_floating(type))
+                throw MeshFault(std::string("PLY: raya reads ") + name + " only as float or double");
             places.emplace_back(starts[i], &type);
         }
         constexpr std::size_t kBatch = 4096;
@@ -201,7 +202,7 @@ class BinaryPly {
         std::size_t at = 0;
         for (std::uint64_t face = 1; face <= header_.elements[1].count; ++face) {
             const std::size_t size = at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0;
-            if (at + 1 + 4 * size > bytes.size()) throw Fault(kTruncated);
+            if (at + 1 + 4 * size > bytes.size()) throw MeshFault(kTruncated);
             for (std::size_t k = 0; k < size; ++k)
                 check_corner(value_at<std::uint32_t>(&bytes[at + 1 + 4 * k]), vertices, "", face);
             at += 1 + 4 * size;
@@ -217,7 +218,7 @@ class BinaryPly {
 
 }  // namespace
 
-bool put_plain_ply(const std::string& file, Output& output) {
+bool put_plain_ply(const std::string& file, ImportOutput& output) {
     std::ifstream in(file, std::ios::binary);
     const PlyHeader header = read_ply_header(in);
     BinaryPly ply(in, header);

@@ -7,7 +7,7 @@
 namespace raya {
 
 /// Writes the mesh of a binary PLY file that has only vertices and faces. Returns false, and writes nothing, if assimp
-/// must read the file. Throws Fault for faults that assimp passes over silently.
-bool put_plain_ply(const std::string& file, Output& output);
+/// must read the file. Throws MeshFault for faults that assimp passes over silently.
+bool put_plain_ply(const std::string& file, ImportOutput& output);
 
 }  // namespace raya

@@ -59,24 +59,24 @@ void check_stl(std::istream& in) {
     const std::size_t binary_size = kFacet * word_at(bytes, kHeader - 4);
     bytes.append(std::istreambuf_iterator<char>(in), {});
     if (bytes.size() != kHeader + binary_size && bytes.find("endsolid") == bytes.npos)
-        throw Fault("STL: there is no endsolid; the file may be truncated");
+        throw MeshFault("STL: there is no endsolid; the file may be truncated");
 }
 
 /// Refuses broken JSON, and required extensions that change the geometry.
 void check_gltf(std::string bytes, bool is_binary) {
     constexpr std::size_t kHeader = 20;  // bytes of a .glb before the JSON; the word at byte 12 is the JSON's length
     if (is_binary) {
-        if (bytes.size() < kHeader || !bytes.starts_with("glTF")) throw Fault("glTF: the file is not a .glb");
+        if (bytes.size() < kHeader || !bytes.starts_with("glTF")) throw MeshFault("glTF: the file is not a .glb");
         bytes = bytes.substr(kHeader, word_at(bytes, 12));
     }
     const Json json = Json::parse(bytes, nullptr, false);
-    if (!json.is_object()) throw Fault("glTF: the JSON is broken or no object");
+    if (!json.is_object()) throw MeshFault("glTF: the JSON is broken or no object");
     const auto required = json.find("extensionsRequired");
     for (const Json& name : required != json.end() && required->is_array() ? *required : Json::array()) {
         const std::string text = name.is_string() ? name.get<std::string>() : "";
         if (std::ranges::none_of(std::vector{"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"},
                                  [&](const char* start) { return text.starts_with(start); }))
-            throw Fault("glTF: raya cannot read the required extension " + text + "; export the file without it");
+            throw MeshFault("glTF: raya cannot read the required extension " + text + "; export the file without it");
     }
 }
 
@@ -108,7 +108,7 @@ void limit_resources() {
 /// and the same names again.
 class ReportingFiles : public Assimp::IOSystem {  // assimp 6 makes DefaultIOSystem final
   public:
-    ReportingFiles(Output& output, const std::filesystem::path& mesh)
+    ReportingFiles(ImportOutput& output, const std::filesystem::path& mesh)
         : output_(output),
           mesh_(std::filesystem::canonical(mesh)),
           folder_(std::filesystem::canonical(std::filesystem::absolute(mesh).parent_path()) / "") {}
@@ -137,7 +137,7 @@ class ReportingFiles : public Assimp::IOSystem {  // assimp 6 makes DefaultIOSys
 
   private:
     Assimp::DefaultIOSystem files_;
-    Output& output_;
+    ImportOutput& output_;
     std::filesystem::path mesh_, folder_;
     bool is_missing_ = false;
 };
@@ -170,7 +170,7 @@ struct Surface {
 };
 
 /// Maps the reflection of an MTL material. Its illumination models 3 to 9 reflect; the others have only a highlight.
-void map_obj_reflection(const aiMaterial& material, Surface& s, Output& output, const std::string& place) {
+void map_obj_reflection(const aiMaterial& material, Surface& s, ImportOutput& output, const std::string& place) {
     constexpr int kFirstMirror = 3;
     const auto specular = property(material, AI_MATKEY_COLOR_SPECULAR, aiColor3D(0, 0, 0));
     if (is_black(specular)) return;
@@ -182,7 +182,7 @@ void map_obj_reflection(const aiMaterial& material, Surface& s, Output& output, 
 }
 
 /// Maps the reflection of a glTF material: raya's mirrors are sharp, so that a rough metal is mostly diffuse.
-void map_gltf_reflection(const aiMaterial& material, Surface& s, Output& output, const std::string& place) {
+void map_gltf_reflection(const aiMaterial& material, Surface& s, ImportOutput& output, const std::string& place) {
     const float metallic = property(material, AI_MATKEY_METALLIC_FACTOR, 1.0f);
     const float smoothness = 1 - property(material, AI_MATKEY_ROUGHNESS_FACTOR, 1.0f);
     s.specular = metallic * smoothness;
@@ -202,7 +202,7 @@ void map_transparency(const aiMaterial& material, Surface& s) {
     if (index > 0) s.refraction_index = index;
 }
 
-void count_textures(const aiMaterial& material, Output& output, const std::string& place) {
+void count_textures(const aiMaterial& material, ImportOutput& output, const std::string& place) {
     std::set<std::string> textures;  // assimp lists some of them in two types
     for (int type = aiTextureType_NONE + 1; type <= AI_TEXTURE_TYPE_MAX; ++type)
         for (unsigned i = 0; i < material.GetTextureCount(static_cast<aiTextureType>(type)); ++i) {
@@ -213,7 +213,7 @@ void count_textures(const aiMaterial& material, Output& output, const std::strin
     for (std::size_t i = 0; i < textures.size(); ++i) output.ignore("texture", place);
 }
 
-void put_material(const aiMaterial& material, bool is_gltf, Output& output) {
+void put_material(const aiMaterial& material, bool is_gltf, ImportOutput& output) {
     Surface s;
     const std::string name = property(material, AI_MATKEY_NAME, aiString()).C_Str();
     const std::string place = "material '" + name + "'";
@@ -255,7 +255,7 @@ void check_corners(const aiMesh& mesh) {
             check_corner(mesh.mFaces[i].mIndices[k], mesh.mNumVertices, mesh.mName.C_Str(), i + 1);
 }
 
-void put_faces(const PlacedMesh& placed, bool has_normals, Output& output) {
+void put_faces(const PlacedMesh& placed, bool has_normals, ImportOutput& output) {
     const aiMesh& mesh = *placed.mesh;
     const bool is_mirrored = placed.to_scene.Determinant() < 0;
     const aiMatrix3x3 of_normals = aiMatrix3x3(placed.to_scene).Inverse().Transpose();
@@ -274,7 +274,7 @@ void put_faces(const PlacedMesh& placed, bool has_normals, Output& output) {
 }
 
 /// assimp invents grey materials for STL and PLY. STL's normals are those of the facets, which raya computes.
-void put_scene(const aiScene& scene, const std::string& extension, Output& output) {
+void put_scene(const aiScene& scene, const std::string& extension, ImportOutput& output) {
     const bool has_materials = extension != "stl" && extension != "ply";
     const auto ignore = [&](unsigned count, const char* what) {
         for (; count > 0; --count) output.ignore(what);
@@ -302,7 +302,7 @@ void put_scene(const aiScene& scene, const std::string& extension, Output& outpu
     for (const PlacedMesh& placed : meshes) put_faces(placed, has_normals(*placed.mesh), output);
 }
 
-[[noreturn]] void import(Output& output, const std::string& file) {
+[[noreturn]] void import(ImportOutput& output, const std::string& file) {
     try {
         Assimp::Importer importer;
         importer.SetIOHandler(new ReportingFiles(output, file));  // the importer deletes it
@@ -318,7 +318,7 @@ void put_scene(const aiScene& scene, const std::string& extension, Output& outpu
         if (scene == nullptr) output.refuse(std::string("assimp: ") + importer.GetErrorString());
         put_scene(*scene, extension, output);
         output.end();
-    } catch (const Fault& fault) {
+    } catch (const MeshFault& fault) {
         output.refuse(fault.what());
     } catch (const std::bad_alloc&) {
         output.refuse("it needs more than half of this computer's memory; the file may be damaged");
@@ -337,6 +337,6 @@ int main(int argc, char** argv) {
     // A message of the C library on a damaged heap would stand between raya's own messages.
     if (std::freopen("/dev/null", "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr)
         return EXIT_FAILURE;
-    raya::Output output(std::atoi(argv[1]));
+    raya::ImportOutput output(std::atoi(argv[1]));
     raya::import(output, argv[2]);
 }
