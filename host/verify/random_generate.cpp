@@ -61,7 +61,7 @@ class Generator {
     }
 
     KernelType type() {
-        const auto scalar = static_cast<Scalar>(below(12) % 10);  // 12: integers of 8 bits twice as often
+        const auto scalar = static_cast<Scalar>(chance(0.3) ? 8 + below(2) : below(8));
         if (scalar == Scalar::kReal) return {scalar, 1};
         return {scalar, one_of({1, 1, 1, 1, 1, 1, 2, 2, 3, 4, 4, 8, 16})};
     }
@@ -163,6 +163,11 @@ class Generator {
         std::vector<Expression> arguments;
         for (int i = 0; i < kKernelOperations[operation].arguments; ++i)
             arguments.push_back(expression(operands, depth - 1));
+        if (group == Group::kCompare && is_integer(operands.scalar) && chance(0.3)) {  // numbers that are often equal
+            const Expression three = make(kConstant, {operands.scalar, 1}, {}, 3);
+            for (Expression& a : arguments)
+                a = make(kAnd, operands, {a, operands.width == 1 ? three : make(kSpread, operands, {three})});
+        }
         return make(operation, result, arguments);
     }
 

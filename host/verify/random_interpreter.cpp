@@ -23,8 +23,9 @@ struct Frame {
 
 /// A work-item: elements[object][element][field].
 struct Item {
-    Frame frame;
-    std::vector<std::vector<std::vector<Value>>> elements;
+    std::size_t number = 0;  // its global ID
+    Frame frame{};
+    std::vector<std::vector<std::vector<Value>>> elements{};
 };
 
 class Interpreter {
@@ -33,7 +34,7 @@ class Interpreter {
 
     KernelResults run() {
         results_.counters.assign(kCounters, 0);
-        for (std::uint32_t group = 0; group < kernel_.groups; ++group) run_group();
+        for (std::uint32_t group = 0; group < kernel_.groups; ++group) run_group(group);
         return results_;
     }
 
@@ -44,13 +45,14 @@ class Interpreter {
         return values;
     }
 
-    void run_group() {
+    void run_group(std::size_t group) {
         const KernelFunction& body = kernel_.functions.back();
-        Item item{{start_values(body.variables)}, {}};
+        Item item{.frame = {start_values(body.variables)}};
         for (const MemoryObject& object : kernel_.objects)
             item.elements.emplace_back(object.space == MemoryObject::kPrivate ? kPrivateElements : 1,
                                        start_values(object.fields));
         items_.assign(kernel_.group_size, item);
+        for (std::size_t i = 0; i < items_.size(); ++i) items_[i].number = group * items_.size() + i;
         run_together(body.body);
         for (const Item& done : items_) append_results(done);
     }
@@ -171,7 +173,7 @@ class Interpreter {
             case kVariable:
                 return frame.variables[e.number];
             case kInput:
-                return {in_[a[0][0] % kInputWords]};
+                return {in_[(a[0][0] + item->number) % kInputWords]};
             case kElement:
                 return item->elements[e.object][a[0][0] % item->elements[e.object].size()][e.number];
             case kMake:

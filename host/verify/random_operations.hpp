@@ -46,7 +46,7 @@ enum class Group { kByNumber, kInteger, kFloat, kReal, kCompare };
 enum OperationNumber : std::size_t {
     kConstant,
     kVariable,
-    kInput,    // word argument 0 of the input
+    kInput,    // word argument 0 + the number of the work-item of the input
     kElement,  // element argument 0 of memory object `object`, field `number`
     kCallFunction,
     kMake,    // a vector of scalars
@@ -58,12 +58,16 @@ enum OperationNumber : std::size_t {
     kAny,
     kConvert,   // an integer to one of any width
     kSaturate,  // an integer or float to an integer
-    kToFloat,   // an integer to float
+    kToFloat,   // an integer / 2^12 to float
     kBitsOf,    // the bits of a float, or of an integer of the other sign
     kFloatOf,   // a float of these bits
     kRealOf,    // a float, rounded to the format
     kRealOfIndex,
-    kFloatOfReal
+    kFloatOfReal,
+    kAdd,
+    kSubtract,
+    kMultiply,
+    kAnd
 };
 
 /// Elements of the arguments; the scalar types of the result and of the first argument.
@@ -155,7 +159,8 @@ inline constexpr KernelOperation kKernelOperations[] = {
     {Group::kByNumber, "convert_{T}({0})", 1, RAYA_RESULT(cut_wide(x.to, wide(x.from, x.a)))},
     {Group::kByNumber, "convert_{T}_sat({0})", 1,
      RAYA_RESULT(saturated(x.to, is_integer(x.from) ? wide(x.from, x.a) : static_cast<Wide>(float_of(x.a))))},
-    {Group::kByNumber, "safe_{T}(convert_{T}({0}))", 1, RAYA_RESULT(safe_bits(static_cast<float>(wide(x.from, x.a))))},
+    {Group::kByNumber, "safe_{T}(convert_{T}({0}) * ({T})(0x1p-12f))", 1,
+     RAYA_RESULT(safe_bits(static_cast<float>(wide(x.from, x.a)) * 0x1p-12F))},
     {Group::kByNumber, "as_{T}({0})", 1, RAYA_RESULT(x.a)},
     {Group::kByNumber, "safe_{T}(as_{T}({0}))", 1, RAYA_RESULT(safe_bits(float_of(x.a)))},
     {Group::kByNumber, "safe_float(num_round({0}))", 1, RAYA_REAL(a)},

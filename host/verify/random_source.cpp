@@ -138,7 +138,7 @@ class Printer {
             case kVariable:
                 return fmt::format("v{}", e.number);
             case kInput:
-                return fmt::format("in[{} & {}u]", a[0], kInputWords - 1);
+                return fmt::format("in[({} + gid) & {}u]", a[0], kInputWords - 1);
             case kElement:
                 return fmt::format("{}.f{}", element(e.object, a[0]), e.number);
             case kCallFunction:

@@ -80,7 +80,7 @@ const std::vector<std::pair<const char*, Change>> kFaults = {
     {"num_mad rounds twice", defines("num_mad(a, b, c) num_add(num_mul(a, b), c)")},
     {"num_div by the reciprocal", defines("num_div(a, b) num_mul(a, num_div(1.0f, b))")},
     {"conversions that saturate", replaces("convert_(u?char|u?short)_sat\\((?!safe)", "convert_$1(")},
-    {"comparison", replaces(" <= \\(?v", " < v")},
+    {"comparison", replaces(" <= (?!\\(float)", " < ")},
     {"mask of a switch", replaces("& 3u\\) \\{", "& 1u) {")},
     {"case falls through", replaces("\n *break;", "")},
     {"continue ends the loop", replaces("\\) continue;", ") break;")},
