@@ -1,6 +1,4 @@
 // The generator of random kernels.
-#include <optional>
-
 #include "host/scene/split_mix.hpp"
 #include "host/verify/random_operations.hpp"
 
@@ -347,8 +345,10 @@ class Generator {
 
 }  // namespace
 
-RandomKernel random_kernel(std::uint64_t seed, std::uint64_t number) {
-    return Generator(SplitMix(seed * 0x9e3779b97f4a7c15u + number).next()).kernel();
+RandomKernel random_kernel(std::uint64_t seed, std::uint64_t number, const std::vector<std::size_t>& changes) {
+    RandomKernel kernel = Generator(SplitMix(seed * 0x9e3779b97f4a7c15u + number).next()).kernel();
+    for (const std::size_t change : changes) kernel = smaller_kernel(kernel, change).value();
+    return kernel;
 }
 
 std::vector<std::uint32_t> random_input(std::uint64_t seed, std::uint64_t number) {

@@ -1,6 +1,4 @@
 // The exact results of a random kernel, and smaller kernels.
-#include <functional>
-
 #include "host/verify/random_operations.hpp"
 
 namespace raya {
@@ -294,44 +292,69 @@ std::size_t size_of(const RandomKernel& kernel) {
     return size;
 }
 
-std::vector<RandomKernel> smaller_kernels(const RandomKernel& kernel) {
-    std::vector<RandomKernel> all;
+std::optional<RandomKernel> smaller_kernel(const RandomKernel& kernel, std::size_t change) {
+    std::optional<RandomKernel> smaller;
     RandomKernel changed = kernel;
-    // Changes a list or expression, keeps the kernel, and takes the change back.
-    const auto with = [&](auto& part, auto value) {
-        std::swap(part, value);
-        all.push_back(changed);
-        std::swap(part, value);
+    std::size_t changes = 0;
+    // Makes the change of a list or expression, keeps the kernel, and takes the change back.
+    const auto offer = [&](auto& part, const auto& value) {
+        if (changes++ != change) return;
+        auto other = value();
+        std::swap(part, other);
+        smaller = changed;
+        std::swap(part, other);
     };
-    Visitor{[&](std::vector<Statement>& list) {
+    using Statements = std::vector<Statement>;
+    const auto replaced = [](const Statements& list, std::size_t at, std::size_t count, const Statements& by) {
+        Statements all(list.begin(), list.begin() + std::ptrdiff_t(at));
+        all.insert(all.end(), by.begin(), by.end());
+        all.insert(all.end(), list.begin() + std::ptrdiff_t(std::min(at + count, list.size())), list.end());
+        return all;
+    };
+    Visitor{[&](Statements& list) {
                 for (std::size_t size = list.size(); size > 0; size /= 2)
-                    for (std::size_t at = 0; at < list.size(); at += size) {
-                        std::vector<Statement> rest(list.begin(), list.begin() + std::ptrdiff_t(at));
-                        rest.insert(rest.end(), list.begin() + std::ptrdiff_t(std::min(at + size, list.size())),
-                                    list.end());
-                        with(list, rest);
-                    }
+                    for (std::size_t at = 0; at < list.size(); at += size)
+                        offer(list, [&] { return replaced(list, at, size, {}); });
                 for (std::size_t i = 0; i < list.size(); ++i)
-                    for (const std::vector<Statement>& body : list[i].bodies) {
-                        if (list[i].kind == Statement::kLoop && leaves_loop(body)) continue;
-                        std::vector<Statement> flat(list.begin(), list.begin() + std::ptrdiff_t(i));
-                        flat.insert(flat.end(), body.begin(), body.end());
-                        flat.insert(flat.end(), list.begin() + std::ptrdiff_t(i) + 1, list.end());
-                        with(list, flat);
-                    }
+                    for (const Statements& body : list[i].bodies)
+                        if (list[i].kind != Statement::kLoop || !leaves_loop(body))
+                            offer(list, [&] { return replaced(list, i, 1, body); });
             },
             [](const Expression&) {}}
         .visit(changed);
-    Visitor{[](const std::vector<Statement>&) {},
+    Visitor{[](const Statements&) {},
             [&](Expression& e) {
                 if (e.operation <= kVariable || (e.operation == kSpread && e.arguments[0].operation == kConstant))
                     return;
-                with(e, zero_of(e.type));
-                for (const Expression& argument : std::vector<Expression>(e.arguments))
-                    if (argument.type == e.type) with(e, argument);
+                offer(e, [&] { return zero_of(e.type); });
+                for (const Expression& argument : e.arguments)
+                    if (argument.type == e.type) offer(e, [&] { return Expression(argument); });
             }}
         .visit(changed);
-    return all;
+    return smaller;
+}
+
+std::vector<std::size_t> reducing_changes(
+    RandomKernel kernel, const std::function<bool(const std::vector<std::size_t>&, const RandomKernel&)>& fails) {
+    constexpr int kMaxTrials = 1500;
+    std::vector<std::size_t> changes;
+    int trials = 0;
+    for (bool is_smaller = true; is_smaller;) {
+        is_smaller = false;
+        for (std::size_t change = 0; trials < kMaxTrials; ++trials) {
+            std::optional<RandomKernel> smaller = smaller_kernel(kernel, change);
+            if (!smaller) break;
+            changes.push_back(change);
+            if (fails(changes, *smaller)) {  // the next changes are those of the smaller kernel from the same place on
+                kernel = std::move(*smaller);
+                is_smaller = true;
+            } else {
+                changes.pop_back();
+                ++change;
+            }
+        }
+    }
+    return changes;
 }
 
 }  // namespace raya

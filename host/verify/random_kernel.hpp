@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -95,8 +97,8 @@ struct RandomKernel {
 /// Number of statements and expressions.
 std::size_t size_of(const RandomKernel& kernel);
 
-/// Returns the kernel number `number` of the sequence `seed`.
-RandomKernel random_kernel(std::uint64_t seed, std::uint64_t number);
+/// Returns the kernel number `number` of the sequence `seed`, made smaller by each of `changes` (smaller_kernel()).
+RandomKernel random_kernel(std::uint64_t seed, std::uint64_t number, const std::vector<std::size_t>& changes = {});
 
 enum class Dialect {
     kOpenCl,  // OpenCL C 1.2, which includes the number layer
@@ -118,8 +120,13 @@ struct KernelResults {
 /// Computes the exact results.
 KernelResults interpreted(const RandomKernel& kernel, const std::vector<std::uint32_t>& in);
 
-/// Returns smaller kernels, each with one change: statements removed, a compound statement replaced by one of its
-/// bodies, an expression by an argument of the same type or a constant. Large changes come first.
-std::vector<RandomKernel> smaller_kernels(const RandomKernel& kernel);
+/// Returns the kernel with change number `change`: statements removed, a compound statement replaced by one of its
+/// bodies, an expression by an argument of the same type or a constant. Large changes come first. Nothing: there are
+/// not so many changes.
+std::optional<RandomKernel> smaller_kernel(const RandomKernel& kernel, std::size_t change);
+
+/// Returns changes that make the kernel smaller and with which it still fails: fails(changes, smaller kernel).
+std::vector<std::size_t> reducing_changes(
+    RandomKernel kernel, const std::function<bool(const std::vector<std::size_t>&, const RandomKernel&)>& fails);
 
 }  // namespace raya

@@ -2,6 +2,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cinttypes>
+#include <cstdio>
 #include <map>
 #include <sstream>
 #include <tuple>
@@ -16,6 +18,7 @@
 #include "host/cl/kernel_source.hpp"
 #include "host/embedded.hpp"
 #include "host/error.hpp"
+#include "host/verify/random_kernel.hpp"
 #include "host/verify/supervisor.hpp"
 #include "host/version.hpp"
 
@@ -43,13 +46,16 @@ struct Observation {
     std::vector<Step> steps;   // steps[n - 1] is step n
     std::size_t expected = 0;  // step of which the check gave the correct words; 0: none
     bool passed = false;
+    std::string result = "no result in time";  // of the check, or how its process ended
 };
 
 void take_line(Observation& seen, const Json& line) {
     if (find_member(line, "step")) seen.steps.push_back({json_text(line.at("name"))});
     if (find_member(line, "expected")) seen.expected = json_integer(line.at("expected"));
-    if (const Json* check = find_member(line, "check"))
+    if (const Json* check = find_member(line, "check")) {
         seen.passed = from_json<Check>(*check).verdict.outcome == Outcome::kPass;
+        seen.result = from_json<Check>(*check).verdict.result;
+    }
     if (!find_member(line, "done") || seen.steps.empty()) return;
     seen.steps.back().done = true;
     const Json& outputs = line.at("outputs");
@@ -65,11 +71,12 @@ Observation observe(const CheckRun& v, std::size_t step = 0, const std::filesyst
     Observation seen;
     const Clock::time_point start = Clock::now();
     try {
-        run_child(kVerifyTask, request, [&](const Json& line) {
+        const auto status = run_child(kVerifyTask, request, [&](const Json& line) {
             if (!line.is_null()) take_line(seen, line);
             const bool is_late = v.settings.timeout_s > 0 && seconds_since(start) > v.settings.timeout_s;
             return !is_late && !(ends_at_step && seen.steps.size() == step);
         });
+        if (status && *status != 0) seen.result = ending_text(*status);
     } catch (const std::runtime_error&) {  // the run ends without a passed check
     }
     return seen;
@@ -176,6 +183,34 @@ std::pair<std::size_t, std::string> capture_wrong_step(const CheckRun& failing, 
                          "devices of this computer; start with a failing check of number or geometry");
 }
 
+// Makes the run of a check of random kernels that of one kernel, reduced as long as it fails in the same way.
+void reduce_random_kernel(CheckRun& failing, const Check& check) {
+    VerifySettings& s = failing.settings;
+    std::uint32_t end = 0;
+    if (std::sscanf(check.name.c_str(), "seed_%" SCNu64 "_kernels_%" SCNu32 "_to_%" SCNu32, &s.seed, &s.random_first,
+                    &end) != 3)
+        return;
+    s.filter.clear();
+    Observation first;
+    for (std::uint32_t n = s.random_first; n <= end && (first.steps.empty() || first.passed); ++n) {
+        s.random_first = n;
+        s.random = n + 1;
+        first = observe(failing);
+    }
+    if (first.passed || first.result == Observation{}.result) return;  // each trial would take the whole time limit
+    log_message(kDefaultVerbosity, fmt::format("reducing kernel {} ({}) ...", s.random_first, first.result));
+    const RandomKernel kernel = random_kernel(s.seed, s.random_first);
+    const Clock::time_point start = Clock::now();
+    const auto changes = reducing_changes(kernel, [&](const auto& tried, const RandomKernel&) {
+        s.random_changes = tried;
+        return observe(failing).result == first.result;
+    });
+    s.random_changes = changes;
+    log_message(kDefaultVerbosity,
+                fmt::format("reduced from {} to {} statements and expressions in {:.0f} s", size_of(kernel),
+                            size_of(random_kernel(s.seed, s.random_first, changes)), seconds_since(start)));
+}
+
 // Returns the nearest existing folder in which the folder is, or would be.
 fs::path existing_folder_above(const fs::path& folder) {
     fs::path above = fs::absolute(folder / "").parent_path().parent_path();
@@ -246,8 +281,9 @@ void check_case_folder(const fs::path& folder) {
 std::string reproduce(const std::string& selector, const DeviceChecks& device, const VerifySettings& settings,
                       const Check& check, const fs::path& folder) {
     check_case_folder(folder);
-    const CheckRun failing{"", selector, settings_of_one(settings, check.id())};
+    CheckRun failing{"", selector, settings_of_one(settings, check.id())};
     const TemporaryFolder scratch((existing_folder_above(folder) / "raya-case").string());
+    if (check.layer == "random") reduce_random_kernel(failing, check);
     const Observation seen = observe(failing);
     if (seen.passed) no_case(check, "it passes when it runs alone");
     if (seen.steps.empty()) no_case(check, "it fails before the first build of a kernel");

@@ -29,6 +29,8 @@ void for_each_setting(Settings& s, const Visit& visit) {
     visit("soak_s", s.soak_s);
     visit("seed", s.seed);
     visit("random", s.random);
+    visit("random_first", s.random_first);
+    visit("random_changes", s.random_changes);
     visit("lanes", s.lanes);
     visit("done", s.done);
 }

@@ -57,7 +57,8 @@ void run_checks(int pipe, const Json& request);
 /// Finds the first kernel launch with wrong results: the check gives the correct words of its launch, or the check is
 /// repeated with a reference that passes, and the first launch whose outputs differ is the wrong one. The reference is
 /// the first that passes of: raya's own kernels instead of settings.sources.folder; -cl-opt-disable; another device of
-/// this computer. If a build or launch failed, crashed or did not end, the case is that build or launch.
+/// this computer. If a build or launch failed, crashed or did not end, the case is that build or launch. A random
+/// kernel is first reduced to a smaller one that fails in the same way.
 ///
 /// Returns the lines that describe the case. Throws UserError if `folder` is not empty or no case could be made.
 std::string reproduce(const std::string& selector, const DeviceChecks& device, const VerifySettings& settings,

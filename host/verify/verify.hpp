@@ -81,7 +81,9 @@ struct VerifySettings {
     double timeout_s = 0;                 // time after which supervise() ends a check; 0: never
     double soak_s = 0;                    // if not 0: verify() runs random checks with random lanes for so many seconds
     std::uint64_t seed = 1;               // of the choice of checks, and of random kernels
-    std::uint32_t random = 0;             // if not 0: check so many random kernels instead
+    std::uint32_t random = 0;             // if not 0: check instead the random kernels random_first..random - 1,
+    std::uint32_t random_first = 0;       // each with the changes `random_changes`; see random_kernel()
+    std::vector<std::size_t> random_changes{};
     std::function<std::string(const std::string&)> change_random{};  // changes the text of random kernels, for tests
     std::vector<ExpectedFailure> expected_failures{};  // supervise() changes the outcome of checks that match
     std::uint32_t lanes = 0;  // check only this number of lanes: 1, 4, 8 or 16; 0: the device's default; at
@@ -160,7 +162,7 @@ void verify_numbers(Verification& verification);
 void verify_geometry(Verification& verification);
 void verify_machines(Verification& verification);
 void verify_images(Verification& verification);
-/// Layer "random": settings().random random kernels (random_kernel.hpp) of the sequence settings().seed.
+/// Layer "random": random kernels (random_kernel.hpp) of the sequence settings().seed.
 void verify_random(Verification& verification);
 
 /// A copy of blocks between two buffers in which the blocks have different layouts.
@@ -180,10 +182,9 @@ inline constexpr std::uint32_t kRandomBatch = 25;
 
 struct RandomKernel;
 struct KernelResults;
-/// Runs a random kernel with settings.change_random and settings.sources. Reports the correct words of `out`, those of
-/// `expected`, to a capture unless it is null. Throws DeviceError.
+/// Runs a random kernel with settings.change_random and settings.sources. Throws DeviceError.
 KernelResults run_random_kernel(Session& session, const RandomKernel& kernel, const std::vector<std::uint32_t>& in,
-                                const VerifySettings& settings, const KernelResults* expected = nullptr);
+                                const VerifySettings& settings);
 
 // A device and the results of its checks, and their form in reports.
 

@@ -4,10 +4,10 @@
     test_reproduce.py RAYA PATCH_KERNELS CL_FAULTS [--reduce]
 
 RAYA is the program, PATCH_KERNELS tests/patch_kernels, CL_FAULTS the library made of tests/cli/cl_faults.cpp.
---reduce: only the kernel faults that take longest, and two cases reduced with cvise to fewer than 60 lines. Exit code 77: no C compiler, or no cvise
-or Oclgrind.
+--reduce: only the kernel faults that take longest, two random kernels reduced on their syntax tree, and two cases
+reduced with cvise to fewer than 60 lines. Exit code 77: no C compiler, or no cvise or Oclgrind.
 """
-import os, shlex, shutil, subprocess, sys, tempfile
+import os, re, shlex, shutil, subprocess, sys, tempfile
 from pathlib import Path
 
 MAX_PROGRAM_LINES, MAX_REDUCED_LINES = 200, 60
@@ -113,6 +113,18 @@ class Test:
         self.expect(self.repro(folder, SECONDS="5")[0] == 1, "the case of an endless loop")
         self.expect(self.repro(folder, folder / "right.cl", SECONDS="60")[0] == 0, "the case of an endless loop with the right kernel")
 
+    def random_kernel(self, fault, description):
+        """A random kernel with a wrong word, or one that ends the process, is reduced on its syntax tree."""
+        folder = self.new_folder()
+        code, output = self.verify("", "--random", "25", "--seed", "3", "--reproduce", str(folder), fault=fault)
+        sizes = re.search(r"reduced from (\d+) to (\d+) statements", output)
+        self.expect(code == 4 and description in output and sizes, f"random kernels with {fault}: exit code {code}", output)
+        print(f"random kernels, {fault}: {sizes[0]}", flush=True)
+        self.expect(int(sizes[2]) < 30 < int(sizes[1]), sizes[0])
+        self.make(folder, output)
+        self.expect(self.repro(folder, fault=fault)[0] == 1, "the case of a random kernel with the faulty driver")
+        self.expect(self.repro(folder)[0] == 0, "the case of a random kernel with the right driver")
+
     def messages(self):
         """Exit code 125, a folder that is not empty, and a check that passes."""
         check, fault, description = DRIVER_FAULTS[0]
@@ -128,6 +140,8 @@ class Test:
         self.expect(code == 4 and "no case of" in output, f"a fault of transfers: exit code {code}", output)
 
     def reduce(self):
+        self.random_kernel("clBuildProgram 0 popcount(a)=clz(a)", ": wrong")
+        self.random_kernel("clBuildProgram 0 popcount(a)=(__builtin_trap(),a)", "SIGILL")
         for check, fault in REDUCED_FAULTS:
             folder = self.driver_fault(check, fault, "launch of operations")
             script = self.folder / "faulty"

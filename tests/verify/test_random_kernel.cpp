@@ -150,16 +150,20 @@ TEST_CASE("verify for a time: equal seeds give equal sequences of checks; the fi
     CHECK(std::vector(first.begin() + 2, first.end()) == std::vector(later.begin(), later.begin() + 2));
 }
 
-TEST_CASE("random kernels: a wrong result is reduced to a small kernel", "[verify]") {
-    const std::vector<Check> checks = run(1, 1, defines("select(a, b, c) select(b, a, c)"));
-    const Fault& fault = checks.at(0).verdict.fault;
-    INFO(check_lines(checks[0]));
-    REQUIRE(checks[0].verdict.outcome == Outcome::kFail);
-    CHECK(fault.where.find("select(", fault.where.rfind("safe_float16(float16 x)") + 200) != std::string::npos);
-    const std::size_t body = fault.where.find("barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);"),
-                      end = fault.where.find("    barrier(CLK_LOCAL_MEM_FENCE);\n    if (lid == 0) {", body);
-    CHECK(std::count(fault.where.begin() + std::ptrdiff_t(body), fault.where.begin() + std::ptrdiff_t(end), '\n') <= 6);
-    CHECK(fault.expected != fault.got);
+TEST_CASE("random kernels: a kernel is reduced to what fails", "[verify]") {
+    const auto selects = [](const RandomKernel& kernel) {
+        const std::string text = source_of(kernel, Dialect::kOpenCl);
+        return text.find("select(", text.rfind("safe_float16(float16 x)") + 200) != std::string::npos;
+    };
+    const auto changes = reducing_changes(random_kernel(1, 1), [&](const auto& tried, const RandomKernel& smaller) {
+        CHECK(source_of(random_kernel(1, 1, tried), Dialect::kOpenCl) == source_of(smaller, Dialect::kOpenCl));
+        CHECK(interpreted(smaller, random_input(1, 1)).counters.size() == kCounters);
+        return selects(smaller);
+    });
+    const RandomKernel kernel = random_kernel(1, 1, changes);
+    CHECK(selects(kernel));
+    CHECK(size_of(kernel) < 20);
+    CHECK(size_of(random_kernel(1, 1)) > 200);
 }
 
 TEST_CASE("random kernels detect injected faults of a compiler", "[verify][slow]") {
