@@ -383,9 +383,11 @@ BvhItems bvh_items(const PackedJob& job, const NumberFormat& format, unsigned th
     objects.items.resize(regions.size());
     parallel_for_items(regions.size(), threads, 1 << 12, [&](std::size_t i) {
         const std::uint32_t number = regions.number(i);
-        objects.items[i] = {bounds_of(regions.region(i).box, objects.reach), number, kind_of(job, format, number)};
+        objects.items[i] = {bounds_of(regions.box(i), objects.reach), number, kind_of(job, format, number)};
     });
     separate_large_items(objects);
+    for (const BvhItem& item : objects.items)
+        objects.spread = std::max(objects.spread, regions.spread(kind_of_object(job.header().objects, item.number)));
     return objects;
 }
 

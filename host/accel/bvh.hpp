@@ -72,6 +72,7 @@ struct BvhItems {
     std::vector<BvhItem> items;           // empty if the hit regions are unbounded
     std::vector<std::uint32_t> separate;  // numbers of the separate objects, ascending
     double reach = -1;  // maximum coordinate of ray origins for which the boxes are valid; -1: no boxes
+    double spread = 0;  // see raya_bvh
 };
 
 /// Returns the objects of a job with boxes that contain every point at which a kernel can compute a hit, with a margin

@@ -207,6 +207,7 @@ AccelSummary append_bvh(PackedJob& job, const NumberFormat& format, unsigned thr
     const std::size_t rows_at = (end + kWidth - 1) / kWidth * kWidth;
     const std::span<std::uint32_t> words = job.append_zeros(rows_at - bvh_at + rows * kWidth);
     header.reach = static_cast<float>(objects.reach);
+    header.spread = static_cast<float>(objects.spread);
     header.root = is_empty ? RAYA_NO_TREE : writer.write(words.subspan(rows_at - bvh_at));
     header.separate = static_cast<std::uint32_t>(objects.separate.size());
     header.separate_at = static_cast<std::uint32_t>(bvh_at + kWordsOf<raya_bvh>);

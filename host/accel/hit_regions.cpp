@@ -31,6 +31,10 @@
 // distance of X from the axis is at most sqrt((r0 + k z)^2 + e), with 0 <= z <= h up to 8uS. This bounds S in turn,
 // because start and D are perpendicular up to (s + 6u) n. For a steep cone in a format with few fraction bits, no
 // finite S satisfies the bound.
+//
+// A sphere's bound is at most (s + 8u) n + r (s + 7u) / 2 with n <= t' (1 + s) + 2r, and a polygon's margins are 48u
+// times the distance to its farthest corner. So box() leaves out what is proportional to t', and the traversal of the
+// BVH adds it for each ray, with the ray's own s.
 #include "host/accel/hit_regions.hpp"
 
 #include <algorithm>
@@ -98,6 +102,7 @@ HitRegions::HitRegions(const PackedJob& job, const NumberFormat& format, double 
     reach_ = reach * extent_;
     all_bounded_ = format.fraction_bits >= kMinFractionBits && reach_ <= square_limit_ && cones_bounded();
     if (!all_bounded_) reach_ = far_;
+    is_fp32_ = format.is_fp32();
 }
 
 double HitRegions::slack(double reach) const {
@@ -119,6 +124,24 @@ HitRegion HitRegions::region(std::size_t i) const {
         default:
             return sphere(at);
     }
+}
+
+Box HitRegions::box(std::size_t i) const {
+    const std::size_t at = object_at(objects_, numbers_[i]);
+    const std::uint32_t kind = kind_of_object(objects_, numbers_[i]);
+    if (is_fp32_ || (kind != RAYA_SPHERE && kind != RAYA_POLYGON)) return region(i).box;
+    Box box;
+    if (kind == RAYA_SPHERE) {
+        const double radius = std::sqrt(std::abs(real(at + RAYA_SPHERE_SQUARE)));
+        box = {vector(at + RAYA_SPHERE_CENTRE), vector(at + RAYA_SPHERE_CENTRE)};
+        widen(box, radius * (1 + 3 * (spread(kind) + 1.1 * stretch_)) + 4 * std::sqrt(smallest_));
+        return box;
+    }
+    std::size_t corner = (*words_)[at + RAYA_POLYGON_CORNERS_AT];
+    for (std::size_t n = (*words_)[at + RAYA_POLYGON_CORNERS]; n > 0; --n, corner += RAYA_CORNER_WORDS)
+        box.extend(vector(corner));
+    widen(box, 1.1 * spread(kind) * box.size().length() + 8 * std::sqrt(smallest_));
+    return box;
 }
 
 HitRegion HitRegions::sphere(std::size_t at) const {

@@ -55,6 +55,10 @@ class HitRegions {
     std::uint32_t number(std::size_t i) const { return numbers_[i]; }
     /// Region i. Requires all_bounded().
     HitRegion region(std::size_t i) const;
+    /// A box that contains the hits of object i up to (1.1 | |D|^2 - 1 | + spread(kind)) t. Requires all_bounded().
+    Box box(std::size_t i) const;
+    /// See raya_bvh.spread; 0 for fp32. `kind`: of the objects.
+    double spread(std::uint32_t kind) const { return is_fp32_ ? 0 : (kind == RAYA_POLYGON ? 48 : 12) * unit_; }
 
   private:
     // `at`: index of a word in the job; in sphere(), polygon() and cone...() the index of the object's first word.
@@ -74,7 +78,7 @@ class HitRegions {
     std::vector<std::uint32_t> numbers_;
     double unit_, smallest_, stretch_;            // u, f and s of hit_regions.cpp
     double extent_, reach_, far_, square_limit_;  // squares of numbers up to square_limit_ do not overflow
-    bool all_bounded_;
+    bool all_bounded_, is_fp32_;
 };
 
 /// Returns the reach of a structure: the maximum coordinate of ray origins for which it is valid, in multiples of the

@@ -24,12 +24,15 @@ typedef struct {
     // contain the object hit. All other rays must be tested against all objects. A negative `reach` is exceeded by
     // every ray.
     float reach;
+    // In a reduced format, the boxes have no margin for the errors of distant rays. Instead a ray counts as wider by
+    // (1.1 | |D|^2 - 1 | + spread) t at t, on all sides. 0 in fp32.
+    float spread;
     raya_u32 root;         // link to the root; RAYA_NO_TREE without objects
     raya_u32 separate;     // number of separate objects: finite objects in no leaf, tested for every ray
     raya_u32 separate_at;  // offset of the separate objects' numbers (ascending), in words from the job's first word
     raya_u32 rows_at;      // offset of row 0, in words from the job's first word: a multiple of 16
 } raya_bvh;
-RAYA_SHARED_SIZE(raya_bvh, 4 * 5);
+RAYA_SHARED_SIZE(raya_bvh, 4 * 6);
 
 #define RAYA_BVH_WIDTH 16  // number of words in a row; maximum number of children of a node and of objects in a leaf
 

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 
 #include "host/accel/hit_regions.hpp"
 #include "host/scene/nff.hpp"
@@ -61,9 +62,29 @@ bool is_listed_near(const Partition& p, const Vec3& point, double error, std::ui
     return !at[0].empty() && !at[1].empty() && !at[2].empty();
 }
 
+// The largest share of what the traversal of the BVH allows that a hit needs, of each kind of object.
+using NeededShares = std::map<std::uint32_t, double>;
+
+// Checks that a hit at t lies in its object's box, or for a sphere in the sphere in the box, widened by what the
+// traversal allows at t.
+void check_spread(const HitRegions& regions, std::size_t i, const PackedJob& job, const FoundHit& hit,
+                  NeededShares& shares) {
+    const std::uint32_t kind = kind_of_object(job.header().objects, regions.number(i));
+    const Box box = regions.box(i);
+    const Vec3 point = hit.point(), outside = point - box.nearest(point);
+    const double allowed = (1.1 * std::abs(hit.ray.direction.length2() - 1) + regions.spread(kind)) * hit.t;
+    const double needed = kind == RAYA_SPHERE
+                              ? (point - 0.5 * (box.min + box.max)).length() - 0.5 * (box.max.x - box.min.x)
+                              : std::max({std::abs(outside.x), std::abs(outside.y), std::abs(outside.z)});
+    CAPTURE(hit.object, hit.ray.origin, hit.ray.direction, hit.t, point, box.min, box.max);
+    if (needed > allowed) FAIL("a hit lies outside its object's box of the BVH");
+    if (regions.spread(kind) > 0) shares[kind] = std::max(shares[kind], needed / allowed);
+}
+
 // Checks that hits lie in the regions of their objects and in voxels that list the objects. Returns the number of hits.
+// See check_spread() for `shares`.
 std::size_t check_hits(KernelRunner& runner, SplitMix& random, const Scene& scene, const NumberFormat& format,
-                       int rounds) {
+                       int rounds, NeededShares& shares) {
     const PackedJob job = job_in(scene, format);
     const Partition p = partition(job, format, random_divisions(random));
     const double error = half_traversal_error(p.grid), extent = job.header().extent;
@@ -76,6 +97,7 @@ std::size_t check_hits(KernelRunner& runner, SplitMix& random, const Scene& scen
         const auto i = std::lower_bound(numbers.begin(), numbers.end(), hit.object) - numbers.begin();
         const bool in_region =
             !regions.all_bounded() || regions.region(static_cast<std::size_t>(i)).touches({point, point});
+        if (regions.all_bounded()) check_spread(regions, static_cast<std::size_t>(i), job, hit, shares);
         if (in_region && is_listed_near(p, point, error, hit.object)) continue;
         CAPTURE(scene.name, format_name(format), p.grid.divisions, hit.object, hit.ray.origin, hit.ray.direction, hit.t,
                 point);
@@ -91,6 +113,7 @@ Scene scene_of(const std::string& name) { return read_nff(RAYA_SOURCE_DIR "/scen
 
 TEST_CASE("every hit lies in voxels that list its object") {
     std::size_t hits = 0, cases = 0;
+    NeededShares shares;
     const std::vector<std::string> formats = quick_of(4, kFormats);
     for (const std::string& name : formats) {
         const NumberFormat format = parse_format(name);
@@ -101,15 +124,17 @@ TEST_CASE("every hit lies in voxels that list its object") {
                 CAPTURE(kind.name, seed);
                 const double scale = random_scale(random, format);
                 hits += check_hits(runner, random, with_random_sizes(random_scene(kind, seed, 8), random, scale),
-                                   format, 2);
+                                   format, 2, shares);
             }
         for (const std::string& scene : kScenes) {
             SplitMix random(1);
-            hits += check_hits(runner, random, scene_of(scene), format, 1);
+            hits += check_hits(runner, random, scene_of(scene), format, 1, shares);
         }
     }
     CHECK(cases == formats.size() * 7 * case_count());  // 7 kinds of finite objects
     CHECK(hits > 80 * cases);
+    CHECK(shares[RAYA_SPHERE] > 0.3);
+    CHECK(shares[RAYA_POLYGON] > 0.3);
 }
 
 // The ray is nearly parallel to a cylinder, at a distance of half a unit. In the quadratic, b is 0 and a c is so small

@@ -6,6 +6,9 @@
 //       prints only the least nanoseconds of each tile of 4 x 4 pixels, traced as `coherent` by one thread, a line for
 //       each row of tiles
 //
+//   embree_peer SCENE.nff WxH BOUNCES SAMPLES robust
+//       with Embree's flag for watertight tests; raya's are watertight, Embree's without the flag are not
+//
 // Prints for each of three methods "METHOD RAYS SECONDS...", with the seconds of each render, and "mean METHOD R G B",
 // the image's mean colour; then "build SECONDS". `single` traces single rays; `sixteen` traces the ray trees of 4 x 4
 // pixels in lockstep, in packets of 16 rays; `coherent` does the same, and tells Embree that the rays are coherent.
@@ -21,6 +24,7 @@
 #include <cstdlib>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -293,11 +297,12 @@ int run(char** arguments) {
     const Scene scene = read_nff(arguments[0]);
     int width = 0, height = 0;
     if (std::sscanf(arguments[1], "%dx%d", &width, &height) != 2) return 2;
-    const EmbreeScene embree(scene);
+    const std::string_view mode = arguments[4] ? arguments[4] : "";
+    const EmbreeScene embree(scene, mode == "robust");
     const Whitted whitted(scene, embree, std::atoi(arguments[2]));
     Picture picture(whitted, camera_of(scene.view, width, height));
     const int samples = std::atoi(arguments[3]);
-    if (arguments[4]) {
+    if (mode == "tiles") {
         picture.print_tiles(samples);
         return 0;
     }
@@ -312,8 +317,8 @@ int run(char** arguments) {
 }  // namespace raya
 
 int main(int argc, char** argv) {
-    if (argc != 5 && !(argc == 6 && argv[5] == std::string("tiles"))) {
-        std::fprintf(stderr, "usage: embree_peer SCENE.nff WxH BOUNCES SAMPLES [tiles]\n");
+    if (argc != 5 && !(argc == 6 && (argv[5] == std::string("tiles") || argv[5] == std::string("robust")))) {
+        std::fprintf(stderr, "usage: embree_peer SCENE.nff WxH BOUNCES SAMPLES [tiles|robust]\n");
         return 2;
     }
     try {

@@ -106,8 +106,9 @@ void occlude_cones(const RTCOccludedFunctionNArguments* args) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const Scene& scene) : device_(rtcNewDevice("")), scene_(rtcNewScene(device_)) {
+EmbreeScene::EmbreeScene(const Scene& scene, bool robust) : device_(rtcNewDevice("")), scene_(rtcNewScene(device_)) {
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
+    if (robust) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
     for (const Surface& s : scene.surfaces) surfaces_.push_back(surface_of(s));
     for (const Plane& p : scene.planes)
         planes_.push_back({to_float(p.normal), static_cast<float>(p.distance), p.surface});

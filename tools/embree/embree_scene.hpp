@@ -51,8 +51,9 @@ struct PeerHit {
 
 class EmbreeScene {
   public:
-    /// Throws UserError for a sphere that is visible only from inside, which Embree does not support.
-    explicit EmbreeScene(const Scene& scene);
+    /// `robust`: with Embree's flag for watertight tests. Throws UserError for a sphere that is visible only from
+    /// inside, which Embree does not support.
+    EmbreeScene(const Scene& scene, bool robust);
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
