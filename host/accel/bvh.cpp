@@ -380,7 +380,7 @@ BvhItems bvh_items(const PackedJob& job, const NumberFormat& format, unsigned th
     const HitRegions regions(job, format, reach_for(job, format, max_slack));
     if (!regions.all_bounded()) return objects;
     objects.reach = regions.reach();
-    objects.items.resize(regions.size());
+    resize_in_huge_pages(objects.items, regions.size());
     parallel_for_items(regions.size(), threads, 1 << 12, [&](std::size_t i) {
         const std::uint32_t number = regions.number(i);
         objects.items[i] = {bounds_of(regions.box(i), objects.reach), number, kind_of(job, format, number)};

@@ -129,20 +129,34 @@ HitRegion HitRegions::region(std::size_t i) const {
 Box HitRegions::box(std::size_t i) const {
     const std::size_t at = object_at(objects_, numbers_[i]);
     const std::uint32_t kind = kind_of_object(objects_, numbers_[i]);
-    if (is_fp32_ || (kind != RAYA_SPHERE && kind != RAYA_POLYGON)) return region(i).box;
-    Box box;
-    if (kind == RAYA_SPHERE) {
-        const double radius = std::sqrt(std::abs(real(at + RAYA_SPHERE_SQUARE)));
-        box = {vector(at + RAYA_SPHERE_CENTRE), vector(at + RAYA_SPHERE_CENTRE)};
-        widen(box, radius * (1 + 3 * (spread(kind) + 1.1 * stretch_)) + 4 * std::sqrt(smallest_));
+    if (kind == RAYA_POLYGON) {
+        double farthest_corner = 0;
+        Box box = corner_box(at, farthest_corner);
+        widen(box, polygon_margin(is_fp32_ ? farthest_corner : 1.1 * box.size().length()));
         return box;
     }
-    std::size_t corner = (*words_)[at + RAYA_POLYGON_CORNERS_AT];
-    for (std::size_t n = (*words_)[at + RAYA_POLYGON_CORNERS]; n > 0; --n, corner += RAYA_CORNER_WORDS)
-        box.extend(vector(corner));
-    widen(box, 1.1 * spread(kind) * box.size().length() + 8 * std::sqrt(smallest_));
+    if (is_fp32_ || kind != RAYA_SPHERE) return region(i).box;
+    const double radius = std::sqrt(std::abs(real(at + RAYA_SPHERE_SQUARE)));
+    Box box{vector(at + RAYA_SPHERE_CENTRE), vector(at + RAYA_SPHERE_CENTRE)};
+    widen(box, radius * (1 + 3 * (spread(kind) + 1.1 * stretch_)) + 4 * std::sqrt(smallest_));
     return box;
 }
+
+// Returns the bounding box of a polygon's corners. Sets the maximum distance of a corner from a ray's origin.
+Box HitRegions::corner_box(std::size_t at, double& farthest_corner) const {
+    Box box;
+    double farthest_square = 0;
+    std::size_t corner = (*words_)[at + RAYA_POLYGON_CORNERS_AT];
+    for (std::size_t n = (*words_)[at + RAYA_POLYGON_CORNERS]; n > 0; --n, corner += RAYA_CORNER_WORDS) {
+        box.extend(vector(corner));
+        farthest_square = std::max(farthest_square, vector(corner).length2());
+    }
+    farthest_corner = std::sqrt(3.0) * reach_ + std::sqrt(farthest_square);
+    return box;
+}
+
+// Covers the kernel's margin (RAYA_MARGIN is 16 or 8 times u) and the errors in the plane, at a distance.
+double HitRegions::polygon_margin(double distance) const { return 48 * unit_ * distance + 8 * std::sqrt(smallest_); }
 
 HitRegion HitRegions::sphere(std::size_t at) const {
     HitRegion region;
@@ -162,19 +176,15 @@ HitRegion HitRegions::polygon(std::size_t at) const {
     region.normal = vector(at + RAYA_PLANE_NORMAL);
     region.plane_distance = real(at + RAYA_PLANE_DISTANCE);
     double off_plane = 0, farthest_corner = 0;  // maximum distance of a corner: from the plane; from a ray's origin
+    region.box = corner_box(at, farthest_corner);
     std::size_t corner = (*words_)[at + RAYA_POLYGON_CORNERS_AT];
-    for (std::size_t i = (*words_)[at + RAYA_POLYGON_CORNERS]; i > 0; --i, corner += RAYA_CORNER_WORDS) {
-        const Vec3 position = vector(corner);
-        region.box.extend(position);
-        off_plane = std::max(off_plane, std::abs(region.normal.dot(position) - region.plane_distance));
-        farthest_corner = std::max(farthest_corner, max_distance(position));
-    }
-    const double margin = 32 * unit_ * farthest_corner;  // covers the kernel's margin: RAYA_MARGIN is 16 or 8 times u
-    const double in_plane = 16 * unit_ * farthest_corner + 8 * std::sqrt(smallest_);
+    for (std::size_t i = (*words_)[at + RAYA_POLYGON_CORNERS]; i > 0; --i, corner += RAYA_CORNER_WORDS)
+        off_plane = std::max(off_plane, std::abs(region.normal.dot(vector(corner)) - region.plane_distance));
     const double plane_and_origin = std::abs(region.plane_distance) + std::sqrt(3.0) * reach_;
-    widen(region.box, margin + in_plane);
+    widen(region.box, polygon_margin(farthest_corner));
     region.half_thickness = 5 * unit_ * (plane_and_origin + 2 * farthest_corner) +
-                            4 * smallest_ * (1 + farthest_corner) + in_plane + off_plane;
+                            4 * smallest_ * (1 + farthest_corner) + polygon_margin(farthest_corner) -
+                            32 * unit_ * farthest_corner + off_plane;
     return region;
 }
 

@@ -58,14 +58,18 @@ void parallel_for_items(std::size_t count, unsigned threads, std::size_t min_par
 /// Asks the system to use huge pages for memory that nothing has accessed yet. Does nothing if the system has none.
 void advise_huge_pages(void* memory, std::size_t bytes);
 
-/// Resizes a vector. If it is empty and gets large, its memory is in huge pages: the first access to memory in small
-/// pages takes longer than many a render.
+/// Reserves space for `count` elements of an empty vector, in huge pages: the first access to memory in small pages
+/// takes longer than many a render.
+template <class T>
+void reserve_in_huge_pages(std::vector<T>& elements, std::size_t count) {
+    elements.reserve(count);
+    advise_huge_pages(elements.data(), count * sizeof(T));
+}
+
+/// Resizes a vector, which if it is empty gets memory in huge pages.
 template <class T>
 void resize_in_huge_pages(std::vector<T>& elements, std::size_t count) {
-    if (elements.empty()) {
-        elements.reserve(count);
-        advise_huge_pages(elements.data(), count * sizeof(T));
-    }
+    if (elements.empty()) reserve_in_huge_pages(elements, count);
     elements.resize(count);
 }
 

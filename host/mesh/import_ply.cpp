@@ -161,14 +161,10 @@ class BinaryPly {
         return std::bit_cast<Value>(copy);
     }
 
-    float float_at(const char* bytes, const std::string& type) const {
-        return bytes_of(type) == 8 ? static_cast<float>(value_at<double>(bytes)) : value_at<float>(bytes);
-    }
-
     /// Returns for each vertex x, y and z and, if the mesh has normals, nx, ny and nz.
     std::vector<float> read_vertices(bool has_normals) {
         const PlyElement& vertex = header_.elements[0];
-        std::vector<std::pair<std::size_t, const std::string*>> places;  // byte in a vertex, type
+        std::vector<std::pair<std::size_t, bool>> places;  // byte in a vertex; true: a double
         std::size_t stride = 0;
         std::vector<std::size_t> starts;
         for (const PlyProperty& property : vertex.properties) {
@@ -181,7 +177,7 @@ class BinaryPly {
             const std::string& type = vertex.properties[i].type;
             if (!is_floating(type))
                 throw MeshFault(std::string("PLY: raya reads ") + name + " only as float or double");
-            places.emplace_back(starts[i], &type);
+            places.emplace_back(starts[i], bytes_of(type) == 8);
         }
         constexpr std::size_t kBatch = 4096;
         std::vector<char> batch(kBatch * stride);
@@ -190,15 +186,23 @@ class BinaryPly {
             const std::size_t count = std::min<std::size_t>(kBatch, vertex.count - first);
             read(batch.data(), count * stride);
             for (std::size_t i = 0; i < count; ++i)
-                for (const auto& [byte, type] : places)
-                    vectors.push_back(float_at(batch.data() + i * stride + byte, *type));
+                for (const auto& [byte, is_double] : places) {
+                    const char* const at = batch.data() + i * stride + byte;
+                    vectors.push_back(is_double ? static_cast<float>(value_at<double>(at)) : value_at<float>(at));
+                }
         }
         return vectors;
     }
 
     /// Returns the bytes of the faces: number of corners, 8 bits, and corners, 32 bits each.
     std::vector<char> read_lists(std::uint64_t vertices) {
-        std::vector<char> bytes(std::istreambuf_iterator<char>(in_), {});
+        constexpr std::size_t kBlock = 1 << 24;
+        std::vector<char> bytes;
+        do {
+            bytes.resize(bytes.size() + kBlock);
+            in_.read(bytes.data() + (bytes.size() - kBlock), kBlock);
+            bytes.resize(bytes.size() - kBlock + static_cast<std::size_t>(in_.gcount()));
+        } while (in_);
         std::size_t at = 0;
         for (std::uint64_t face = 1; face <= header_.elements[1].count; ++face) {
             const std::size_t size = at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0;

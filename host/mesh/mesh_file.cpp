@@ -22,6 +22,7 @@
 #include "host/base/encoding.hpp"
 #include "host/base/json.hpp"
 #include "host/base/module.hpp"
+#include "host/base/parallel.hpp"
 #include "host/error.hpp"
 #include "host/scene/polygon.hpp"
 
@@ -159,7 +160,7 @@ class MeshReader {
             all_faces += faces;
             if (all_faces > kMaxMeshFaces)
                 throw UserError(fmt::format("it has more than {} faces; use a coarser mesh", kMaxMeshFaces));
-            scene_.polygons.reserve(all_faces);
+            reserve_in_huge_pages(scene_.polygons, all_faces);
             const Mesh made{json_text(mesh.at("name")),
                             static_cast<int>(json_integer(mesh.at("surface"), scene_.surfaces.size() - 1)),
                             mesh.at("has_normals").get<bool>()};

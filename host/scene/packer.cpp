@@ -347,7 +347,7 @@ PackedJob pack_job(const Scene& scene, const JobSettings& settings) {
         throw UserError(
             fmt::format("{}: the scene needs {} words, more than 32-bit indices can address; use fewer objects",
                         scene.name, all_words));
-    words.reserve(all_words + settings.spare_words);
+    reserve_in_huge_pages<std::uint32_t>(words, all_words + settings.spare_words);
     pack_objects(words, job, scene, surface_at);
     const bool has_patches = std::ranges::any_of(scene.polygons, [](const Polygon& p) { return !p.normals.empty(); });
     return {job, std::move(words), has_patches};
