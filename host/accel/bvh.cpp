@@ -332,12 +332,16 @@ Bounds bounds_of(const Box& box, double reach) {
     return bounds;
 }
 
-// Regions may grow by this fraction of their mean longest side.
-double max_slack(const HitRegions& regions) {
+// Returns max_slack of reach_for(): boxes may grow by a fraction of their mean longest side. In reduced formats only
+// the boxes of cones and the margin for the traversal grow with the reach.
+double max_slack(const HitRegions& regions, const raya_objects& objects) {
     constexpr double kFractionOfBox = 1.0 / 64;
+    if (regions.size() == 0) return -1;
     double sides = 0;
-    for (std::size_t i = 0; i < regions.size(); ++i) sides += largest_coordinate(regions.region(i).box.size());
-    return regions.size() == 0 ? -1 : kFractionOfBox * (sides / static_cast<double>(regions.size()));
+    for (std::size_t i = 0; i < regions.size(); ++i) sides += largest_coordinate(regions.box(i).size());
+    const double growth = kFractionOfBox * (sides / static_cast<double>(regions.size()));
+    if (regions.spread(RAYA_SPHERE) == 0 || objects.cones > 0) return growth;
+    return growth * regions.slack(2) / traversal_error(0.5 * regions.reach(), regions.reach());
 }
 
 // Returns the kind of leaf (RAYA_LINK_*) in which an object is stored.
@@ -377,7 +381,8 @@ void separate_large_items(BvhItems& objects) {
 
 BvhItems bvh_items(const PackedJob& job, const NumberFormat& format, unsigned threads) {
     BvhItems objects;
-    const HitRegions regions(job, format, reach_for(job, format, max_slack));
+    const raya_objects& all = job.header().objects;
+    const HitRegions regions(job, format, reach_for(job, format, [&](const auto& r) { return max_slack(r, all); }));
     if (!regions.all_bounded()) return objects;
     objects.reach = regions.reach();
     resize_in_huge_pages(objects.items, regions.size());
@@ -387,7 +392,7 @@ BvhItems bvh_items(const PackedJob& job, const NumberFormat& format, unsigned th
     });
     separate_large_items(objects);
     for (const BvhItem& item : objects.items)
-        objects.spread = std::max(objects.spread, regions.spread(kind_of_object(job.header().objects, item.number)));
+        objects.spread = std::max(objects.spread, regions.spread(kind_of_object(all, item.number)));
     return objects;
 }
 
