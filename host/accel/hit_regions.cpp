@@ -155,8 +155,10 @@ Box HitRegions::corner_box(std::size_t at, double& farthest_corner) const {
     return box;
 }
 
-// Covers the kernel's margin (RAYA_MARGIN is 16 or 8 times u) and the errors in the plane, at a distance.
-double HitRegions::polygon_margin(double distance) const { return 48 * unit_ * distance + 8 * std::sqrt(smallest_); }
+// The error along a polygon's plane, at a distance.
+double HitRegions::in_plane(double distance) const { return 16 * unit_ * distance + 8 * std::sqrt(smallest_); }
+// Covers the kernel's margin, too: RAYA_MARGIN is 16 or 8 times u.
+double HitRegions::polygon_margin(double distance) const { return 32 * unit_ * distance + in_plane(distance); }
 
 HitRegion HitRegions::sphere(std::size_t at) const {
     HitRegion region;
@@ -183,8 +185,7 @@ HitRegion HitRegions::polygon(std::size_t at) const {
     const double plane_and_origin = std::abs(region.plane_distance) + std::sqrt(3.0) * reach_;
     widen(region.box, polygon_margin(farthest_corner));
     region.half_thickness = 5 * unit_ * (plane_and_origin + 2 * farthest_corner) +
-                            4 * smallest_ * (1 + farthest_corner) + polygon_margin(farthest_corner) -
-                            32 * unit_ * farthest_corner + off_plane;
+                            4 * smallest_ * (1 + farthest_corner) + in_plane(farthest_corner) + off_plane;
     return region;
 }
 

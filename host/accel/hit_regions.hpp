@@ -67,6 +67,7 @@ class HitRegions {
     // Upper bound of the distance from `point` to a ray origin whose coordinates are at most reach_ in magnitude.
     double max_distance(const Vec3& point) const;
     Box corner_box(std::size_t at, double& farthest_corner) const;
+    double in_plane(double distance) const;
     double polygon_margin(double distance) const;
     HitRegion sphere(std::size_t at) const;
 #define RAYA_REGION_OF_KIND(kind, kinds, KIND) HitRegion kind(std::size_t at) const;
