@@ -103,6 +103,9 @@ int parse_and_run(CLI::App& program, Ranks& ranks, int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return ranks.fail(kOutOfMemory, kExitUserError);
     } catch (const std::exception& error) {
+        const auto* const of_system = dynamic_cast<const std::system_error*>(&error);  // there can be no new thread
+        if (of_system && of_system->code() == std::errc::resource_unavailable_try_again)
+            return ranks.fail(kOutOfMemory, kExitUserError);
         if (std::ferror(stdout) != 0) return kExitOk;  // flush_stdout() reports the error
         return ranks.fail(std::string("internal error: ") + error.what(), kExitInternalError);
     }

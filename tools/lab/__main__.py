@@ -20,6 +20,7 @@ EXIT_USER, EXIT_DEVICE = 2, 3
 def main(arguments):
     options = settings_of(arguments)
     from raya.lab.run import run  # after the options, because it imports packages that take seconds to load
+    handle_signals(terminate)
     return run(options)
 
 
@@ -27,22 +28,33 @@ class Terminated(BaseException):
     """A signal that terminates the program."""
 
 
-if __name__ == "__main__":
-    def terminate(number, frame):
-        raise Terminated(number)
+def terminate(number, frame):
+    raise Terminated(number)
 
+
+def end(number, frame=None):
+    """Ends the process by the signal, so that its parent sees the signal in the exit status. While Python imports packages, an exception from a
+    handler could get lost."""
+    os.write(sys.stderr.fileno(), b"raya: interrupted\n")
+    signal.signal(number, signal.SIG_DFL)
+    os.kill(os.getpid(), number)
+
+
+def handle_signals(handler):
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         if signal.getsignal(number) != signal.SIG_IGN:
-            signal.signal(number, terminate)
+            signal.signal(number, handler)
+
+
+if __name__ == "__main__":
+    handle_signals(end)
     try:
         try:
             sys.exit(main(sys.argv[1:]))
         finally:
             sys.stdout.flush()  # at exit, an error would be a traceback
     except Terminated as signalled:
-        print("raya: interrupted", file=sys.stderr)
-        signal.signal(signalled.args[0], signal.SIG_DFL)
-        os.kill(os.getpid(), signalled.args[0])  # the signal ends the process, so its parent sees the signal in the exit status
+        end(signalled.args[0])
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes stdout at exit
         print("raya: cannot write to stdout: Broken pipe", file=sys.stderr)
